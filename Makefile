@@ -1,0 +1,71 @@
+# Everything a user types: `make help`. Each target makes what it needs, the environment included; Python 3.11 and make
+# suffice. The environment is .venv, made from the hash-pinned environment.lock, and made again when that file's content
+# changes; inside it (`. .venv/bin/activate`) snakemake, rocking and pytest work as usual.
+
+MAKEFLAGS += --no-print-directory
+.DEFAULT_GOAL := help
+.PHONY: help reproduce test serve bench lock environment FORCE
+
+HOST ?= 127.0.0.1
+PORT ?= 8000
+
+# The lock is resolved for Python 3.11; a newer one is the second choice.
+PYTHON ?= $(shell for p in python3.11 python3; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
+# Another active environment must not leak into this one.
+unexport VIRTUAL_ENV PYTHONPATH PYTHONHOME
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+help: ## show this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 18
+
+reproduce: .venv/project ## data sets, figures and claims of the paper into results/ (CONFIG=FILE for another configuration)
+	snakemake $(if $(CONFIG),--configfile $(CONFIG))
+
+test: .venv/project ## format, lint, types and all tests, among them a small real run of the workflow
+	ruff format --check .
+	ruff check .
+	mypy
+	snakefmt --check Snakefile workflow
+	snakemake --lint
+	pytest
+
+serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)
+	rocking serve --host $(HOST) --port $(PORT) --results results
+
+bench: .venv/project ## time per cell of the solver beside a general-purpose integrator
+	python -m benchmarks.slender_cell
+
+lock: ## resolve pyproject.toml anew into environment.lock (UPGRADE=--upgrade for the newest versions)
+	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
+	$(UV) pip compile pyproject.toml --extra workflow --extra dev --python $(PYTHON) \
+	    --generate-hashes --no-header --no-annotate --quiet $(UPGRADE) --output-file environment.lock
+
+environment: .venv/project ## the environment .venv alone
+	@:
+
+UV := $(or $(shell command -v uv),build/uv/bin/uv)
+
+results/manifest.json: | .venv/project
+	$(MAKE) reproduce
+
+# No isolation: the build tool is installed first, pinned like the rest, and builds what has no wheel; pip would fetch
+# another one for that, unpinned.
+INSTALL := .venv/bin/python -m pip install --quiet --require-hashes --no-build-isolation --use-pep517
+
+# The copy of the lock inside .venv is written last: it tells which lock the environment was made from, and that it is
+# complete. Its content decides, not a time stamp: a fresh checkout of the same lock costs nothing.
+.venv/environment.lock: $(shell cmp -s environment.lock .venv/environment.lock || echo FORCE)
+	@test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; name one: make PYTHON=/path/to/python3.11' >&2; exit 1; }
+	@echo 'Making .venv from environment.lock (about a minute) ...'
+	@$(PYTHON) -m venv --clear .venv || { \
+	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
+	@sed -n '/^setuptools==/,/[^\\]$$/p' environment.lock >.venv/build-tool.lock
+	@$(INSTALL) -r .venv/build-tool.lock && $(INSTALL) -r environment.lock
+	@cp environment.lock $@
+
+# The project itself, as an editable install: the lock holds its build tool, so nothing is fetched.
+.venv/project: .venv/environment.lock pyproject.toml
+	@.venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
