@@ -1,0 +1,78 @@
+"""Case 2: overturning without impact, (3.8) and (3.10). It does not depend on restitution."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.closed_form.coefficients import Array, after_pulse_coefficients, checked, cot_psi, pulse_end
+from rocking.closed_form.roots import find_root
+from rocking.errors import in_range
+
+
+def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
+    """How far a block is beyond overturning without impact, (3.10).
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        sqrt(a^2 - 1) - a e^{-p T_ex} - omega [-]; zero on the curve, positive where the block overturns directly.
+    """
+    a, omega = checked(amplitude, frequency_ratio)
+    return np.asarray(cot_psi(a) - a * np.exp(-pulse_end(a, omega)) - omega)  # (3.10), second line
+
+
+def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
+    """2 B_ex0/alpha [-], the left side of the first line of (3.10): overturning directly where it is not positive.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        B0* e^{p T_ex} + (omega/2) C0* [-], infinite where e^{p T_ex} is beyond a double. In free rocking B = 0 is
+        the unstable manifold, (3.8).
+    """
+    _, growing = after_pulse_coefficients(amplitude, frequency_ratio)
+    with np.errstate(over="ignore"):
+        return np.asarray(growing * np.exp(pulse_end(amplitude, frequency_ratio)))  # (3.8), (3.10), first line
+
+
+def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Amplitude from which the block overturns without impact, the curve of (3.10).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        a [-], > 1, of the shape of `frequency_ratio`. There is exactly one: (3.10) divided by a is monotone in psi.
+    """
+    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    psi = case_2_phase(omega)
+    return np.asarray(1 / np.sin(psi))
+
+
+def case_2_phase(omega: Array) -> Array:
+    """psi [rad] on the curve of (3.10)."""
+    return find_root(_manifold, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
+
+
+def _manifold(psi: Array, omega: Array) -> Array:
+    """(3.10) times -sin(psi): omega sin psi - cos psi + e^{-p T_ex}, the ones taken out of cosine and exponential."""
+    return np.asarray(omega * np.sin(psi) + 2 * np.sin(psi / 2) ** 2 + np.expm1(-(2 * np.pi - psi) / omega))

@@ -1,0 +1,120 @@
+"""Motion from uplift to the first impact under one full sine, (3.4) with (3.7), in forms that do not cancel.
+
+With (3.7) inserted, (3.4) is linear in s = sqrt(a^2 - 1):
+
+    theta/alpha = [Y_c(tau) - s Y_s(tau)]/(omega^2 + 1),   Y_c = omega^2 (cosh tau - 1) - (1 - cos omega tau),
+                                                           Y_s = omega sinh tau - sin omega tau,   Y_c' = omega Y_s.
+
+Y_c starts as tau^4 and Y_s as tau^3, where the four terms of (3.4) are of order one: close to a = 1 the first impact
+follows uplift at once and (3.4) as printed has no digits left, hence the series for short times.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end, uplift_phase
+from rocking.errors import in_range
+
+_SERIES_UNTIL = 1.0  # largest max(tau, omega tau) of the series; ten terms then leave 1e-19
+_SERIES_TERMS = 10
+
+
+def rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
+    """theta/alpha [-] before any impact while the pulse acts, (3.4).
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    time : array_like
+        tau = p t since uplift [-], [0, inf).
+    """
+    a, omega = checked(amplitude, frequency_ratio)
+    tau = in_range("time", time, 0.0, np.inf)
+    Yc, Ys = arc_terms(tau, omega)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray((Yc - cot_psi(a) * Ys) * np.exp(tau) / (2 * (omega * omega + 1)))  # (3.4), theta
+
+
+def angular_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
+    """d(theta/alpha)/d tau [-] before any impact while the pulse acts, (3.4) and, at an impact, (3.22).
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    time : array_like
+        tau = p t since uplift [-], [0, inf).
+    """
+    a, omega = checked(amplitude, frequency_ratio)
+    tau = in_range("time", time, 0.0, np.inf)
+    _, Ys = arc_terms(tau, omega)
+    decay = np.exp(-tau)
+    Ys_slope = omega * (np.expm1(-tau) ** 2 + 4 * decay * np.sin(omega * tau / 2) ** 2)
+    with np.errstate(over="ignore", invalid="ignore"):
+        scale = np.exp(tau) / (2 * (omega * omega + 1))
+        return np.asarray((omega * Ys - cot_psi(a) * Ys_slope) * scale)  # (3.4), velocity; (3.22)
+
+
+def arc_terms(tau: Array, omega: Array) -> tuple[Array, Array]:
+    """2 e^{-tau} Y_c and 2 e^{-tau} Y_s [-] of the module's docstring; `tau` >= 0 and `omega` > 0 broadcast."""
+    tau, omega = np.broadcast_arrays(tau, omega)
+    decay = np.exp(-tau)
+    Yc = omega * omega * np.expm1(-tau) ** 2 - 4 * decay * np.sin(omega * tau / 2) ** 2
+    Ys = -omega * np.expm1(-2 * tau) - 2 * decay * np.sin(omega * tau)
+    short = np.maximum(tau, omega * tau) < _SERIES_UNTIL
+    if short.any():
+        cosine_part, sine_part = _short_time_series(np.where(short, tau, 0.0), np.where(short, omega, 1.0))
+        Yc, Ys = np.where(short, cosine_part, Yc), np.where(short, sine_part, Ys)
+    return np.asarray(Yc), np.asarray(Ys)
+
+
+def _short_time_series(tau: Array, omega: Array) -> tuple[Array, Array]:
+    """Power series of `arc_terms`: their first one and two terms vanish identically."""
+    Yc, Ys = np.zeros_like(tau), np.zeros_like(tau)
+    for k in range(1, _SERIES_TERMS):
+        sign = (-1.0) ** k
+        Ys = Ys + (omega * tau ** (2 * k + 1) - sign * (omega * tau) ** (2 * k + 1)) / factorial(2 * k + 1)
+        Yc = Yc + (omega**2 * tau ** (2 * k + 2) - sign * (omega * tau) ** (2 * k + 2)) / factorial(2 * k + 2)
+    return 2 * np.exp(-tau) * Yc, 2 * np.exp(-tau) * Ys
+
+
+def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
+    """theta/alpha [-] before any impact, (3.4) term by term as in (3.21): loses digits for short and for long times.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    time : array_like
+        tau = p t since uplift [-], [0, inf).
+    """
+    a, omega = checked(amplitude, frequency_ratio)
+    tau = in_range("time", time, 0.0, np.inf)
+    A0, B0, C0 = coefficients(a, omega)
+    forced = C0 * np.sin(omega * tau + uplift_phase(a))
+    return np.asarray((A0 * np.exp(-tau) + B0 * np.exp(tau) + forced - 2) / 2)  # (3.4), left side of (3.21)
+
+
+def state_at_pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
+    """Rotation theta_ex0/alpha and velocity [-] at the end of a pulse without impact so far, (3.11).
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    """
+    T = pulse_end(amplitude, frequency_ratio)
+    return rotation(amplitude, frequency_ratio, T), angular_velocity(amplitude, frequency_ratio, T)  # (3.11)

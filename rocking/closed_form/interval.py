@@ -1,0 +1,14 @@
+"""The interval of amplitudes in which one mechanism overturns the block."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rocking.closed_form.coefficients import Array
+
+
+class AmplitudeInterval(NamedTuple):
+    """The block overturns for lower < a < upper [-]; both nan where the mechanism does not overturn it."""
+
+    lower: Array
+    upper: Array

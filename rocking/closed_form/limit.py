@@ -1,0 +1,79 @@
+"""The limit (3.31) between cases 1.1 and 1.2: the first impact falls on the very end of the pulse."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end
+from rocking.closed_form.roots import find_root
+from rocking.errors import in_range
+
+
+def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
+    """Which side of (3.31) a block is on.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        (3.31), left side minus right side, times e^{-p T_ex} [-]: positive where the first impact would come after
+        the end of the pulse, or never; negative where it comes before.
+    """
+    a, omega = checked(amplitude, frequency_ratio)
+    left = 1 + omega**2 + np.sqrt(1 + (a**2 + 1) * omega**2)
+    return np.asarray(left * np.exp(-pulse_end(a, omega)) - omega * (omega - cot_psi(a)))  # (3.31)
+
+
+def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Amplitude at which the first impact falls on the end of the pulse, the curve of (3.31).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact comes after the pulse (case 1.2, up
+        to `case_2_amplitude`), below it while the pulse acts (case 1.1). Below frequency ratios of about 0.2 the
+        curve and case 2 agree in all printed digits.
+    """
+    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
+    return np.asarray(1 / np.sin(psi))
+
+
+def _limit(psi: Array, omega: Array) -> Array:
+    """(3.31) times sin(psi) e^{-p T_ex}; omega^2 sin(psi) is collected, or it cancels for large omega."""
+    decay = np.exp(-(2 * np.pi - psi) / omega)
+    kept = decay * (np.sin(psi) + np.sqrt((1 + omega**2) * np.sin(psi) ** 2 + omega**2)) + omega * np.cos(psi)
+    return np.asarray(kept + omega**2 * np.sin(psi) * np.expm1(-(2 * np.pi - psi) / omega))
+
+
+def limit_velocity(frequency_ratio: ArrayLike) -> Array:
+    """d(theta/alpha)/d tau [-] of the impact that falls on the end of the pulse, on the curve of (3.31).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        [-]; where eta times it exceeds 1 the curve runs through overturning and parts case 1.1 from case 1.2, where
+        it does not, the curve runs through the safe region.
+    """
+    a = limit_amplitude(frequency_ratio)
+    omega = np.asarray(frequency_ratio, dtype=np.float64)
+    A0, B0, C0 = coefficients(a, omega)
+    grown = 1 + np.sqrt(1 - A0 * B0)  # B0* e^{p T_ex}, (3.31)
+    return np.asarray((grown - A0 * np.exp(-pulse_end(a, omega)) + C0 * omega) / 2)  # (3.11)

@@ -1,0 +1,141 @@
+"""Overturning of the slender block by any pulse, given that no further impact comes while the pulse acts.
+
+Between impacts the growing part of the motion, E = theta/alpha + velocity -+ 1, obeys E' = E - a f, and the block
+overturns after the pulse if E then points away from rest. That is one integral over the pulse, from uplift or from an
+impact on. It contains (3.10), (3.18) and (3.20), and is an independent check on solvers for every pulse.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from itertools import pairwise
+
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from rocking.errors import in_range
+from rocking.pulses import AbstractPulse, SinusoidalPulse, get_pulse
+
+_NEGLIGIBLE = 50.0  # times beyond which e^-s < 2e-22 no longer counts
+
+
+def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
+    """Phase at which |a f| first reaches 1.
+
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        Pulse.
+    amplitude : float
+        a [-], (0, inf).
+
+    Returns
+    -------
+    float
+        phi [rad]; nan if the block never uplifts.
+    """
+    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    a = float(in_range("amplitude", amplitude, 0.0, math.inf, closed="neither"))
+    if abs(a * float(shape.shape(shape.start))) >= 1:
+        return shape.start
+    for low, high in shape.monotone_pieces:
+        if abs(a * float(shape.shape(high))) >= 1:  # |f| then grows through 1/a once, from below, on this piece
+            return float(brentq(lambda phi: a * abs(float(shape.shape(phi))) - 1, low, high, xtol=1e-15, rtol=8.9e-16))
+    return math.nan
+
+
+def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, start_phase: float) -> float:
+    """Integral of f e^{-(s - tau_0)} ds from phase `start_phase` to the end of the pulse [-].
+
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        Closed form for sums of sinusoids, adaptive quadrature for wavelets.
+    frequency_ratio : float
+        omega [-], (0, inf).
+    start_phase : float
+        phi at tau_0 [rad], within the pulse.
+    """
+    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    omega = float(in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"))
+    phi0 = float(in_range("start_phase", start_phase, shape.start, shape.end, unit="rad"))
+    length = (shape.end - phi0) / omega
+    if isinstance(shape, SinusoidalPulse):
+        total = 0.0
+        for c, w, d in shape.terms:
+            rate = complex(-1.0, w * omega)
+            total += (c * cmath.exp(1j * (w * phi0 + d)) * (cmath.exp(rate * length) - 1) / rate).real
+        return total
+    length = min(length, _NEGLIGIBLE)
+    turns = [s for phi in shape.stationary if 0 < (s := (phi - phi0) / omega) < length]
+
+    def integrand(s: float) -> float:
+        return float(shape.shape(phi0 + omega * s)) * math.exp(-s)
+
+    pieces = pairwise([0.0, *turns, length])
+    return math.fsum(quad(integrand, low, high, epsabs=1e-15, epsrel=1e-13, limit=200)[0] for low, high in pieces)
+
+
+def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequency_ratio: float) -> float:
+    """How far a block is beyond overturning without impact, for any pulse.
+
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        Pulse.
+    amplitude : float
+        a [-], (0, inf).
+    frequency_ratio : float
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    float
+        +- a * integral of f e^{-(s - tau_0)} ds - 1 [-] from uplift on, with the sign of f at uplift: positive where
+        the block overturns directly, provided that it is not back on the ground before the pulse ends. -1 if it
+        never uplifts. For the sine it vanishes on (3.10).
+    """
+    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    phi0 = first_uplift_phase(shape, amplitude)
+    if math.isnan(phi0):
+        return -1.0
+    side = math.copysign(1.0, float(shape.shape(phi0)))
+    return side * amplitude * discounted_integral(shape, frequency_ratio, phi0) - 1
+
+
+def margin_after_impact(
+    pulse: str | AbstractPulse,
+    amplitude: float,
+    frequency_ratio: float,
+    restitution: float,
+    impact_phase: float,
+    impact_velocity: float,
+) -> float:
+    """How far a block is beyond overturning after an impact that is the last while the pulse acts.
+
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        Pulse.
+    amplitude : float
+        a [-], (0, inf).
+    frequency_ratio : float
+        omega [-], (0, inf).
+    restitution : float
+        eta [-], [0, 1].
+    impact_phase : float
+        phi of the impact [rad]; from the end of the pulse on, its forcing is zero.
+    impact_velocity : float
+        d(theta/alpha)/d tau just before the impact [-], with its sign.
+
+    Returns
+    -------
+    float
+        eta |v| - (sign of v) a * integral of f e^{-(s - tau_1)} ds - 1 [-], positive where the block overturns. For the
+        sine it vanishes on (3.18) and on (3.20).
+    """
+    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    eta = float(in_range("restitution", restitution, 0.0, 1.0))
+    forced = discounted_integral(shape, frequency_ratio, impact_phase) if impact_phase < shape.end else 0.0
+    return eta * abs(impact_velocity) - math.copysign(amplitude, impact_velocity) * forced - 1

@@ -1,0 +1,48 @@
+"""All closed forms of section 3 together: the amplitudes at which one full sine overturns a block (figure 4)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.closed_form.case_1_1 import case_1_1_amplitudes
+from rocking.closed_form.case_1_2 import case_1_2_amplitudes
+from rocking.closed_form.case_2 import case_2_amplitude
+from rocking.closed_form.coefficients import Array
+
+
+class OverturningAmplitudes(NamedTuple):
+    """Amplitudes a [-] at which the fate changes; the block falls for falls_from < a < safe_again, and above direct."""
+
+    falls_from: Array
+    safe_again: Array
+    direct: Array
+
+
+def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> OverturningAmplitudes:
+    """Thresholds of overturning under one full sine by the closed forms of the paper.
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    restitution : array_like
+        eta [-], [0, 1].
+
+    Returns
+    -------
+    OverturningAmplitudes
+        Of the broadcast shape. `falls_from` and `safe_again` enclose overturning after one impact (cases 1.1 and
+        1.2), nan where there is none; from `direct` on the block overturns without impact (case 2).
+
+    Notes
+    -----
+    Not complete, whatever the paper says: close to the tip of the safe region (1/a from 0.89 to 0.95, omega from 0.5
+    to 1.1) there are islands where the block overturns after three or five impacts. They are not among these curves.
+    """
+    during = case_1_1_amplitudes(frequency_ratio, restitution)
+    after = case_1_2_amplitudes(frequency_ratio, restitution)
+    direct = np.broadcast_to(case_2_amplitude(frequency_ratio), during.lower.shape).copy()
+    return OverturningAmplitudes(np.fmin(during.lower, after.lower), np.fmax(during.upper, after.upper), direct)

@@ -1,0 +1,132 @@
+"""Peak rotation of a block that survives, when its first impact comes after the pulse: (4.12) to (4.16)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.closed_form.case_1_2 import impact_velocity_squared
+from rocking.closed_form.coefficients import Array
+from rocking.errors import in_range
+
+
+def peak_of_velocity(velocity: ArrayLike) -> Array:
+    """Peak theta_m/alpha of free rocking that starts from theta = 0 with a given velocity, (4.12).
+
+    Parameters
+    ----------
+    velocity : array_like
+        eta v_i, d(theta/alpha)/d tau just after the impact [-], [0, inf).
+
+    Returns
+    -------
+    ndarray
+        [-], [0, 1]: the root of (4.12) with the minus sign, the plus sign being the unstable state beyond which the
+        block falls; nan above velocity 1, where the block overturns.
+
+    Notes
+    -----
+    The first form of (4.12) is printed with mgR [1 - cos(alpha - theta_m)]; energy in free rocking gains
+    mgR [cos(alpha - theta_m) - cos alpha], and only that, linearised, yields the second form.
+    """
+    squared = in_range("velocity", velocity, 0.0, np.inf, closed="left") ** 2
+    return _peak(squared)
+
+
+def _peak(squared: Array) -> Array:
+    with np.errstate(invalid="ignore"):
+        # (4.12): 1 - sqrt(1 - x^2), without the cancellation
+        return np.asarray(np.where(squared <= 1, squared / (1 + np.sqrt(1 - np.minimum(squared, 1))), np.nan))
+
+
+def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
+    """Peak rotation theta_m/alpha after the first impact, (4.13): the closed-form rocking spectrum of the sine.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    restitution : array_like
+        eta [-], [0, 1].
+
+    Returns
+    -------
+    ndarray
+        [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2. Exact where the
+        first impact comes after the pulse (above (3.31)) and the rotation before it was smaller; approximate else.
+    """
+    eta = in_range("restitution", restitution, 0.0, 1.0)
+    return _peak(_energy(amplitude, frequency_ratio, eta))  # (4.13), first form
+
+
+def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
+    """Peak rotation g theta_m/a_g after the first impact [-], second form of (4.13), as in figure 8.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    restitution : array_like
+        eta [-], [0, 1].
+    """
+    peak = case_1_2_peak(amplitude, frequency_ratio, restitution)
+    return np.asarray(peak / np.asarray(amplitude))  # (4.13), second form
+
+
+def scale_function(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
+    """f(a, omega) of the scale law (4.16) [-] in case 1.2: 1 - D0*.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Notes
+    -----
+    The paper prints sqrt(1 - D0*) here and in (4.14) and (4.15). Since 1 - sqrt(1 - x^2) = x^2/2 + ... with
+    x = eta sqrt(1 - D0*), the square root does not belong there.
+    """
+    return impact_velocity_squared(amplitude, frequency_ratio)  # (4.16), f without the root
+
+
+def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
+    """Leading term of the peak rotation theta_m/alpha [-] for small eta v_i2, (4.14) corrected, the law (4.16).
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    restitution : array_like
+        eta [-], [0, 1].
+    """
+    eta = in_range("restitution", restitution, 0.0, 1.0)
+    return np.asarray(eta**2 / 2 * scale_function(amplitude, frequency_ratio))  # (4.14), (4.16), 1 - D0* not its root
+
+
+def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
+    """Leading term of g theta_m/a_g [-] for small eta v_i2, (4.15) corrected.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        a [-], [1, inf).
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+    restitution : array_like
+        eta [-], [0, 1].
+    """
+    return np.asarray(small_peak(amplitude, frequency_ratio, restitution) / np.asarray(amplitude))  # (4.15)
+
+
+def _energy(amplitude: ArrayLike, frequency_ratio: ArrayLike, eta: Array) -> Array:
+    """(eta v_i2)^2; nan where infinite times zero."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(eta**2 * impact_velocity_squared(amplitude, frequency_ratio))

@@ -1,0 +1,66 @@
+"""Closed overturning conditions without impact for other simple pulses, as published."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.closed_form.coefficients import Array
+from rocking.closed_form.roots import find_root
+from rocking.errors import in_range
+
+
+def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Amplitude from which a rectangular pulse of length T_p/2 overturns the block (Housner 1963).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf); the pulse lasts p t_1 = pi/omega.
+
+    Returns
+    -------
+    ndarray
+        a = 1/(1 - exp(-p t_1)) [-].
+    """
+    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    return np.asarray(-1 / np.expm1(-np.pi / omega))
+
+
+def half_sine_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Amplitude from which half a sine overturns the block (Shi et al. 1996).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        a = 1/sin(psi) [-] with omega sin(psi) - cos(psi) = exp(-(pi - psi)/omega).
+    """
+    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    psi = find_root(_half_sine, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
+    return np.asarray(1 / np.sin(psi))
+
+
+def _half_sine(psi: Array, omega: Array) -> Array:
+    return np.asarray(omega * np.sin(psi) - np.cos(psi) - np.exp(-(np.pi - psi) / omega))
+
+
+def cosine_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Amplitude from which one full cosine overturns a block that it does not bring back to impact.
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], (0, inf).
+
+    Returns
+    -------
+    ndarray
+        a = (1 + omega^2)/(1 - exp(-2 pi/omega)) [-].
+    """
+    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    return np.asarray(-(1 + omega**2) / np.expm1(-2 * np.pi / omega))
