@@ -1,0 +1,155 @@
+"""Exact arcs of the slender block under a sum of sinusoids, (3.4), written so that they neither overflow nor cancel.
+
+A flight is described in its own mirror image: z = sgn(theta) theta/alpha >= 0, w = dz/dtau, and by (3.1)
+z'' = z - q with q = 1 + F, F = sgn(theta) a f. From its start, where z = 0, the solution is carried as an *increment*
+with cosh h - 1 and sinh h: the coefficients A, B of (3.4) would lose all digits on short flights. Close to a known
+state it is expanded in a Taylor series, which needs no transcendental function.
+
+The scratch of a cell is one `FLIGHT` record: plain memory that the kernels read and write without bookkeeping.
+`cosine` and `sine` stand for those of the angles w_k phi + d_k, shape (MOST_TERMS,), at the point in question.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rocking.compilation import Record, Vector, kernel
+
+LARGEST_EXPONENT = 350.0
+"""e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""
+
+RADIUS = 0.25
+"""Largest max(1, Omega) |delta| at which the series below is exact to rounding: 0.25^12/12! = 1e-16."""
+
+COEFFICIENTS = 13
+"""Length of the series: degree 12 in z."""
+
+MOST_TERMS = 3
+"""Most sinusoids that a pulse is made of."""
+
+FLIGHT = np.dtype(
+    [
+        ("terms", np.int64),  # sinusoids c cos(w phi + d) of the pulse
+        ("amplitude", np.float64, MOST_TERMS),  # c
+        ("multiple", np.float64, MOST_TERMS),  # w
+        ("shift", np.float64, MOST_TERMS),  # d
+        ("a", np.float64),  # 1/slenderness
+        ("omega", np.float64),  # frequency ratio
+        ("rate", np.float64, MOST_TERMS),  # Omega = omega w
+        ("fastest", np.float64),  # largest of 1 and the rates
+        ("sign", np.float64),  # sgn(theta) during the flight
+        ("force", np.float64, MOST_TERMS),  # sgn(theta) a c
+        ("phase", np.float64),  # phi at the start of the flight
+        ("w0", np.float64),  # velocity there
+        ("q0", np.float64),  # pull there
+        ("cosine0", np.float64, MOST_TERMS),  # of the angles there
+        ("sine0", np.float64, MOST_TERMS),
+        ("cosine1", np.float64, MOST_TERMS),  # at the point last turned to
+        ("sine1", np.float64, MOST_TERMS),
+        ("coef", np.float64, COEFFICIENTS),  # Taylor coefficients of z about the point last expanded at
+        ("scaled", np.float64, MOST_TERMS),
+    ]
+)
+
+
+@kernel
+def hyperbolic(h: float) -> tuple[float, float]:
+    """cosh(h) - 1 and sinh(h) for h >= 0 without cancellation."""
+    if h < 0.5:
+        x = h * h
+        sinh = 1 / 362880 + x * (1 / 39916800 + x / 6227020800.0)
+        sinh = h + h * x * (1 / 6 + x * (1 / 120 + x * (1 / 5040 + x * sinh)))
+        cosh1 = 1 / 3628800 + x * (1 / 479001600 + x / 87178291200.0)
+        cosh1 = x * (0.5 + x * (1 / 24 + x * (1 / 720 + x * (1 / 40320 + x * cosh1))))
+        return cosh1, sinh
+    grown = math.exp(min(h, LARGEST_EXPONENT))
+    decayed = 1.0 / grown
+    return 0.5 * (grown + decayed) - 1.0, 0.5 * (grown - decayed)
+
+
+@kernel
+def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, float]:
+    """State (z, w) a time h after the flight's start (z = 0, w = w0), where the angles have that cosine and sine.
+
+    (3.4) with F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
+    """
+    moved, x0, y0, slope = 0.0, -1.0, flight.w0, 0.0
+    for k in range(flight.terms):
+        particular = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
+        moved += particular * (cosine[k] - flight.cosine0[k])
+        slope -= particular * flight.rate[k] * (sine[k] - flight.sine0[k])
+        x0 -= particular * flight.cosine0[k]
+        y0 += particular * flight.rate[k] * flight.sine0[k]
+    cosh1, sinh = hyperbolic(h)
+    return moved + x0 * cosh1 + y0 * sinh, flight.w0 + slope + x0 * sinh + y0 * cosh1
+
+
+@kernel
+def pull(flight: Record, cosine: Vector) -> float:
+    """q = 1 + F [-]: how strongly the block is pulled back towards the ground."""
+    q = 1.0
+    for k in range(flight.terms):
+        q += flight.force[k] * cosine[k]
+    return q
+
+
+@kernel
+def expand(flight: Record, z: float, w: float, q: float, cosine: Vector, sine: Vector) -> None:
+    """Fill `flight.coef` with the Taylor coefficients of z about a point; q is given since it is exactly 0 at uplift.
+
+    z'' = z - 1 - F gives (n + 1)(n + 2) z_{n+2} = z_n - F_n.
+    """
+    coef, scaled = flight.coef, flight.scaled
+    coef[0] = z
+    coef[1] = w
+    coef[2] = 0.5 * (z - q)
+    for k in range(flight.terms):
+        scaled[k] = flight.force[k]
+    for n in range(1, COEFFICIENTS - 2):
+        term = 0.0
+        for k in range(flight.terms):
+            scaled[k] *= flight.rate[k] * (1.0 / n)
+            turned = n % 4  # derivatives of cos run cos, -sin, -cos, sin
+            if turned == 0:
+                term += scaled[k] * cosine[k]
+            elif turned == 1:
+                term -= scaled[k] * sine[k]
+            elif turned == 2:
+                term -= scaled[k] * cosine[k]
+            else:
+                term += scaled[k] * sine[k]
+        coef[n + 2] = (coef[n] - term) * (1.0 / ((n + 1.0) * (n + 2.0)))
+
+
+@kernel
+def rotation(flight: Record, delta: float) -> float:
+    """z at `delta` from the point of expansion."""
+    coef = flight.coef
+    total = coef[COEFFICIENTS - 1]
+    for i in range(COEFFICIENTS - 1):
+        total = total * delta + coef[COEFFICIENTS - 2 - i]
+    return total
+
+
+@kernel
+def velocity(flight: Record, delta: float) -> float:
+    """w = dz/dtau there."""
+    coef = flight.coef
+    total = (COEFFICIENTS - 1) * coef[COEFFICIENTS - 1]
+    for i in range(COEFFICIENTS - 2):
+        total = total * delta + (COEFFICIENTS - 2 - i) * coef[COEFFICIENTS - 2 - i]
+    return total
+
+
+@kernel
+def acceleration(flight: Record, delta: float) -> float:
+    """z'' there."""
+    coef = flight.coef
+    top = COEFFICIENTS - 1
+    total = top * (top - 1) * coef[top]
+    for i in range(top - 2):
+        n = top - 1 - i
+        total = total * delta + n * (n - 1) * coef[n]
+    return total

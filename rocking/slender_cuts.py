@@ -1,0 +1,121 @@
+"""Cuts the pulse where events can change their nature, so that none can be missed.
+
+The cuts are the phases at which |a f| = 1 and at which f' = 0. Between two of them q = 1 + F keeps its sign and so does
+q'. By the maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with z >= 0 at the left end:
+
+- q >= 0: z has no zero inside unless it is negative at the right end, and then exactly one;
+- q <= 0: z is convex where it is positive: no zero unless w < 0 at the left end, and then at most two with one minimum
+  between; no maximum of z inside;
+- q' >= 0 or q' <= 0 settle the zeros of w, that is the peaks, in the same way.
+
+Single sinusoids have closed forms for the cuts and for the cosine and sine there; sums use a bracketed Newton.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rocking.compilation import Record, Vector, kernel
+from rocking.slender_arcs import MOST_TERMS
+
+
+END = np.dtype(
+    [
+        ("phase", np.float64),  # end of a monotone piece of f
+        ("shape", np.float64),  # f there
+        ("cosine", np.float64, MOST_TERMS),  # of the angles there
+        ("sine", np.float64, MOST_TERMS),
+    ]
+)
+
+CUT = np.dtype(
+    [
+        ("phase", np.float64),
+        ("level", np.float64),  # of the interval to the right: +1 where a f > 1, -1 where a f < -1, 0 between
+        ("rise", np.float64),  # sign of f' there
+        ("cosine", np.float64, MOST_TERMS),  # of the angles at the cut
+        ("sine", np.float64, MOST_TERMS),
+    ]
+)
+
+
+@kernel
+def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
+    """f and df/dphi of the pulse."""
+    f, slope = 0.0, 0.0
+    for k in range(flight.terms):
+        angle = flight.multiple[k] * phi + flight.shift[k]
+        f += flight.amplitude[k] * math.cos(angle)
+        slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
+    return f, slope
+
+
+@kernel
+def crossing(level: float, left: float, right: float, rising: bool, flight: Record) -> float:
+    """The phase at which f, monotone on [left, right] with a crossing inside, equals `level`: bracketed Newton."""
+    phi = 0.5 * (left + right)
+    for _ in range(100):
+        f, slope = shape_and_slope(phi, flight)
+        if (f > level) == rising:
+            right = phi
+        else:
+            left = phi
+        follow = phi - (f - level) / slope if slope != 0.0 else left
+        if not left < follow < right:
+            follow = 0.5 * (left + right)
+        if abs(follow - phi) <= 2e-16 * abs(phi):
+            return follow
+        phi = follow
+    return phi
+
+
+@kernel
+def place(entry: Record, phase: float, level: float, rise: float) -> None:
+    entry.phase = phase
+    entry.level = level
+    entry.rise = rise
+
+
+@kernel
+def cut(slenderness: float, ends: Vector, flight: Record, cuts: Vector) -> int:
+    """Fill `cuts` (intervals + 1,) of dtype `CUT` for 1/a = `slenderness` < 1; returns the number of intervals."""
+    terms = flight.terms
+    single = terms == 1 and flight.multiple[0] == 1.0
+    # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
+    root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
+    cap = math.atan2(root, slenderness) if single else 0.0
+    count = 0
+    for piece in range(len(ends) - 1):
+        left, right = ends[piece].phase, ends[piece + 1].phase
+        f_left, f_right = ends[piece].shape, ends[piece + 1].shape
+        rise = -1.0 if f_left > f_right else 1.0
+        level = 1.0 if f_left > slenderness else (-1.0 if f_left < -slenderness else 0.0)
+        place(cuts[count], left, level, rise)
+        for k in range(terms):
+            cuts[count].cosine[k], cuts[count].sine[k] = ends[piece].cosine[k], ends[piece].sine[k]
+        count += 1
+        for turn in (-rise, rise):
+            target = turn * slenderness
+            if not min(f_left, f_right) < target < max(f_left, f_right):
+                continue
+            level += rise
+            if single:
+                half_turn = math.floor((0.5 * (left + right) + flight.shift[0]) * (1.0 / math.pi))
+                upright = 1.0 - 2.0 * (half_turn % 2.0)  # the cosine falls from +1 here, or rises from -1
+                value = target * flight.amplitude[0]
+                angle = half_turn * math.pi + cap if value * upright > 0.0 else (half_turn + 1.0) * math.pi - cap
+                place(cuts[count], angle - flight.shift[0], level, rise)
+                cuts[count].cosine[0], cuts[count].sine[0] = value, upright * root
+            else:
+                phi = crossing(target, left, right, rise > 0.0, flight)
+                place(cuts[count], phi, level, rise)
+                for k in range(terms):
+                    angle = flight.multiple[k] * phi + flight.shift[k]
+                    cuts[count].cosine[k], cuts[count].sine[k] = math.cos(angle), math.sin(angle)
+            count += 1
+    place(cuts[count], ends[-1].phase, 0.0, 0.0)
+    for k in range(terms):
+        cuts[count].cosine[k], cuts[count].sine[k] = ends[-1].cosine[k], ends[-1].sine[k]
+    return count
