@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -17,9 +18,12 @@ ROOT = Path(__file__).parents[1]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 PUBLIC_NAMES = {
-    "AbstractPulse",
     "Block",
+    "Cube",
+    "DatasetError",
+    "InvalidArgumentError",
     "Outcome",
+    "OutsideCubeError",
     "PULSE_NAMES",
     "Response",
     "Thresholds",
@@ -33,7 +37,6 @@ PUBLIC_NAMES = {
     "peak_response",
     "time_history",
 }
-
 
 FOLDERS = (".ci", "api", "benchmarks", "docs", "profiles", "rocking", "tests", "workflow")
 
@@ -53,14 +56,13 @@ TEXTS = texts()
 
 
 def test_public_names() -> None:
-    assert set(rocking.__all__) - {"__version__"} == PUBLIC_NAMES
-    for name in rocking.__all__:
+    assert set(rocking.__all__) == PUBLIC_NAMES
+    for name in PUBLIC_NAMES:
         assert getattr(rocking, name) is not None
-    assert set(rocking.__all__) <= set(dir(rocking))
 
 
 def test_version_is_stated_once() -> None:
-    assert rocking.__version__ == VERSION
+    assert metadata.version("rocking") == VERSION
     stated = re.compile(rf"(?<![\d.]){re.escape(VERSION)}(?![\d.])")
     ours = ("rocking/", "api/", "workflow/", "docs/", "README.md", "CITATION.cff", "Makefile", "Snakefile")
     places = [name for name, text in TEXTS.items() if name.startswith(ours) and stated.search(text)]
