@@ -17,4 +17,3 @@ from .response import Response as Response
 from .solve import peak_response as peak_response
 from .solve import time_history as time_history
 
-__version__: str

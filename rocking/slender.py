@@ -13,9 +13,8 @@ import numpy as np
 
 from rocking.compilation import Record, Vector, kernel
 from rocking.free_rocking import free_fate
-from rocking.slender_arcs import FLIGHT
 from rocking.slender_chatter import settles
-from rocking.slender_cuts import CUT, cut
+from rocking.slender_cuts import cut
 from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_flight, turn
 
@@ -37,7 +36,7 @@ def note(record: Vector, noted: int, phase: float, sign: float, w: float) -> int
 
 @kernel
 def rock(
-    slenderness: float, omega: float, eta: float, ends: Vector, flight: Record, cuts: Vector, record: Vector
+    slenderness: float, omega: float, eta: float, flight: Record, record: Vector
 ) -> tuple[int, float, int, bool, float, float, float, int, int]:
     """One block from rest to its final fate.
 
@@ -45,8 +44,8 @@ def rock(
     ----------
     slenderness, omega, eta : float
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-].
-    ends, flight, cuts
-        The pulse (`slender_pulse`) and scratch.
+    flight
+        The pulse, and scratch, laid out as in `slender_arcs.scratch`.
     record : float array (flights, 3)
         Filled with phase, sign and w at the start of each flight (sign 0: rest) as far as it reaches; may be empty.
 
@@ -55,39 +54,39 @@ def rock(
     outcome, peak, impacts, chatter, uplift time, time and velocity of the first impact, peak mode, entries recorded
     """
     noted = 0
-    count = cut(slenderness, ends, flight, cuts) if slenderness < 1.0 else 0
+    count = cut(slenderness, flight) if slenderness < 1.0 else 0
     interval = 0
-    while interval < count and cuts[interval].level == 0.0:
+    while interval < count and flight.cut_level[interval] == 0.0:
         interval += 1
     if interval == count:
         return NO_UPLIFT, 0.0, 0, False, math.nan, math.nan, math.nan, -1, noted
     flight.a = 1.0 / slenderness
     flight.omega = omega
     flight.fastest = 1.0
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         flight.rate[k] = omega * flight.multiple[k]
         flight.fastest = max(flight.fastest, flight.rate[k])
-    uplift_time = (cuts[interval].phase - cuts[0].phase) / omega
+    uplift_time = (flight.cut_phase[interval] - flight.cut_phase[0]) / omega
     first_time, first_velocity = math.nan, math.nan
     outcome, peak, mode, impacts, chatter = SAFE, 0.0, -1, 0, False
     at_rest = True
     phase, w, sign = 0.0, 0.0, 0.0
     while True:
         if at_rest:
-            while interval < count and cuts[interval].level == 0.0:
+            while interval < count and flight.cut_level[interval] == 0.0:
                 interval += 1
             if interval == count:
                 break
-            phase, w, sign = cuts[interval].phase, 0.0, -cuts[interval].level
-            for k in range(flight.terms):
-                flight.cosine0[k] = cuts[interval].cosine[k]
-                flight.sine0[k] = cuts[interval].sine[k]
+            phase, w, sign = flight.cut_phase[interval], 0.0, -flight.cut_level[interval]
+            for k in range(len(flight.force)):
+                flight.cosine0[k] = flight.cut_cosine[interval, k]
+                flight.sine0[k] = flight.cut_sine[interval, k]
         noted = note(record, noted, phase, sign, w)
         start_flight(flight, phase, w, sign, at_rest and interval > 0)
         ended, z = 0, 0.0
-        h, w_end, top = hop(flight, (cuts[interval + 1].phase - phase) / omega, peak)
+        h, w_end, top = hop(flight, (flight.cut_phase[interval + 1] - phase) / omega, peak)
         if h < 0.0:
-            ended, h, w_end, z, top = fly(flight, cuts, interval, count, eta)
+            ended, h, w_end, z, top = fly(flight, interval, count, eta)
         if top > peak:
             peak, mode = top, 2 * impacts
         if ended == 1:
@@ -105,17 +104,17 @@ def rock(
         impacts += 1
         w = -eta * w_end  # (2.3)
         sign = -sign
-        while interval < count - 1 and phase >= cuts[interval + 1].phase:
+        while interval < count - 1 and phase >= flight.cut_phase[interval + 1]:
             interval += 1
         turn(flight, phase, flight.cosine0, flight.sine0)
         at_rest = False
-        if cuts[interval].level == 0.0:
+        if flight.cut_level[interval] == 0.0:
             if w <= 0.0:
                 at_rest = True
-            elif impacts >= IMPACT_LIMIT or settles(flight, w, eta, phase, cuts[interval + 1].phase, peak):
+            elif impacts >= IMPACT_LIMIT or settles(flight, w, eta, phase, flight.cut_phase[interval + 1], peak):
                 at_rest = chatter = True
         elif w <= 0.0:  # eta = 0 while the ground already pushes: up again at once
-            sign, w = -cuts[interval].level, 0.0
+            sign, w = -flight.cut_level[interval], 0.0
         if at_rest:
             noted = note(record, noted, phase, 0.0, 0.0)
     return outcome, peak, impacts, chatter, uplift_time, first_time, first_velocity, mode, noted
@@ -126,8 +125,7 @@ def rock_many(
     slenderness: Vector,
     omega: Vector,
     eta: Vector,
-    terms: Vector,
-    ends: Vector,
+    flight: Record,
     outcome: Vector,
     peak: Vector,
     impacts: Vector,
@@ -137,12 +135,7 @@ def rock_many(
     first_velocity: Vector,
     mode: Vector,
 ) -> None:
-    """`rock` for each entry of the first three arrays (cells,); fills the last eight (cells,)."""
-    flight = np.empty(1, FLIGHT)[0]
-    flight.terms = len(terms)
-    for k in range(len(terms)):
-        flight.amplitude[k], flight.multiple[k], flight.shift[k] = terms[k, 0], terms[k, 1], terms[k, 2]
-    cuts = np.empty(3 * len(ends) - 2, CUT)
+    """`rock` for each entry of the first three arrays (cells,); fills the last eight (cells,). `flight` as there."""
     record = np.empty((0, 3))
     for i in range(len(slenderness)):
         (
@@ -155,4 +148,4 @@ def rock_many(
             first_velocity[i],
             mode[i],
             _,
-        ) = rock(slenderness[i], omega[i], eta[i], ends, flight, cuts, record)
+        ) = rock(slenderness[i], omega[i], eta[i], flight, record)

@@ -5,8 +5,8 @@ z'' = z - q with q = 1 + F, F = sgn(theta) a f. From its start, where z = 0, the
 with cosh h - 1 and sinh h: the coefficients A, B of (3.4) would lose all digits on short flights. Close to a known
 state it is expanded in a Taylor series, which needs no transcendental function.
 
-The scratch of a cell is one `FLIGHT` record: plain memory that the kernels read and write without bookkeeping.
-`cosine` and `sine` stand for those of the angles w_k phi + d_k, shape (MOST_TERMS,), at the point in question.
+`cosine` and `sine` stand for those of the angles w_k phi + d_k, shape (terms,), at the point in question; the record
+`flight` is laid out in `scratch`.
 """
 
 from __future__ import annotations
@@ -26,32 +26,50 @@ RADIUS = 0.25
 COEFFICIENTS = 13
 """Length of the series: degree 12 in z."""
 
-MOST_TERMS = 3
-"""Most sinusoids that a pulse is made of."""
+MOST_PIECES = 84
+"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
 
-FLIGHT = np.dtype(
-    [
-        ("terms", np.int64),  # sinusoids c cos(w phi + d) of the pulse
-        ("amplitude", np.float64, MOST_TERMS),  # c
-        ("multiple", np.float64, MOST_TERMS),  # w
-        ("shift", np.float64, MOST_TERMS),  # d
-        ("a", np.float64),  # 1/slenderness
-        ("omega", np.float64),  # frequency ratio
-        ("rate", np.float64, MOST_TERMS),  # Omega = omega w
-        ("fastest", np.float64),  # largest of 1 and the rates
-        ("sign", np.float64),  # sgn(theta) during the flight
-        ("force", np.float64, MOST_TERMS),  # sgn(theta) a c
-        ("phase", np.float64),  # phi at the start of the flight
-        ("w0", np.float64),  # velocity there
-        ("q0", np.float64),  # pull there
-        ("cosine0", np.float64, MOST_TERMS),  # of the angles there
-        ("sine0", np.float64, MOST_TERMS),
-        ("cosine1", np.float64, MOST_TERMS),  # at the point last turned to
-        ("sine1", np.float64, MOST_TERMS),
-        ("coef", np.float64, COEFFICIENTS),  # Taylor coefficients of z about the point last expanded at
-        ("scaled", np.float64, MOST_TERMS),
-    ]
-)
+
+def scratch(terms: int) -> np.dtype[np.void]:
+    """Layout of the one record that holds a pulse of that many sinusoids c cos(w phi + d) and the state of a cell.
+
+    Plain memory of fixed layout: the kernels read and write it without bookkeeping and unroll the loops over terms.
+    """
+    per_term = (terms,)
+    ends, cuts = MOST_PIECES + 1, 3 * MOST_PIECES + 1
+    return np.dtype(
+        [
+            ("amplitude", np.float64, per_term),  # c
+            ("multiple", np.float64, per_term),  # w
+            ("shift", np.float64, per_term),  # d
+            ("pieces", np.int64),  # monotone pieces of f
+            ("end_phase", np.float64, (ends,)),  # their ends, with f and the angles' cosines and sines there
+            ("end_shape", np.float64, (ends,)),
+            ("end_cosine", np.float64, (ends, terms)),
+            ("end_sine", np.float64, (ends, terms)),
+            ("a", np.float64),  # 1/slenderness
+            ("omega", np.float64),  # frequency ratio
+            ("rate", np.float64, per_term),  # Omega = omega w
+            ("fastest", np.float64),  # largest of 1 and the rates
+            ("cut_phase", np.float64, (cuts,)),  # see `slender_cuts`
+            ("cut_level", np.float64, (cuts,)),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
+            ("cut_rise", np.float64, (cuts,)),  # sign of f' there
+            ("cut_cosine", np.float64, (cuts, terms)),
+            ("cut_sine", np.float64, (cuts, terms)),
+            ("sign", np.float64),  # sgn(theta) during the flight
+            ("force", np.float64, per_term),  # sgn(theta) a c
+            ("phase", np.float64),  # phi at the start of the flight
+            ("w0", np.float64),  # velocity there
+            ("q0", np.float64),  # pull there
+            ("cosine0", np.float64, per_term),  # of the angles there
+            ("sine0", np.float64, per_term),
+            ("cosine1", np.float64, per_term),  # at the point last turned to
+            ("sine1", np.float64, per_term),
+            ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
+            ("scaled", np.float64, per_term),
+        ],
+        align=True,
+    )
 
 
 @kernel
@@ -76,7 +94,7 @@ def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, 
     (3.4) with F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
     """
     moved, x0, y0, slope = 0.0, -1.0, flight.w0, 0.0
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         particular = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
         moved += particular * (cosine[k] - flight.cosine0[k])
         slope -= particular * flight.rate[k] * (sine[k] - flight.sine0[k])
@@ -90,7 +108,7 @@ def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, 
 def pull(flight: Record, cosine: Vector) -> float:
     """q = 1 + F [-]: how strongly the block is pulled back towards the ground."""
     q = 1.0
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         q += flight.force[k] * cosine[k]
     return q
 
@@ -105,11 +123,11 @@ def expand(flight: Record, z: float, w: float, q: float, cosine: Vector, sine: V
     coef[0] = z
     coef[1] = w
     coef[2] = 0.5 * (z - q)
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         scaled[k] = flight.force[k]
     for n in range(1, COEFFICIENTS - 2):
         term = 0.0
-        for k in range(flight.terms):
+        for k in range(len(flight.force)):
             scaled[k] *= flight.rate[k] * (1.0 / n)
             turned = n % 4  # derivatives of cos run cos, -sin, -cos, sin
             if turned == 0:

@@ -11,7 +11,7 @@ from rocking.compilation import Record, kernel
 def ground_acceleration(flight: Record, phase: float) -> float:
     """a f(phi) [-]."""
     u = 0.0
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         u += flight.a * flight.amplitude[k] * math.cos(flight.multiple[k] * phase + flight.shift[k])
     return u
 

@@ -15,37 +15,14 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from rocking.compilation import Record, Vector, kernel
-from rocking.slender_arcs import MOST_TERMS
-
-
-END = np.dtype(
-    [
-        ("phase", np.float64),  # end of a monotone piece of f
-        ("shape", np.float64),  # f there
-        ("cosine", np.float64, MOST_TERMS),  # of the angles there
-        ("sine", np.float64, MOST_TERMS),
-    ]
-)
-
-CUT = np.dtype(
-    [
-        ("phase", np.float64),
-        ("level", np.float64),  # of the interval to the right: +1 where a f > 1, -1 where a f < -1, 0 between
-        ("rise", np.float64),  # sign of f' there
-        ("cosine", np.float64, MOST_TERMS),  # of the angles at the cut
-        ("sine", np.float64, MOST_TERMS),
-    ]
-)
+from rocking.compilation import Record, kernel
 
 
 @kernel
 def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
     """f and df/dphi of the pulse."""
     f, slope = 0.0, 0.0
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         angle = flight.multiple[k] * phi + flight.shift[k]
         f += flight.amplitude[k] * math.cos(angle)
         slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
@@ -72,29 +49,30 @@ def crossing(level: float, left: float, right: float, rising: bool, flight: Reco
 
 
 @kernel
-def place(entry: Record, phase: float, level: float, rise: float) -> None:
-    entry.phase = phase
-    entry.level = level
-    entry.rise = rise
+def place(flight: Record, index: int, phase: float, level: float, rise: float) -> None:
+    """Set a cut and what lies to its right."""
+    flight.cut_phase[index] = phase
+    flight.cut_level[index] = level
+    flight.cut_rise[index] = rise
 
 
 @kernel
-def cut(slenderness: float, ends: Vector, flight: Record, cuts: Vector) -> int:
-    """Fill `cuts` (intervals + 1,) of dtype `CUT` for 1/a = `slenderness` < 1; returns the number of intervals."""
-    terms = flight.terms
+def cut(slenderness: float, flight: Record) -> int:
+    """Fill `flight.cut_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
+    terms = len(flight.force)
     single = terms == 1 and flight.multiple[0] == 1.0
     # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
     cap = math.atan2(root, slenderness) if single else 0.0
     count = 0
-    for piece in range(len(ends) - 1):
-        left, right = ends[piece].phase, ends[piece + 1].phase
-        f_left, f_right = ends[piece].shape, ends[piece + 1].shape
+    for piece in range(flight.pieces):
+        left, right = flight.end_phase[piece], flight.end_phase[piece + 1]
+        f_left, f_right = flight.end_shape[piece], flight.end_shape[piece + 1]
         rise = -1.0 if f_left > f_right else 1.0
         level = 1.0 if f_left > slenderness else (-1.0 if f_left < -slenderness else 0.0)
-        place(cuts[count], left, level, rise)
+        place(flight, count, left, level, rise)
         for k in range(terms):
-            cuts[count].cosine[k], cuts[count].sine[k] = ends[piece].cosine[k], ends[piece].sine[k]
+            flight.cut_cosine[count, k], flight.cut_sine[count, k] = flight.end_cosine[piece, k], flight.end_sine[piece, k]
         count += 1
         for turn in (-rise, rise):
             target = turn * slenderness
@@ -106,16 +84,16 @@ def cut(slenderness: float, ends: Vector, flight: Record, cuts: Vector) -> int:
                 upright = 1.0 - 2.0 * (half_turn % 2.0)  # the cosine falls from +1 here, or rises from -1
                 value = target * flight.amplitude[0]
                 angle = half_turn * math.pi + cap if value * upright > 0.0 else (half_turn + 1.0) * math.pi - cap
-                place(cuts[count], angle - flight.shift[0], level, rise)
-                cuts[count].cosine[0], cuts[count].sine[0] = value, upright * root
+                place(flight, count, angle - flight.shift[0], level, rise)
+                flight.cut_cosine[count, 0], flight.cut_sine[count, 0] = value, upright * root
             else:
                 phi = crossing(target, left, right, rise > 0.0, flight)
-                place(cuts[count], phi, level, rise)
+                place(flight, count, phi, level, rise)
                 for k in range(terms):
                     angle = flight.multiple[k] * phi + flight.shift[k]
-                    cuts[count].cosine[k], cuts[count].sine[k] = math.cos(angle), math.sin(angle)
+                    flight.cut_cosine[count, k], flight.cut_sine[count, k] = math.cos(angle), math.sin(angle)
             count += 1
-    place(cuts[count], ends[-1].phase, 0.0, 0.0)
+    place(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
     for k in range(terms):
-        cuts[count].cosine[k], cuts[count].sine[k] = ends[-1].cosine[k], ends[-1].sine[k]
+        flight.cut_cosine[count, k], flight.cut_sine[count, k] = flight.end_cosine[flight.pieces, k], flight.end_sine[flight.pieces, k]
     return count

@@ -13,7 +13,6 @@ from rocking.slender_flight import hermite_root, locate, state, turn
 @kernel
 def run_peak(
     flight: Record,
-    cuts: Vector,
     first: int,
     last: int,
     h_first: float,
@@ -31,22 +30,22 @@ def run_peak(
     left, h_left, z_left, w_left = first, h_first, z_first, w_first
     while left < last:
         right = left + 1
-        while right < last and cuts[right].rise == cuts[left].rise:
+        while right < last and flight.cut_rise[right] == flight.cut_rise[left]:
             right += 1
-        h_right = (cuts[right].phase - start) / omega
+        h_right = (flight.cut_phase[right] - start) / omega
         if right == last:
             z_right, w_right = z_last, w_last
         else:
-            z_right, w_right = state(flight, h_right, cuts[right].cosine, cuts[right].sine)
+            z_right, w_right = state(flight, h_right, flight.cut_cosine[right], flight.cut_sine[right])
         lo, hi = h_left, h_right
         w_lo, w_hi = w_left, w_right
-        rising_pull = flight.sign * cuts[left].rise >= 0.0
+        rising_pull = flight.sign * flight.cut_rise[left] >= 0.0
         if left == first:
             turn(flight, start + omega * h_left, flight.cosine1, flight.sine1)
             q_left = pull(flight, flight.cosine1)
         else:
-            q_left = pull(flight, cuts[left].cosine)
-        q_right = pull(flight, cuts[right].cosine)
+            q_left = pull(flight, flight.cut_cosine[left])
+        q_right = pull(flight, flight.cut_cosine[right])
         d_left, d_right = z_left - q_left, z_right - q_right
         if w_lo > 0.0 and w_hi >= 0.0 and not rising_pull and d_left < 0.0 < d_right:
             # w'' >= w > 0: w may dip below zero and return
@@ -66,7 +65,7 @@ def run_peak(
 
 @kernel
 def fly(
-    flight: Record, cuts: Vector, interval: int, count: int, eta: float
+    flight: Record, interval: int, count: int, eta: float
 ) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start inside `interval` to its impact or to the end of the pulse.
 
@@ -81,16 +80,16 @@ def fly(
     largest = 0.0
     left = interval
     while left < count:
-        pushed = cuts[left].level * sign < 0.0
+        pushed = flight.cut_level[left] * sign < 0.0
         right = left + 1
-        while right < count and (cuts[right].level * sign < 0.0) == pushed:
+        while right < count and (flight.cut_level[right] * sign < 0.0) == pushed:
             right += 1
-        h_right = (cuts[right].phase - start) / omega
+        h_right = (flight.cut_phase[right] - start) / omega
         if pushed and (not known or w_left >= 0.0) and right < count:
             known = False  # convex and rising: neither impact nor peak, and w > 0 at the end
             left, h_left = right, h_right
             continue
-        z_right, w_right = state(flight, h_right, cuts[right].cosine, cuts[right].sine)
+        z_right, w_right = state(flight, h_right, flight.cut_cosine[right], flight.cut_sine[right])
         if pushed:
             if known and w_left < 0.0:
                 lo, hi, z_hi, w_hi = h_left, h_right, z_right, w_right
@@ -106,9 +105,9 @@ def fly(
             ):
                 return 1, h_right, w_right, z_right, largest
             if not known:
-                z_left, w_left = state(flight, h_left, cuts[left].cosine, cuts[left].sine)
+                z_left, w_left = state(flight, h_left, flight.cut_cosine[left], flight.cut_sine[left])
             top, h_peak, z_peak = run_peak(
-                flight, cuts, left, right, h_left, z_left, w_left, z_right, w_right
+                flight, left, right, h_left, z_left, w_left, z_right, w_right
             )
             largest = max(largest, top)
             if z_right <= 0.0:

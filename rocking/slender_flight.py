@@ -11,7 +11,7 @@ from rocking.slender_arcs import RADIUS, acceleration, arc, expand, pull, rotati
 @kernel
 def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
     """Set the cosines and sines of the angles at `phase`."""
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         angle = flight.multiple[k] * phase + flight.shift[k]
         cosine[k] = math.cos(angle)
         sine[k] = math.sin(angle)
@@ -21,7 +21,7 @@ def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
 def start_flight(flight: Record, phase: float, w0: float, sign: float, at_uplift: bool) -> None:
     """Begin at `phase`, where `cosine0` and `sine0` are set already; q is exactly 0 at uplift through |a f| = 1."""
     flight.sign = sign
-    for k in range(flight.terms):
+    for k in range(len(flight.force)):
         flight.force[k] = sign * flight.a * flight.amplitude[k]
     flight.phase = phase
     flight.w0 = w0

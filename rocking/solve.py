@@ -11,28 +11,32 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.compilation import Record
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.pulses import AbstractPulse, SinusoidalPulse, get_pulse
 from rocking.response import Response
 from rocking.slender import rock_many
-from rocking.slender_cuts import END
+from rocking.slender_arcs import scratch
 
 CHUNK = 4096
 """Cells handed to one thread at a time: some tenths of a millisecond of work, fine enough to balance the threads."""
 
 
 @lru_cache(maxsize=256)
-def as_arrays(pulse: SinusoidalPulse) -> tuple[NDArray[np.float64], NDArray[Any]]:
-    """Its terms (terms, 3) and the ends of its monotone pieces, as the kernels take them."""
-    terms = np.array(pulse.terms)
+def prepared(pulse: SinusoidalPulse) -> Record:
+    """The pulse in the layout of the kernels; each thread works on a copy."""
+    record = np.zeros(1, scratch(len(pulse.terms)))[0]
+    amplitude, multiple, shift = (np.array(column) for column in zip(*pulse.terms, strict=True))
+    record["amplitude"], record["multiple"], record["shift"] = amplitude, multiple, shift
     phases = np.array([pulse.start, *pulse.stationary, pulse.end])
-    ends = np.zeros(len(phases), END)
-    ends["phase"] = phases
-    ends["shape"] = pulse.shape(phases)
-    angles = terms[:, 1] * phases[:, None] + terms[:, 2]
-    ends["cosine"][:, : len(terms)] = np.cos(angles)
-    ends["sine"][:, : len(terms)] = np.sin(angles)
-    return terms, ends
+    count = len(phases)
+    record["pieces"] = count - 1
+    record["end_phase"][:count] = phases
+    record["end_shape"][:count] = pulse.shape(phases)
+    angles = multiple * phases[:, None] + shift
+    record["end_cosine"][:count] = np.cos(angles)
+    record["end_sine"][:count] = np.sin(angles)
+    return record
 
 
 def peak_response(
@@ -53,11 +57,11 @@ def peak_response(
     s, w, e = (np.ascontiguousarray(x).ravel() for x in shape_arrays)
     n = s.size
     out = [np.empty(n, t) for t in (np.int8, float, np.int32, bool, float, float, float, np.int32)]
-    sinus = as_arrays(get_pulse(pulse) if isinstance(pulse, str) else pulse)
+    sinus = prepared(get_pulse(pulse) if isinstance(pulse, str) else pulse)
 
     def work(start):
         sl = slice(start, start + CHUNK)
-        rock_many(s[sl], w[sl], e[sl], *sinus, *(o[sl] for o in out))
+        rock_many(s[sl], w[sl], e[sl], sinus.copy(), *(o[sl] for o in out))
 
     threads = threads or os.cpu_count()
     starts = range(0, n, CHUNK)
