@@ -17,7 +17,7 @@ FLOORS = (
     ("free_rocking", "groups", "cube", "interpolation", "scale_law"),
     ("slender*", "taylor*", "rigid*", "closed_form*"),
     ("solve*",),
-    ("sweep*", "boundary*"),
+    ("sweep*", "boundary*", "bounded_response"),
     ("lookup*",),
     ("units",),
     ("cli*",),
