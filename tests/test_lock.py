@@ -1,7 +1,10 @@
 """environment.lock holds names, versions and hashes only, and agrees with pyproject.toml."""
 
+import ast
 import re
+import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -38,3 +41,16 @@ def test_direct_requirement_is_pinned_within_its_bound(line: str) -> None:
 def test_no_requirement_is_stated_twice() -> None:
     names = [canonicalize_name(Requirement(line).name) for line in DIRECT if not line.startswith("setuptools")]
     assert len(names) == len(set(names))
+
+
+def test_what_the_package_imports_is_required() -> None:
+    distributions = metadata.packages_distributions()
+    required = {canonicalize_name(Requirement(line).name) for line in PROJECT["project"]["dependencies"]}
+    required |= {"starlette"}  # FastAPI is a layer over it and documents its use
+    trees = [ast.parse(path.read_text()) for folder in ("rocking", "api") for path in (ROOT / folder).rglob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+    tops = {name.split(".")[0] for name in names} - sys.stdlib_module_names - {"rocking", "api"}
+    for top in tops:
+        assert required & {canonicalize_name(name) for name in distributions.get(top, [])}, f"{top} is not required"
