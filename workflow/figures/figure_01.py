@@ -1,0 +1,146 @@
+"""Figure 1: the block, drawn to scale, and the pulse that moves its base."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import matplotlib.patches as patches
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rocking.block import Block
+from rocking.pulses import get_pulse
+from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, make_figure, panel_letters, plotted
+from workflow.scripts.job import run
+
+
+def data(
+    *, pulse: str, half_width: float, half_height: float, rotation: float, peak_acceleration: float, pulse_period: float
+) -> xr.Dataset:
+    """Corners of the block at rest and rotated about its right corner, and the ground acceleration.
+
+    Parameters
+    ----------
+    pulse : str
+    half_width, half_height : float
+        b and h [m].
+    rotation : float
+        theta/alpha of the rotated block [-].
+    peak_acceleration : float
+        a_g [g].
+    pulse_period : float
+        T_p [s].
+    """
+    block = Block(half_width, half_height)
+    theta = rotation * block.alpha
+    b, h = half_width, half_height
+    corners = np.array([[b, 0], [b, 2 * h], [-b, 2 * h], [-b, 0], [0, h]])  # the last one is the centre of mass
+    turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])  # clockwise, about (b, 0)
+    rotated = (corners - [b, 0]) @ turn.T + [b, 0]
+    shape = get_pulse(pulse)
+    time = np.linspace(0.0, (shape.end - shape.start) / (2 * np.pi) * pulse_period, 201)
+    acceleration = peak_acceleration * shape.acceleration(shape.start + 2 * np.pi * time / pulse_period)
+    return xr.Dataset(
+        {
+            "at_rest": plotted(("corner", "axis"), corners, "corners and centre of the block at rest", units="m"),
+            "rotated": plotted(("corner", "axis"), rotated, "the same, rotated about the right corner", units="m"),
+            "ground_acceleration": plotted("time", acceleration, "ground acceleration in units of g", equation="3.2"),
+        },
+        coords={"time": plotted("time", time, "time", units="s")},
+        attrs={
+            "title": "Geometry of the rigid rocking block and the pulse",
+            "summary": "Block of the given half width and half height, drawn to scale, and the pulse under it.",
+            "half_width": b,
+            "half_height": h,
+            "alpha": block.alpha,
+            "rotation": theta,
+            "pulse_name": pulse,
+            "peak_acceleration": peak_acceleration,
+            "pulse_period": pulse_period,
+        },
+    )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """The block on the left, the pulse on the right."""
+    figure = Figure(figsize=(WIDTH, 3.1))
+    left, right = figure.subplots(1, 2, width_ratios=[1, 1.3])
+    _draw_block(left, data)
+    _draw_pulse(right, data)
+    panel_letters([left, right])
+    return figure
+
+
+def _draw_block(ax: Axes, data: xr.Dataset) -> None:
+    rest, turned = data.at_rest.values, data.rotated.values
+    b, h, alpha, theta = (data.attrs[name] for name in ("half_width", "half_height", "alpha", "rotation"))
+    pivot, centre = turned[0], turned[4]
+    R = np.hypot(b, h)
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    ax.add_patch(patches.Polygon(rest[:4], fill=False, linestyle="--", linewidth=0.8, edgecolor=GREY))
+    ax.add_patch(patches.Polygon(turned[:4], facecolor="#E4EEF6", edgecolor=BLUE, linewidth=1.3))
+    ax.plot([-2.6 * b, 3.6 * b], [0, 0], color="black", linewidth=1.2)
+    ax.add_patch(patches.Rectangle((-2.6 * b, -0.1 * h), 6.2 * b, 0.1 * h, hatch="////", fill=False, linewidth=0))
+    ax.plot(*centre, "o", color=BLUE, markersize=4)
+    ax.annotate("", pivot, centre, arrowprops={"arrowstyle": "<->", "color": BLUE, "shrinkA": 2, "shrinkB": 0})
+    ax.annotate("$R$", (pivot + centre) / 2, xytext=(-12, -12), textcoords="offset points", color=BLUE)
+
+    # the angle between the diagonal and the side that ends in the pivot is alpha, the side leans by theta
+    side = turned[1] - pivot
+    diagonal_angle = np.degrees(np.arctan2(*(centre - pivot)[::-1]))
+    side_angle = np.degrees(np.arctan2(*side[::-1]))
+    ax.plot([b, b], [1.35 * h, 2.25 * h], color=GREY, linewidth=0.6, linestyle=":")
+    ax.add_patch(patches.Arc(pivot, 1.5 * R, 1.5 * R, theta1=side_angle, theta2=diagonal_angle, color=BLUE))
+    _label_on_arc(ax, pivot, 0.84 * R, (side_angle + diagonal_angle) / 2, r"$\alpha$", BLUE)
+    ax.add_patch(patches.Arc(pivot, 3.7 * R, 3.7 * R, theta1=side_angle, theta2=90, color=VERMILION))
+    _label_on_arc(ax, pivot, 2.02 * R, side_angle - 1.0, r"$\theta > 0$", VERMILION)
+
+    tall = turned[2] - turned[3]
+    shift = 0.12 * h * np.array([-tall[1], tall[0]]) / np.linalg.norm(tall)
+    _dimension(ax, turned[3] + shift, turned[2] + shift)
+    ax.annotate("$2h$", (turned[2] + turned[3]) / 2 + shift, xytext=(-12, 0), textcoords="offset points", ha="center")
+    _dimension(ax, np.array([-b, -0.2 * h]), np.array([b, -0.2 * h]))
+    ax.text(0, -0.24 * h, "$2b$", ha="center", va="top")
+    ax.annotate("", (3.4 * b, -0.22 * h), (2.0 * b, -0.22 * h), arrowprops={"arrowstyle": "-|>", "color": VERMILION})
+    ax.text(2.7 * b, -0.27 * h, r"$\ddot{u}_g(t) > 0$", ha="center", va="top", color=VERMILION)
+    ax.annotate("", centre - [0, 0.42 * h], centre, arrowprops={"arrowstyle": "-|>", "shrinkA": 3})
+    ax.annotate("$mg$", centre - [0, 0.42 * h], xytext=(-14, 0), textcoords="offset points", ha="center")
+    ax.text(-b - 0.04 * h, 0.02 * h, "$O$", ha="right", va="bottom", color=GREY)
+    ax.text(b + 0.05 * h, 0.02 * h, "$O'$", ha="left", va="bottom")
+    ax.set_xlim(-2.7 * b, 3.7 * b)
+    ax.set_ylim(-0.5 * h, 2.45 * h)
+
+
+def _dimension(ax: Axes, start: np.ndarray, end: np.ndarray) -> None:
+    ax.annotate("", end, start, arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0, "lw": 0.7})
+
+
+def _label_on_arc(ax: Axes, centre: np.ndarray, radius: float, angle: float, text: str, color: str) -> None:
+    place = centre + radius * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    ax.text(*place, text, color=color, ha="center", va="center")
+
+
+def _draw_pulse(ax: Axes, data: xr.Dataset) -> None:
+    T, a = data.attrs["pulse_period"], data.attrs["peak_acceleration"]
+    ax.plot(data.time, data.ground_acceleration, color=VERMILION)
+    ax.axhline(0, color="black", linewidth=0.6)
+    uplift = np.tan(data.attrs["alpha"])
+    start = np.arcsin(uplift / a) * T / (2 * np.pi)
+    ax.axhline(uplift, color=GREY, linewidth=0.7, linestyle="--")
+    ax.annotate(r"$g\,\tan\alpha$", (T, uplift), xytext=(0, 3), textcoords="offset points", ha="right", color=GREY)
+    ax.plot(start, uplift, "o", color=BLUE, markersize=4)
+    ax.annotate("uplift\n$t=0$", (start, uplift), xytext=(7, -22), textcoords="offset points", color=BLUE)
+    _dimension(ax, np.array([T / 4, 0]), np.array([T / 4, a]))
+    ax.annotate("$a_g$", (T / 4, a * 0.78), xytext=(4, 0), textcoords="offset points")
+    _dimension(ax, np.array([0, -1.2 * a]), np.array([T, -1.2 * a]))
+    ax.text(T / 2, -1.18 * a, r"$T_p = 2\pi/\omega_g$", ha="center", va="bottom")
+    ax.set_ylim(-1.35 * a, 1.2 * a)
+    ax.set_xlabel("time since the start of the pulse [s]")
+    ax.set_ylabel(r"ground acceleration $\ddot{u}_g/g$ [-]")
+
+
+if __name__ == "__main__":
+    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -1,0 +1,105 @@
+"""Figure 5: two blocks of different size and shape under different pulses, in degrees and seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from rocking.block import STANDARD_GRAVITY, Block
+from workflow.figures.dimensional import Shaken
+from workflow.figures.style import BLUE, VERMILION, WIDTH, make_figure, panel_letters, plotted
+from workflow.scripts.job import run
+
+
+def data(
+    *,
+    pulse: str,
+    restitution: float,
+    slenderness: float,
+    frequency_ratio: float,
+    slenderness_angle: Sequence[float],
+    half_diagonal: Sequence[float],
+    duration: float,
+) -> xr.Dataset:
+    """Histories of two blocks whose groups (4.11) are equal, integrated each with its own dimensions.
+
+    Parameters
+    ----------
+    pulse : str
+    restitution : float
+        eta [-].
+    slenderness, frequency_ratio : float
+        1/a and omega [-], the same for both.
+    slenderness_angle, half_diagonal : sequences of equal length
+        alpha [rad] and R [m] of each block.
+    duration : float
+        tau = p t at the end [-].
+    """
+    blocks = [Block.from_slenderness_angle(alpha, R) for alpha, R in zip(slenderness_angle, half_diagonal, strict=True)]
+    shaken = [Shaken.with_groups(pulse, block, slenderness, frequency_ratio, restitution) for block in blocks]
+    times = np.array([np.linspace(0, duration / block.frequency_parameter, 1201) for block in blocks])
+    motions = [one.history(time) for one, time in zip(shaken, times, strict=True)]
+    ground = [one.ground_acceleration(time) / STANDARD_GRAVITY for one, time in zip(shaken, times, strict=True)]
+    dims = ("block", "sample")
+
+    def each(values: Sequence[float], long_name: str, units: str = "1") -> xr.Variable:
+        return plotted("block", values, long_name, units=units)
+
+    return xr.Dataset(
+        {
+            "rotation": plotted(dims, [theta for theta, _ in motions], "rotation theta", units="rad"),
+            "angular_velocity": plotted(dims, [velocity for _, velocity in motions], "velocity", units="rad s-1"),
+            "ground_acceleration": plotted(dims, ground, "ground acceleration in units of g"),
+            "alpha": each(slenderness_angle, "slenderness angle", "rad"),
+            "half_diagonal": each(half_diagonal, "half diagonal R", "m"),
+            "frequency_parameter": each([b.frequency_parameter for b in blocks], "frequency parameter p", "rad s-1"),
+            "peak_acceleration": each([s.peak_acceleration for s in shaken], "a_g", "m s-2"),
+            "pulse_period": each([s.pulse_period for s in shaken], "T_p", "s"),
+        },
+        coords={"time": plotted(dims, times, "elapsed", units="s")},
+        attrs={
+            "title": "Two rocking blocks of different size and shape with equal groups",
+            "summary": "Linearised motion (3.2) integrated with dimensions; 1/a, omega and eta are equal.",
+            "pulse_name": pulse,
+            "restitution": restitution,
+            "slenderness": slenderness,
+            "frequency_ratio": frequency_ratio,
+        },
+    )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Ground acceleration, rotation and angular velocity over time, both blocks in each panel."""
+    figure = Figure(figsize=(WIDTH, 4.6))
+    axes = figure.subplots(3, 1, sharex=True, height_ratios=[0.8, 1, 1])
+    panels = (
+        ("ground_acceleration", 1.0, r"$\ddot{u}_g/g$ [-]"),
+        ("rotation", 180 / np.pi, r"rotation $\theta$ [°]"),
+        ("angular_velocity", 180 / np.pi, r"velocity $\dot{\theta}$ [°/s]"),
+    )
+    for ax, (name, scale, label) in zip(axes, panels, strict=True):
+        for k, (colour, style) in enumerate(((BLUE, "-"), (VERMILION, "--"))):
+            ax.plot(data.time[k], scale * data[name][k], color=colour, linestyle=style, label=_describe(data, k))
+        ax.axhline(0, color="black", linewidth=0.5)
+        ax.set_ylabel(label)
+    axes[0].legend(loc="upper right")
+    axes[-1].set_xlabel("time since the start of the pulse [s]")
+    axes[-1].set_xlim(0, float(data.time.max()))
+    panel_letters(axes)
+    return figure
+
+
+def _describe(data: xr.Dataset, k: int) -> str:
+    one = data.isel(block=k)
+    return (
+        rf"$\alpha={np.degrees(one.alpha):.1f}$°, $R={float(one.half_diagonal):g}$ m, "
+        rf"$a_g={float(one.peak_acceleration) / STANDARD_GRAVITY:.2f}\,g$, $T_p={float(one.pulse_period):.2f}$ s"
+    )
+
+
+if __name__ == "__main__":
+    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -1,0 +1,98 @@
+"""Figure 7: histories of one block for several coefficients of restitution, which act as damping."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from rocking.solve import time_history
+from workflow.figures.style import GREY, WIDTH, make_figure, panel_letters, plotted, shades
+from workflow.scripts.job import run
+
+SAMPLES = 900
+
+
+def data(
+    *,
+    pulses: Sequence[str],
+    restitution: Sequence[float],
+    slenderness: float,
+    frequency_ratio: float,
+    duration: float,
+) -> xr.Dataset:
+    """Rotation and angular velocity in the groups of (4.1), over pulse and restitution.
+
+    Parameters
+    ----------
+    pulses : sequence of names
+    restitution : sequence
+        eta [-].
+    slenderness, frequency_ratio : float
+        1/a and omega [-].
+    duration : float
+        tau = p t at the end [-].
+    """
+    tau = np.linspace(0.0, duration, SAMPLES)
+    shape = (len(pulses), len(restitution), tau.size)
+    rotation, velocity = np.empty(shape), np.empty(shape)
+    for i, pulse in enumerate(pulses):
+        for j, eta in enumerate(restitution):
+            history = time_history(
+                pulse,
+                slenderness=slenderness,
+                frequency_ratio=frequency_ratio,
+                restitution=eta,
+                duration=duration,
+                samples=SAMPLES,
+            )
+            # events are samples too and differ from one eta to the next: common times for one table
+            rotation[i, j] = slenderness * np.interp(tau, history.tau, history.rotation)
+            velocity[i, j] = slenderness * np.interp(tau, history.tau, history.angular_velocity)
+    dims = ("pulse", "restitution", "tau")
+    return xr.Dataset(
+        {
+            "rotation": plotted(dims, rotation, "g theta/a_g", equation="4.1"),
+            "angular_velocity": plotted(dims, velocity, "g theta'/(p a_g)", equation="4.1"),
+        },
+        coords={
+            "restitution": plotted("restitution", restitution, "coefficient of restitution"),
+            "tau": plotted("tau", tau, "time p t since the start of the pulse"),
+        },
+        attrs={
+            "title": "Histories for several coefficients of restitution",
+            "summary": f"1/a = {slenderness}, omega = {frequency_ratio}, one pulse per column.",
+            "pulse_names": " ".join(pulses),
+            "slenderness": slenderness,
+            "frequency_ratio": frequency_ratio,
+        },
+    )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Rotation above, angular velocity below, one column per pulse."""
+    pulses = data.attrs["pulse_names"].split()
+    figure = Figure(figsize=(WIDTH, 4.0))
+    axes = figure.subplots(2, len(pulses), sharex=True, sharey="row", squeeze=False)
+    labels = {"rotation": r"$g\theta/a_g$ [-]", "angular_velocity": r"$g\dot{\theta}/(p\,a_g)$ [-]"}
+    colours = shades(data.restitution.size)
+    for row, (name, label) in zip(axes, labels.items(), strict=True):
+        for i, (ax, pulse) in enumerate(zip(row, pulses, strict=True)):
+            for colour, eta in zip(colours, data.restitution.values, strict=True):
+                ax.plot(data.tau, data[name][i].sel(restitution=eta), color=colour, label=f"{eta:.2f}", linewidth=0.9)
+            ax.axhline(0, color=GREY, linewidth=0.5)
+            ax.text(0.98, 0.97, f"{pulse} pulse", transform=ax.transAxes, ha="right", va="top")
+        row[0].set_ylabel(label)
+    for ax in axes[1]:
+        ax.set_xlabel(r"time since the start of the pulse $\tau=pt$ [-]")
+        ax.set_xlim(0, float(data.tau.max()))
+    axes[0, 0].legend(title=r"$\eta$", loc="lower right", ncols=3, title_fontsize=7)
+    panel_letters(axes.ravel())
+    return figure
+
+
+if __name__ == "__main__":
+    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -1,0 +1,43 @@
+# What all rules share: names of files, and the digests that tell Snakemake when a product is out of date.
+import os
+import sys
+from pathlib import Path
+
+# The package and the scripts are found from here by this process and by its jobs, wherever the results go.
+PROJECT = Path(str(workflow.basedir))
+sys.path.insert(0, str(PROJECT))
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
+
+from rocking.provenance import code_digest, settings_digest
+
+ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
+PULSES = config["pulses"]
+PRODUCTS = {}  # path -> rule and digests, for the manifest
+
+
+wildcard_constraints:
+    pulse="[a-z0-9_]+",
+    eta=r"[01]\.[0-9]{2}",
+
+
+def spectrum_files(pulse, etas):
+    return [f"results/spectra/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+
+
+def overturning_files(pulse, etas):
+    return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+
+
+def provenance(rule_name, script, settings, products):
+    """Digests of the code and the settings behind a rule's products, which are noted for the manifest.
+
+    Snakemake sees a changed script, but not a changed module that the script imports: as a parameter, the digest of
+    the script and of all that it imports makes it see both, and nothing that the script does not import.
+    """
+    digests = {
+        "code_sha256": code_digest(PROJECT / "workflow" / script),
+        "settings_sha256": settings_digest(settings),
+    }
+    for path in products:
+        PRODUCTS[path] = {"rule": rule_name, **digests}
+    return digests

@@ -1,0 +1,50 @@
+# Spectrum cubes and overturning boundaries: one job per pulse makes the files of all its coefficients of restitution,
+# because starting Python and loading the compiled solver costs more than filling a cube.
+SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
+SPECTRUM_PROVENANCE = provenance(
+    "spectra",
+    "scripts/spectra.py",
+    SPECTRUM_SETTINGS,
+    [path for pulse in PULSES for path in spectrum_files(pulse, ETAS)],
+)
+OVERTURNING_SETTINGS = {"boundary": config["boundary"], "restitution": config["restitution"]}
+OVERTURNING_PROVENANCE = provenance(
+    "overturning",
+    "scripts/overturning.py",
+    OVERTURNING_SETTINGS,
+    [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
+)
+
+
+rule spectra:
+    message:
+        "Spectrum cubes of the {wildcards.pulse} pulse"
+    output:
+        cubes=spectrum_files("{pulse}", ETAS),
+    log:
+        "logs/spectra/{pulse}.log",
+    benchmark:
+        "logs/benchmarks/spectra-{pulse}.tsv"
+    params:
+        **SPECTRUM_SETTINGS,
+        provenance=SPECTRUM_PROVENANCE,
+        pulse=lambda wildcards: wildcards.pulse,
+    script:
+        "../scripts/spectra.py"
+
+
+rule overturning:
+    message:
+        "Overturning boundaries of the {wildcards.pulse} pulse"
+    output:
+        boundaries=overturning_files("{pulse}", ETAS),
+    log:
+        "logs/overturning/{pulse}.log",
+    benchmark:
+        "logs/benchmarks/overturning-{pulse}.tsv"
+    params:
+        **OVERTURNING_SETTINGS,
+        provenance=OVERTURNING_PROVENANCE,
+        pulse=lambda wildcards: wildcards.pulse,
+    script:
+        "../scripts/overturning.py"

@@ -1,0 +1,39 @@
+# One rule per figure: workflow/figures/figure_03.py makes figure-03.svg, .png and the plotted data in figure-03.nc.
+from itertools import chain
+
+_figures = config["figures"]
+FIGURE_INPUTS = {
+    "figure-04": {"boundaries": overturning_files("sine", _figures["figure-04"]["ours"]["restitution"])},
+    "figure-08": {
+        pulse: spectrum_files(pulse, _figures["figure-08"]["paper"]["restitution"]) for pulse in ("sine", "cosine")
+    },
+    "figure-scale-law": {"cubes": spectrum_files("sine", _figures["figure-scale-law"]["ours"]["restitution"])},
+}
+FIGURES = {
+    figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures
+}
+
+for _figure, _files in FIGURES.items():
+    _name = _figure.replace("-", "_")
+
+    rule:
+        name:
+            _name
+        message:
+            f"Drawing {_figure}"
+        input:
+            **FIGURE_INPUTS.get(_figure, {}),
+        output:
+            **_files,
+        log:
+            f"logs/figures/{_figure}.log",
+        benchmark:
+            f"logs/benchmarks/{_figure}.tsv"
+        params:
+            **_figures[_figure],
+            provenance=provenance(_name, f"figures/{_name}.py", _figures[_figure], _files.values()),
+        script:
+            f"../figures/{_name}.py"
+
+
+FIGURE_FILES = list(chain.from_iterable(files.values() for files in FIGURES.values()))

@@ -1,0 +1,58 @@
+# The claims of the paper against what was found, the manifest of all products, and the tests of the finished products.
+CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md"}
+
+
+rule claims:
+    message:
+        "Checking the quantitative claims of sections 3 and 4"
+    input:
+        boundaries=overturning_files("sine", ETAS),
+        cubes=spectrum_files("sine", ETAS),
+    output:
+        **CLAIM_FILES,
+    log:
+        "logs/claims.log",
+    benchmark:
+        "logs/benchmarks/claims.tsv"
+    params:
+        **config["claims"],
+        provenance=provenance("claims", "scripts/claims.py", config["claims"], CLAIM_FILES.values()),
+    script:
+        "../scripts/claims.py"
+
+
+rule manifest:
+    message:
+        "Listing all products"
+    input:
+        products=list(PRODUCTS),
+    output:
+        manifest="results/manifest.json",
+    log:
+        "logs/manifest.log",
+    benchmark:
+        "logs/benchmarks/manifest.tsv"
+    params:
+        sources=PRODUCTS,
+        title=config["title"],
+        code=code_digest(PROJECT / "workflow/scripts/manifest.py"),
+    script:
+        "../scripts/manifest.py"
+
+
+rule check_results:
+    message:
+        "Testing the finished products"
+    input:
+        manifest=rules.manifest.output.manifest,
+        tests=[str(path) for path in sorted((PROJECT / "workflow/checks").glob("*.py"))],
+    output:
+        report="results/checks.txt",
+    log:
+        "logs/check_results.log",
+    benchmark:
+        "logs/benchmarks/check_results.tsv"
+    params:
+        code=code_digest(*(PROJECT / "workflow/checks").glob("*.py")),
+    script:
+        "../scripts/check_results.py"

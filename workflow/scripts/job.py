@@ -1,0 +1,35 @@
+"""The seam between Snakemake and our scripts: a job is one call of a plain function."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Any
+
+
+def run(task: Callable[..., None], snakemake: Any) -> None:
+    """Call `task` with the named inputs, outputs and parameters of the job; what it prints goes to the job's log.
+
+    Parameters
+    ----------
+    task : callable
+        Takes paths (or lists of paths) and plain values by name.
+    snakemake : snakemake.iocontainers.Snakemake
+        The job, as Snakemake hands it to a script.
+    """
+    paths = {name: _paths(value) for part in (snakemake.input, snakemake.output) for name, value in part.items()}
+    log = Path(snakemake.log[0])
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with log.open("w", encoding="utf-8") as stream, redirect_stdout(stream), redirect_stderr(stream):
+        try:
+            task(**paths, **dict(snakemake.params.items()))
+        except BaseException:
+            traceback.print_exc()
+            sys.exit(1)  # the traceback stands in the log, which Snakemake shows
+
+
+def _paths(value: Any) -> Path | list[Path]:
+    return Path(value) if isinstance(value, str) else [Path(path) for path in value]

@@ -1,0 +1,44 @@
+"""Lists every product with its size, sha256, rule and the digests of the code and the settings behind it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from workflow.scripts.job import run
+
+
+def main(
+    *, products: Sequence[Path], sources: Mapping[str, Mapping[str, str]], title: str, manifest: Path, code: str
+) -> None:
+    """Write the manifest; paths in it are relative to the folder that holds it, so that the folder can be moved.
+
+    Parameters
+    ----------
+    products : sequence of paths
+        All products.
+    sources : mapping
+        For the path of each product its `rule`, `code_sha256` and `settings_sha256`.
+    title : str
+        Title of the configuration.
+    manifest : path
+        Output.
+    code : str
+        Digest of this script, so that Snakemake runs it again when it changes.
+    """
+    listed = {
+        path.relative_to(manifest.parent).as_posix(): {
+            "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+            "size": path.stat().st_size,
+            **sources[str(path)],
+        }
+        for path in sorted(products)
+    }
+    content = {"title": title, "manifest_code_sha256": code, "products": listed}
+    manifest.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    run(main, snakemake)  # noqa: F821  (given by Snakemake)

@@ -1,0 +1,39 @@
+"""Makes the spectrum cubes of one pulse, one file for each coefficient of restitution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.cube import describe, write_dataset
+from rocking.sweep import spectrum
+from workflow.scripts.job import run
+
+
+def main(
+    *,
+    pulse: str,
+    restitution: Sequence[float],
+    grid: Mapping[str, Any],
+    cubes: Sequence[Path],
+    provenance: Mapping[str, str],
+) -> None:
+    """Fill one cube per restitution [-] over the configured grid and write it to the path beside it in `cubes`."""
+    rows, columns = grid["slenderness"], grid["frequency_ratio"]
+    axes = {
+        # rounded so that a step of 0.0025 gives 0.9 and not 0.9000000000000001
+        "slenderness": np.round(np.linspace(rows["low"], rows["high"], rows["points"]), 12),
+        "frequency_ratio": np.geomspace(columns["low"], columns["high"], columns["points"]),
+        "alpha": grid["alpha"],
+    }
+    for eta, path in zip(restitution, cubes, strict=True):
+        cube = spectrum(pulse, restitution=eta, **axes)
+        write_dataset(describe(cube, **provenance), path)
+        print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
+
+
+if __name__ == "__main__":
+    run(main, snakemake)  # noqa: F821  (given by Snakemake)
