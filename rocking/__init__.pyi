@@ -15,5 +15,5 @@ from .pulses import get_pulse as get_pulse
 from .response import Outcome as Outcome
 from .response import Response as Response
 from .solve import peak_response as peak_response
-from .solve import time_history as time_history
+from .history import time_history as time_history
 

@@ -1,4 +1,4 @@
-"""The front door: `peak_response` and `time_history` check the question, broadcast it and pick the solver."""
+"""The front door: `peak_response` checks the question, broadcasts it, picks the solver and uses all cores."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +18,7 @@ from rocking.slender import rock_many
 from rocking.slender_arcs import scratch
 
 CHUNK = 4096
-"""Cells handed to one thread at a time: some tenths of a millisecond of work, fine enough to balance the threads."""
+"""Cells handed to one thread at a time: about a millisecond of work, fine enough to balance the threads."""
 
 
 @lru_cache(maxsize=256)
@@ -39,6 +38,29 @@ def prepared(pulse: SinusoidalPulse) -> Record:
     return record
 
 
+def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
+    """The pulse itself, or the one of that name."""
+    return get_pulse(pulse) if isinstance(pulse, str) else pulse
+
+
+def checked_groups(
+    slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike
+) -> list[NDArray[np.float64]]:
+    """The three groups, checked and broadcast against each other."""
+    groups = (
+        in_range("slenderness", slenderness, 0.0, math.inf, closed="neither"),
+        in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"),
+        in_range("restitution", restitution, 0.0, 1.0),
+    )
+    try:
+        return list(np.broadcast_arrays(*groups))
+    except ValueError:
+        shapes = tuple(group.shape for group in groups)
+        raise InvalidArgumentError(
+            "slenderness, frequency_ratio, restitution", shapes, "shapes that broadcast against each other"
+        ) from None
+
+
 def peak_response(
     pulse: str | AbstractPulse,
     *,
@@ -48,28 +70,52 @@ def peak_response(
     alpha: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Response:
-    shape_arrays = np.broadcast_arrays(
-        in_range("slenderness", slenderness, 0.0, math.inf, closed="neither"),
-        in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"),
-        in_range("restitution", restitution, 0.0, 1.0),
-    )
-    shape = shape_arrays[0].shape
-    s, w, e = (np.ascontiguousarray(x).ravel() for x in shape_arrays)
-    n = s.size
-    out = [np.empty(n, t) for t in (np.int8, float, np.int32, bool, float, float, float, np.int32)]
-    sinus = prepared(get_pulse(pulse) if isinstance(pulse, str) else pulse)
+    """Peak rotation and final fate of blocks under a pulse, exact to rounding; the arguments broadcast.
 
-    def work(start):
-        sl = slice(start, start + CHUNK)
-        rock_many(s[sl], w[sl], e[sl], sinus.copy(), *(o[sl] for o in out))
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        A name of `PULSE_NAMES`, with a leading minus for the opposite sign, or a pulse.
+    slenderness : array_like
+        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], > 0; from 1 on the block never uplifts.
+    frequency_ratio : array_like
+        omega = omega_g/p [-], > 0.
+    restitution : array_like
+        Coefficient of restitution eta [-], [0, 1].
+    alpha : None or 0
+        Slenderness angle [rad]; None and 0 are the slender limit (3.1).
+    threads : int, optional
+        Threads for large arrays, >= 1; all cores by default.
 
-    threads = threads or os.cpu_count()
-    starts = range(0, n, CHUNK)
-    if threads == 1 or n <= CHUNK:
-        for x in starts:
-            work(x)
+    Returns
+    -------
+    Response
+        Arrays of the broadcast shape.
+
+    Raises
+    ------
+    InvalidArgumentError
+        Naming the argument that is out of range, not finite, or of a shape that does not broadcast.
+    """
+    made = as_pulse(pulse)
+    groups = checked_groups(slenderness, frequency_ratio, restitution)
+    shape = groups[0].shape
+    cells = [np.ascontiguousarray(group).ravel() for group in groups]
+    types = (np.int8, np.float64, np.int32, np.bool_, np.float64, np.float64, np.float64, np.int32)
+    fields = [np.empty(cells[0].size, dtype) for dtype in types]
+
+    def fill(start: int) -> None:
+        part = slice(start, start + CHUNK)
+        rock_many(*(cell[part] for cell in cells), prepared(made).copy(), *(field[part] for field in fields))
+
+    starts = range(0, cells[0].size, CHUNK)
+    workers = min(threads or os.cpu_count() or 1, len(starts))
+    if workers <= 1:
+        for start in starts:
+            fill(start)
     else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(work, starts))
-    o, p, i, c, u, t, v, m = (x.reshape(shape) for x in out)
-    return Response(p, o, i, c, (p > 1) | (o >= 2), u, t, v, m)
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(fill, starts))
+    outcome, peak, impacts, chatter, uplift, first_time, first_velocity, mode = (x.reshape(shape) for x in fields)
+    exceeded = np.isnan(peak) | (peak > 1.0)
+    return Response(peak, outcome, impacts, chatter, exceeded, uplift, first_time, first_velocity, mode)
