@@ -40,7 +40,7 @@ class DatasetError(RuntimeError):
     """A data set file is missing, damaged or of another schema; the message says which file and what to do."""
 
 
-class OutsideCubeError(LookupError):
+class OutsideCubeError(InvalidArgumentError, LookupError):
     """A cube was asked for a point that it cannot answer with a promise (outside its axes, or a mixed cell)."""
 
 

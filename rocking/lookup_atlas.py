@@ -1,0 +1,209 @@
+"""All cubes of a results folder as one source of answers; each is opened when first asked.
+
+A missing or damaged cube never gives a wrong answer: the solver answers in its place, and `Atlas.problems` says so.
+Files that the workflow replaces are read again.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking.bounded_response import BoundedResponse, solve_with_bound
+from rocking.cube import read_dataset
+from rocking.errors import DatasetError, OutsideCubeError, in_range, one_of
+from rocking.lookup import METHODS, Cube, open_cube
+from rocking.lookup_files import Catalogue, Stamp, UnknownDatasetError, stamp_of
+from rocking.pulses import get_pulse
+
+
+class Atlas:
+    """The spectrum cubes below a results folder.
+
+    Parameters
+    ----------
+    results : path
+        Folder that the workflow fills; it need not exist yet.
+
+    Attributes
+    ----------
+    catalogue : Catalogue
+        All files of the folder.
+    """
+
+    def __init__(self, results: Path | str) -> None:
+        self.catalogue = Catalogue(results)
+        self._cubes: dict[str, tuple[Stamp, Cube | DatasetError]] = {}
+        self._checked: dict[str, tuple[Stamp, str | None]] = {}
+
+    def levels(self, pulse: str) -> list[float]:
+        """Restitutions for which a cube of the pulse lies there, ascending."""
+        folder = self.catalogue.results / "spectra" / pulse.removeprefix("-")
+        return sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
+
+    def cube(self, pulse: str, restitution: float) -> Cube | None:
+        """The cube of a pulse and a restitution, None if there is none.
+
+        A mirrored pulse has the same peaks and fates, and is answered by the same cube.
+
+        Raises
+        ------
+        DatasetError
+            If the file is damaged or holds something else than its name says.
+        """
+        name = _cube_name(pulse, restitution)
+        with self.catalogue.lock:
+            try:
+                path = self.catalogue.path(name)
+                stamp = stamp_of(path)
+            except (UnknownDatasetError, FileNotFoundError):
+                return None
+            known = self._cubes.get(name)
+            if known is None or known[0] != stamp:
+                known = self._cubes[name] = (stamp, _open(path, pulse.removeprefix("-"), restitution))
+        if isinstance(known[1], DatasetError):
+            raise known[1]
+        return known[1]
+
+    def is_open(self, pulse: str, restitution: float) -> bool:
+        """Whether a question needs no file to be read first."""
+        name = _cube_name(pulse, restitution)
+        return name in self._cubes or not (self.catalogue.results / f"{name}.nc").exists()
+
+    def problems(self) -> dict[str, str]:
+        """Read and check every data set, once per version of the file; what is wrong with it, by name.
+
+        The name "spectra" stands for the case that there are no cubes at all.
+        """
+        found: dict[str, str] = {}
+        names = self.catalogue.names()
+        if not any(name.startswith("spectra/") for name in names):
+            found["spectra"] = f"no spectrum cubes in {self.catalogue.results}; `make reproduce` builds them"
+        for name in names:
+            problem = self._problem(name)
+            if problem is not None:
+                found[name] = problem
+        return found
+
+    def response(
+        self,
+        pulse: str,
+        *,
+        slenderness: ArrayLike,
+        frequency_ratio: ArrayLike,
+        restitution: ArrayLike,
+        alpha: float | None = None,
+        tolerance: float = 1e-4,
+        method: str = "auto",
+    ) -> tuple[BoundedResponse, tuple[str, ...]]:
+        """Answers as `Cube.response`, over all cubes of a pulse, and the sha256 of each cube that gave some of them.
+
+        Parameters
+        ----------
+        pulse : str
+            Name of the pulse.
+        slenderness, frequency_ratio, restitution : array_like, broadcasting
+            1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
+        alpha : float, optional
+            Slenderness angle [rad]; None or 0 for the slender limit.
+        tolerance : float
+            Largest error of an interpolated peak_rotation [-], >= 0.
+        method : {"auto", "cube", "solver"}
+            As `Cube.response`; "auto" also asks the solver where a cube is missing or damaged.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range.
+        OutsideCubeError
+            With `method="cube"`, for a point that no cube answers.
+        DatasetError
+            With `method="cube"`, for a damaged cube.
+        """
+        get_pulse(pulse)
+        one_of("method", method, METHODS)
+        in_range("tolerance", tolerance, 0.0, np.inf, closed="left")
+        groups = np.broadcast_arrays(
+            in_range("slenderness", slenderness, 0.0, np.inf, closed="neither"),
+            in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither"),
+            in_range("restitution", restitution, 0.0, 1.0),
+        )
+        shape = groups[0].shape
+        s, w, eta = (group.ravel() for group in groups)
+        answer = BoundedResponse.empty(s.shape)
+        versions = []
+        left = np.ones(s.shape, dtype=np.bool_)
+        for level in self.levels(pulse) if method != "solver" else ():
+            here = eta == level
+            cube = self._usable(pulse, level, method) if here.any() else None
+            if cube is not None:
+                part = cube.response(
+                    slenderness=s[here], frequency_ratio=w[here], alpha=alpha, tolerance=tolerance, method=method
+                )
+                answer.put(here, part)
+                left &= ~here
+                if (part.source == "cube").any():
+                    versions.append(cube.sha256)
+        if left.any() and method == "cube":
+            levels = ", ".join(f"{level:.2f}" for level in self.levels(pulse)) or "none"
+            raise OutsideCubeError("restitution", float(eta[left][0]), f"one with a cube ({levels}), or method auto")
+        if left.any():
+            part = solve_with_bound(
+                pulse, slenderness=s[left], frequency_ratio=w[left], restitution=eta[left], alpha=alpha
+            )
+            answer.put(left, part)
+        return answer.reshape(shape), tuple(versions)
+
+    def _usable(self, pulse: str, level: float, method: str) -> Cube | None:
+        try:
+            return self.cube(pulse, level)
+        except DatasetError:
+            if method == "cube":
+                raise
+            return None  # the solver answers; `problems` tells
+
+    def _problem(self, name: str) -> str | None:
+        with self.catalogue.lock:
+            path = self.catalogue.path(name)
+            stamp = stamp_of(path)
+            known = self._checked.get(name)
+            if known is None or known[0] != stamp:
+                known = self._checked[name] = (stamp, _check(path, name))
+        return known[1]
+
+
+def _cube_name(pulse: str, restitution: float) -> str:
+    return f"spectra/{pulse.removeprefix('-')}/eta-{restitution:.2f}"
+
+
+def _level(stem: str) -> float:
+    """Restitution in the name of a file; nan, which equals no restitution, if it is none."""
+    try:
+        return float(stem.removeprefix("eta-"))
+    except ValueError:
+        return np.nan
+
+
+def _open(path: Path, pulse: str, restitution: float) -> Cube | DatasetError:
+    try:
+        cube = open_cube(path)
+    except DatasetError as error:
+        return error
+    if (cube.pulse, cube.restitution) != (pulse, restitution):
+        return DatasetError(f"{path}: holds {cube.pulse} with restitution {cube.restitution:g}; build it again")
+    return cube
+
+
+def _check(path: Path, name: str) -> str | None:
+    """Read a data set; what is wrong with it, None if nothing is."""
+    kind, *rest = name.split("/")
+    if kind == "spectra" and len(rest) == 2:
+        found = _open(path, rest[0], _level(rest[1]))
+        return str(found) if isinstance(found, DatasetError) else None
+    try:
+        read_dataset(path)
+    except DatasetError as error:
+        return str(error)
+    return None
