@@ -1,0 +1,252 @@
+"""The curves on the control space that separate the fates, bisected with the solver itself.
+
+The way of overturning (directly, after one impact, after three, ...) is computed on a grid; the outline of the region
+of each way is followed by contourpy, and every vertex, which lies on a grid edge with the region at one end only, is
+bisected along that edge. So the grid decides which regions are seen, never where they end; and a safe band far
+narrower than a cell still shows, as the gap between the outlines on its two sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from contourpy import LineType, contour_generator
+from numpy.typing import NDArray
+
+from rocking.errors import in_range
+from rocking.pulses import AbstractPulse
+from rocking.response import Outcome, Response
+from rocking.solve import as_pulse, peak_response
+
+RESOLUTION = 1e-12
+"""Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
+
+Floats = NDArray[np.float64]
+Codes = NDArray[np.int64]
+Classify = Callable[[Floats, Floats], Codes]
+
+
+def fate_code(response: Response) -> Codes:
+    """One integer for the way a block ends: 0 if it stands, else impacts before overturning x 4 + outcome."""
+    code = response.impacts.astype(np.int64) * 4 + response.outcome
+    return np.where(response.overturned, code, 0)
+
+
+def bisect(inside: Floats, outside: Floats, code: Codes, classify: Classify) -> tuple[Floats, Floats]:
+    """Shrink brackets (points, 2) in (1/a, log omega) to `RESOLUTION`; `code` holds at `inside` only."""
+    widest = float(np.max(np.abs(outside - inside), initial=RESOLUTION))
+    for _ in range(int(np.ceil(np.log2(widest / RESOLUTION)))):
+        middle = 0.5 * (inside + outside)
+        same = (classify(middle[:, 0], middle[:, 1]) == code)[:, None]
+        inside, outside = np.where(same, middle, inside), np.where(same, outside, middle)
+    return inside, outside
+
+
+def _classifier(pulse: AbstractPulse, restitution: float, alpha: float | None) -> Classify:
+    def classify(slenderness: Floats, log_omega: Floats) -> Codes:
+        frequency_ratio = np.exp(log_omega)
+        return fate_code(
+            peak_response(
+                pulse, slenderness=slenderness, frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha
+            )
+        )
+
+    return classify
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Amplitudes at which the fate of a block changes, ascending; all arrays (thresholds,).
+
+    Attributes
+    ----------
+    amplitude : float array [-]
+        a = a_g/(g tan alpha).
+    overturns_above : bool array
+        True where the block overturns just above the threshold and stands just below it.
+    outcome : int8 array
+        Code of `Outcome` on the overturning side.
+    impacts : int32 array
+        Impacts before overturning there.
+    """
+
+    amplitude: Floats
+    overturns_above: NDArray[np.bool_]
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+
+
+def critical_amplitude(
+    pulse: str | AbstractPulse,
+    *,
+    frequency_ratio: float,
+    restitution: float,
+    alpha: float | None = None,
+    highest_amplitude: float = 100.0,
+) -> Thresholds:
+    """Every amplitude between 1 and `highest_amplitude` at which the fate changes.
+
+    Parameters
+    ----------
+    pulse, frequency_ratio, restitution, alpha
+        As for `peak_response`; scalars.
+    highest_amplitude : float
+        Largest a = a_g/(g tan alpha) looked at [-], (1, 1e6].
+
+    Returns
+    -------
+    Thresholds
+        Each good to `RESOLUTION` in 1/a. A region of one way of overturning narrower than 1/2000 of the range and
+        surrounded by a single other fate can be missed; a safe band between two ways of overturning is not, unless
+        it is narrower than `RESOLUTION`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    """
+    in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
+    log_omega = np.log(float(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
+    classify = _classifier(as_pulse(pulse), restitution, alpha)
+    lowest = 1.0 / highest_amplitude
+    grid = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
+    codes = classify(grid, np.full(grid.size, log_omega))
+    for _ in range(32):
+        edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
+        if edge.size == 0:
+            break
+        # where the fate at the left end stops; a third fate met there becomes a node, and a new edge
+        ends = np.stack(np.broadcast_arrays(grid[[edge, edge + 1]], log_omega), axis=-1)
+        inside, outside = bisect(ends[0], ends[1], codes[edge], classify)
+        met = classify(outside[:, 0], outside[:, 1])
+        grid = np.concatenate([grid, inside[:, 0], outside[:, 0]])
+        codes = np.concatenate([codes, codes[edge], met])
+        grid, kept = np.unique(grid, return_index=True)
+        codes = codes[kept]
+    edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
+    above = codes[edge] > 0  # 1/a falls as the amplitude rises
+    falls = np.where(above, edge, edge + 1)
+    return Thresholds(
+        1.0 / grid[falls], above, (codes[falls] % 4).astype(np.int8), (codes[falls] // 4).astype(np.int32)
+    )
+
+
+def overturning_boundary(
+    pulse: str | AbstractPulse,
+    *,
+    restitution: float,
+    alpha: float | None = None,
+    frequency_ratio: tuple[float, float] = (0.2, 15.0),
+    slenderness: tuple[float, float] = (0.02, 1.0),
+    nodes: int = 401,
+) -> xr.Dataset:
+    """The boundary curves of overturning on a window of the control space.
+
+    Parameters
+    ----------
+    pulse, restitution, alpha
+        As for `peak_response`; scalars.
+    frequency_ratio : (float, float)
+        Window of omega [-], 0 < low < high.
+    slenderness : (float, float)
+        Window of 1/a [-], 0 < low < high <= 1.
+    nodes : int
+        Grid nodes in each direction, 16 to 4001: regions narrower than a cell can be missed.
+
+    Returns
+    -------
+    xarray.Dataset
+        Polylines in the contiguous ragged representation of CF: slenderness(point), frequency_ratio(point), each
+        vertex good to `RESOLUTION`; row_size(curve); outcome(curve), impacts(curve) of the overturning region that
+        the curve bounds; neighbour_outcome(curve), neighbour_impacts(curve) on the other side (SAFE, 0, or another
+        way of overturning).
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    """
+    in_range("nodes", nodes, 16, 4001)
+    low, high = (float(in_range("frequency_ratio", x, 0.0, np.inf, closed="neither")) for x in frequency_ratio)
+    in_range("frequency_ratio[1]", high, low, np.inf, closed="neither")
+    bottom, top = (float(in_range("slenderness", x, 0.0, 1.0, closed="right")) for x in slenderness)
+    in_range("slenderness[1]", top, bottom, 1.0, closed="right")
+    made = as_pulse(pulse)
+    classify = _classifier(made, restitution, alpha)
+    axes = np.linspace(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
+    codes = classify(*np.meshgrid(*axes, indexing="ij"))
+
+    inside, outside, sizes, own = [np.empty((0, 2))], [np.empty((0, 2))], [], [np.empty(0, np.int64)]
+    for code in np.unique(codes[codes > 0]):
+        region = codes == code
+        for line in contour_generator(z=region.astype(np.float64), line_type=LineType.Separate).lines(0.5):
+            within, beyond = _grid_edges(np.asarray(line), axes, region)
+            inside.append(within)
+            outside.append(beyond)
+            own.append(np.full(len(within), code))
+            sizes.append(len(within))
+    code = np.concatenate(own)
+    points, beyond = bisect(np.concatenate(inside), np.concatenate(outside), code, classify)
+    neighbour = classify(beyond[:, 0], beyond[:, 1])
+    starts = _curve_starts(sizes, neighbour)
+    return _as_dataset(points, starts, code[starts], neighbour[starts]).assign_attrs(
+        pulse=made.name, restitution=float(restitution), alpha=float(alpha or 0.0)
+    )
+
+
+def _grid_edges(line: Floats, axes: tuple[Floats, Floats], region: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Ends inside and outside the region of the grid edges that the vertices (points, 2) of `line` halve.
+
+    contourpy gives (column, row) in units of the grid; the ends are (1/a, log omega).
+    """
+    first = np.floor(line[:, ::-1]).astype(int)
+    last = np.ceil(line[:, ::-1]).astype(int)
+    swap = region[last[:, 0], last[:, 1]][:, None]
+    within, beyond = np.where(swap, last, first), np.where(swap, first, last)
+    return (
+        np.stack([axes[0][within[:, 0]], axes[1][within[:, 1]]], axis=1),
+        np.stack([axes[0][beyond[:, 0]], axes[1][beyond[:, 1]]], axis=1),
+    )
+
+
+def _curve_starts(sizes: list[int], neighbour: Codes) -> NDArray[np.int64]:
+    """First points of the curves: where a line begins, and where the fate on its other side changes."""
+    new = np.zeros(len(neighbour), dtype=bool)
+    new[1:] = np.diff(neighbour) != 0
+    new[np.cumsum([0, *sizes])[:-1]] = True
+    return np.flatnonzero(new)
+
+
+def _as_dataset(points: Floats, starts: NDArray[np.int64], own: Codes, neighbour: Codes) -> xr.Dataset:
+    def outcome(code: Codes) -> NDArray[np.int8]:
+        return np.where(code > 0, code % 4, Outcome.SAFE).astype(np.int8)
+
+    def impacts(code: Codes) -> NDArray[np.int32]:
+        return (code // 4).astype(np.int32)
+
+    def curve(values: NDArray[np.int64] | NDArray[np.int32] | NDArray[np.int8], long_name: str) -> tuple[object, ...]:
+        return ("curve", values, {"long_name": long_name, "units": "1"})
+
+    sizes = np.diff([*starts, len(points)]).astype(np.int32)
+    return xr.Dataset(
+        {
+            "slenderness": (
+                "point",
+                points[:, 0],
+                {"long_name": "dimensionless slenderness g tan(alpha)/a_g (3.6)", "units": "1"},
+            ),
+            "frequency_ratio": (
+                "point",
+                np.exp(points[:, 1]),
+                {"long_name": "frequency ratio omega_g/p (3.6)", "units": "1"},
+            ),
+            "row_size": ("curve", sizes, {"long_name": "points", "units": "1", "sample_dimension": "point"}),
+            "outcome": curve(outcome(own), "fate in the region that the curve bounds"),
+            "impacts": curve(impacts(own), "impacts before overturning there"),
+            "neighbour_outcome": curve(outcome(neighbour), "fate on the other side"),
+            "neighbour_impacts": curve(impacts(neighbour), "impacts before overturning on the other side"),
+        }
+    )
