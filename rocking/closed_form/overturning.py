@@ -39,8 +39,9 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
 
     Notes
     -----
-    Not complete, whatever the paper says: close to the tip of the safe region (1/a from 0.89 to 0.95, omega from 0.5
-    to 1.1) there are islands where the block overturns after three or five impacts. They are not among these curves.
+    Not complete, whatever the paper says: near the tip of the safe region (1/a from 0.90 to 0.99, omega from 0.2 to
+    1.1) there are islands where the block overturns after three, five or more impacts, always an odd number, all
+    before the pulse ends. They are not among these curves; everywhere else the curves are the whole truth.
     """
     during = case_1_1_amplitudes(frequency_ratio, restitution)
     after = case_1_2_amplitudes(frequency_ratio, restitution)

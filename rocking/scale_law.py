@@ -1,0 +1,105 @@
+"""The scale law for restitution, theta_m proportional to eta^2, (4.16): measured, not asserted.
+
+Pure arithmetic on peaks that a solver or a closed form has found along an axis of restitutions.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking.errors import InvalidArgumentError, in_range
+
+Array = NDArray[np.float64]
+
+
+def scale_law_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, reference: float, axis: int = 0) -> Array:
+    """How far peak/eta^2 is from its value at a reference restitution, relative: the error of (4.16).
+
+    Parameters
+    ----------
+    peak_rotation : array_like
+        Peaks in any normalisation [-], nan where overturned; one axis runs over `restitution`.
+    restitution : array_like, shape (n,)
+        eta [-], (0, 1].
+    reference : float
+        The eta from which the law is to predict the others; one of `restitution` [-].
+    axis : int
+        Axis of `peak_rotation` that runs over restitution.
+
+    Returns
+    -------
+    ndarray
+        (reference peak) (eta/reference)^2 / peak - 1 [-], of the shape of `peak_rotation`: positive where the law
+        promises too much; nan where either block overturned or never moved.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `reference` is not among the restitutions or the shapes do not match.
+    """
+    peak, eta = _aligned(peak_rotation, restitution, axis)
+    at = np.flatnonzero(np.isclose(eta, reference, rtol=0.0, atol=1e-9))
+    if at.size == 0:
+        raise InvalidArgumentError("reference", reference, f"one of the restitutions {eta.tolist()}")
+    scaled = peak / eta**2  # f(a, omega)/2 of (4.16), were the law exact
+    with np.errstate(divide="ignore", invalid="ignore"):
+        deviation = np.where(scaled > 0, scaled[..., at[:1]] / scaled - 1, np.nan)
+    return np.asarray(np.moveaxis(deviation, -1, axis))
+
+
+def largest_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, reference: float, axis: int = 0) -> Array:
+    """Largest absolute `scale_law_deviation` over restitution [-], nan where no pair of peaks could be compared.
+
+    Parameters
+    ----------
+    peak_rotation : array_like
+        Peaks in any normalisation [-], nan where overturned; one axis runs over `restitution`.
+    restitution : array_like, shape (n,)
+        eta [-], (0, 1].
+    reference : float
+        The eta from which the law predicts [-].
+    axis : int
+        Axis of `peak_rotation` that runs over restitution; it is gone from the answer.
+    """
+    deviation = np.abs(scale_law_deviation(peak_rotation, restitution, reference=reference, axis=axis))
+    # the reference compares only with itself; at least one other peak makes a measurement
+    others = np.sum(np.isfinite(deviation), axis=axis) > 1
+    return np.asarray(np.where(others, np.max(np.nan_to_num(deviation, nan=0.0), axis=axis), np.nan))
+
+
+def restitution_exponent(peak_rotation: ArrayLike, restitution: ArrayLike, *, axis: int = 0) -> Array:
+    """Exponent n of peak = constant eta^n by least squares in logarithms [-]; the law (4.16) says 2.
+
+    Parameters
+    ----------
+    peak_rotation : array_like
+        Peaks in any normalisation [-], nan where overturned; one axis runs over `restitution`.
+    restitution : array_like, shape (n,)
+        eta [-], (0, 1].
+    axis : int
+        Axis of `peak_rotation` that runs over restitution; it is gone from the answer.
+
+    Returns
+    -------
+    ndarray
+        [-]; nan where fewer than two peaks are positive and finite.
+    """
+    peak, eta = _aligned(peak_rotation, restitution, axis)
+    known = np.isfinite(peak) & (peak > 0)
+    count = known.sum(axis=-1, keepdims=True)
+    x = np.where(known, np.log(eta), 0.0)
+    y = np.where(known, np.log(np.where(known, peak, 1.0)), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x = np.where(known, x - x.sum(axis=-1, keepdims=True) / count, 0.0)
+        slope = (x * y).sum(axis=-1) / (x * x).sum(axis=-1)
+    return np.asarray(np.where(count[..., 0] > 1, slope, np.nan))
+
+
+def _aligned(peak_rotation: ArrayLike, restitution: ArrayLike, axis: int) -> tuple[Array, Array]:
+    """Peaks with restitution as the last axis, and the restitutions."""
+    peak = np.moveaxis(np.asarray(peak_rotation, dtype=np.float64), axis, -1)
+    eta = in_range("restitution", restitution, 0.0, 1.0, closed="right")
+    if eta.shape != peak.shape[-1:]:
+        raise InvalidArgumentError("restitution", eta.shape, f"one value for each of {peak.shape[-1]} peaks")
+    return peak, eta
