@@ -1,7 +1,7 @@
 """The slender solver against multi-precision tables: the reference of 419 random cases, and 1000 cells of our own.
 
 Only numpy and csv stand between the tables and the front door, so the whole file takes about a second once compiled.
-The worst figures are recorded as properties of the test report (`pytest --junit-xml`).
+The worst figures are recorded in the test report (`pytest --junit-xml`).
 """
 
 import csv
@@ -72,12 +72,12 @@ def test_reference_fates(reference: tuple[Table, rocking.Response]) -> None:
 
 @pytest.mark.parametrize("column", ["peak_rotation", "uplift_time", "first_impact_time", "first_impact_velocity"])
 def test_reference_values_within_1e_12(
-    reference: tuple[Table, rocking.Response], column: str, record_property: Record
+    reference: tuple[Table, rocking.Response], column: str, record_testsuite_property: Record
 ) -> None:
     table, found = reference
     error = _relative(getattr(found, column), table[column])
     worst = int(np.nanargmax(error))
-    record_property(f"worst_{column}", float(error[worst]))
+    record_testsuite_property(f"worst_{column}", float(error[worst]))
     assert error[worst] <= 1e-12, (table.pulse[worst], {name: column[worst] for name, column in table.columns.items()})
 
 
@@ -109,12 +109,17 @@ def test_truth_impacts_and_chatter(truth: tuple[Table, rocking.Response]) -> Non
 
 @pytest.mark.parametrize("column", ["peak_rotation", "uplift_time", "first_impact_time"])
 def test_truth_errors_are_what_the_last_bit_of_the_input_explains(
-    truth: tuple[Table, rocking.Response], column: str, record_property: Record
+    truth: tuple[Table, rocking.Response], column: str, record_testsuite_property: Record
 ) -> None:
     table, found = truth
     error = _relative(getattr(found, column), table[column])
-    explained = error / (EPS + table[f"{column}_per_ulp"])
+    ulps = EPS + table[f"{column}_per_ulp"]
+    if column == "uplift_time":  # found as a phase, a double counted from a crest (sines) or from the pulse's middle
+        start = np.array([max(abs(rocking.get_pulse(name).start), np.pi / 2) for name in table.pulse])
+        tiny = float(np.finfo(float).tiny)
+        ulps += EPS * start / (table["frequency_ratio"] * np.maximum(table["uplift_time"], tiny))
+    explained = error / ulps
     worst = int(np.nanargmax(explained))
-    record_property(f"worst_{column}_over_condition", float(explained[worst]))
-    record_property(f"median_{column}", float(np.nanmedian(error)))
+    record_testsuite_property(f"worst_{column}_over_condition", float(explained[worst]))
+    record_testsuite_property(f"median_{column}", float(np.nanmedian(error)))
     assert explained[worst] <= BEYOND_ONE_ULP, (table.pulse[worst], {n: c[worst] for n, c in table.columns.items()})
