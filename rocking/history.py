@@ -8,9 +8,10 @@ import xarray as xr
 from rocking.errors import in_range
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
+from rocking.scratch import prepared
 from rocking.slender import IMPACT_LIMIT, rock
 from rocking.slender_history import free_impacts, sample_flights, sample_free
-from rocking.solve import as_pulse, checked_groups, prepared
+from rocking.solve import as_pulse, checked_groups
 
 FREE_ROCKING = 8.0
 """Free rocking shown by default after the pulse [tau]."""

@@ -1,7 +1,7 @@
 """The slender block under a sum of sinusoids, solved exactly event by event: uplift, impact, rest, peak, fate.
 
 Equation (3.1) with restitution (2.3). Between events the motion is one exact arc (`slender_arcs`); the cuts of
-`slender_cuts` prove for every stretch whether it holds an impact or a peak, and bracket it, so that none is missed;
+`cuts` prove for every stretch whether it holds an impact or a peak, and bracket it, so that none is missed;
 `free_rocking` decides the fate after the pulse.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from rocking.compilation import Record, Vector, kernel
 from rocking.free_rocking import free_fate
 from rocking.slender_chatter import settles
-from rocking.slender_cuts import cut
+from rocking.cuts import cut
 from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_flight, turn
 
@@ -45,7 +45,7 @@ def rock(
     slenderness, omega, eta : float
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-].
     flight
-        The pulse, and scratch, laid out as in `slender_arcs.scratch`.
+        The pulse, and scratch, laid out as in `scratch.layout`.
     record : float array (flights, 3)
         Filled with phase, sign and w at the start of each flight (sign 0: rest) as far as it reaches; may be empty.
 

@@ -6,71 +6,21 @@ with cosh h - 1 and sinh h: the coefficients A, B of (3.4) would lose all digits
 state it is expanded in a Taylor series, which needs no transcendental function.
 
 `cosine` and `sine` stand for those of the angles w_k phi + d_k, shape (terms,), at the point in question; the record
-`flight` is laid out in `scratch`.
+`flight` is laid out in `scratch.layout`.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from rocking.compilation import Record, Vector, kernel
+from rocking.scratch import COEFFICIENTS
 
 LARGEST_EXPONENT = 350.0
 """e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""
 
 RADIUS = 0.25
 """Largest max(1, Omega) |delta| at which the series below is exact to rounding: 0.25^12/12! = 1e-16."""
-
-COEFFICIENTS = 13
-"""Length of the series: degree 12 in z."""
-
-MOST_PIECES = 84
-"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
-
-
-def scratch(terms: int) -> np.dtype[np.void]:
-    """Layout of the one record that holds a pulse of that many sinusoids c cos(w phi + d) and the state of a cell.
-
-    Plain memory of fixed layout: the kernels read and write it without bookkeeping and unroll the loops over terms.
-    """
-    per_term = (terms,)
-    ends, cuts = MOST_PIECES + 1, 3 * MOST_PIECES + 1
-    return np.dtype(
-        [
-            ("amplitude", np.float64, per_term),  # c
-            ("multiple", np.float64, per_term),  # w
-            ("shift", np.float64, per_term),  # d
-            ("pieces", np.int64),  # monotone pieces of f
-            ("end_phase", np.float64, (ends,)),  # their ends, with f and the angles' cosines and sines there
-            ("end_shape", np.float64, (ends,)),
-            ("end_cosine", np.float64, (ends, terms)),
-            ("end_sine", np.float64, (ends, terms)),
-            ("a", np.float64),  # 1/slenderness
-            ("omega", np.float64),  # frequency ratio
-            ("rate", np.float64, per_term),  # Omega = omega w
-            ("fastest", np.float64),  # largest of 1 and the rates
-            ("cut_phase", np.float64, (cuts,)),  # see `slender_cuts`
-            ("cut_level", np.float64, (cuts,)),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
-            ("cut_rise", np.float64, (cuts,)),  # sign of f' there
-            ("cut_cosine", np.float64, (cuts, terms)),
-            ("cut_sine", np.float64, (cuts, terms)),
-            ("sign", np.float64),  # sgn(theta) during the flight
-            ("force", np.float64, per_term),  # sgn(theta) a c
-            ("phase", np.float64),  # phi at the start of the flight
-            ("w0", np.float64),  # velocity there
-            ("q0", np.float64),  # pull there
-            ("cosine0", np.float64, per_term),  # of the angles there
-            ("sine0", np.float64, per_term),
-            ("cosine1", np.float64, per_term),  # at the point last turned to
-            ("sine1", np.float64, per_term),
-            ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
-            ("scaled", np.float64, per_term),
-        ],
-        align=True,
-    )
-
 
 @kernel
 def hyperbolic(h: float) -> tuple[float, float]:

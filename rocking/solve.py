@@ -5,37 +5,18 @@ from __future__ import annotations
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.compilation import Record
 from rocking.errors import InvalidArgumentError, in_range
-from rocking.pulses import AbstractPulse, SinusoidalPulse, get_pulse
+from rocking.pulses import AbstractPulse, get_pulse
 from rocking.response import Response
+from rocking.scratch import prepared
 from rocking.slender import rock_many
-from rocking.slender_arcs import scratch
 
 CHUNK = 4096
 """Cells handed to one thread at a time: about a millisecond of work, fine enough to balance the threads."""
-
-
-@lru_cache(maxsize=256)
-def prepared(pulse: SinusoidalPulse) -> Record:
-    """The pulse in the layout of the kernels; each thread works on a copy."""
-    record = np.zeros(1, scratch(len(pulse.terms)))[0]
-    amplitude, multiple, shift = (np.array(column) for column in zip(*pulse.terms, strict=True))
-    record["amplitude"], record["multiple"], record["shift"] = amplitude, multiple, shift
-    phases = np.array([pulse.start, *pulse.stationary, pulse.end])
-    count = len(phases)
-    record["pieces"] = count - 1
-    record["end_phase"][:count] = phases
-    record["end_shape"][:count] = pulse.shape(phases)
-    angles = multiple * phases[:, None] + shift
-    record["end_cosine"][:count] = np.cos(angles)
-    record["end_sine"][:count] = np.sin(angles)
-    return record
 
 
 def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:

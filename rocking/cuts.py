@@ -8,7 +8,7 @@ q'. By the maximum principle for z'' - z = -q (and for its derivative, w'' - w =
   between; no maximum of z inside;
 - q' >= 0 or q' <= 0 settle the zeros of w, that is the peaks, in the same way.
 
-Single sinusoids have closed forms for the cuts and for the cosine and sine there; sums use a bracketed Newton.
+Single sinusoids have closed forms for the cuts and for the cosine and sine there; other pulses use a bracketed Newton.
 """
 
 from __future__ import annotations
@@ -16,12 +16,20 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, kernel
+from rocking.scratch import POLYNOMIAL
 
 
 @kernel
 def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
     """f and df/dphi of the pulse."""
     f, slope = 0.0, 0.0
+    if flight.spread > 0.0:
+        for i in range(POLYNOMIAL):
+            k = POLYNOMIAL - 1 - i
+            slope = slope * phi + f
+            f = f * phi + flight.polynomial[k]
+        bell = math.exp(-phi * phi / flight.spread)
+        return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
     for k in range(len(flight.force)):
         angle = flight.multiple[k] * phi + flight.shift[k]
         f += flight.amplitude[k] * math.cos(angle)
@@ -60,7 +68,7 @@ def place(flight: Record, index: int, phase: float, level: float, rise: float) -
 def cut(slenderness: float, flight: Record) -> int:
     """Fill `flight.cut_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
     terms = len(flight.force)
-    single = terms == 1 and flight.multiple[0] == 1.0
+    single = terms == 1 and flight.multiple[0] == 1.0 and flight.spread == 0.0
     # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
     cap = math.atan2(root, slenderness) if single else 0.0

@@ -1,0 +1,101 @@
+"""The one record on which the kernels work: a pulse, and the state of the cell in hand.
+
+Plain memory of fixed layout: kernels read and write it without reference counting, and loops over the sinusoids of the
+pulse have a length known when they are compiled. One record is prepared per pulse; each thread works on a copy.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from rocking.compilation import Record
+from rocking.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
+
+MOST_PIECES = 84
+"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
+
+COEFFICIENTS = 13
+"""Length of the series of the slender arcs: degree 12 in z."""
+
+ORDER = 20
+"""Degree of the Taylor steps."""
+
+POLYNOMIAL = 4
+"""Coefficients of a wavelet's polynomial."""
+
+
+def layout(terms: int) -> np.dtype[np.void]:
+    """Fields of the record for a pulse of that many sinusoids c cos(w phi + d); wavelets have one of amplitude 0."""
+    per_term = (terms,)
+    ends, cuts = (MOST_PIECES + 1,), (3 * MOST_PIECES + 1,)
+    series = (ORDER + 1,)
+    return np.dtype(
+        [
+            # the pulse
+            ("amplitude", np.float64, per_term),  # c
+            ("multiple", np.float64, per_term),  # w
+            ("shift", np.float64, per_term),  # d
+            ("spread", np.float64),  # wavelet: f = (sum polynomial[k] phi^k) exp(-phi^2/spread); 0: sinusoids
+            ("polynomial", np.float64, (POLYNOMIAL,)),
+            ("pieces", np.int64),  # monotone pieces of f
+            ("end_phase", np.float64, ends),  # their ends, with f and the angles' cosines and sines there
+            ("end_shape", np.float64, ends),
+            ("end_cosine", np.float64, (*ends, terms)),
+            ("end_sine", np.float64, (*ends, terms)),
+            # the cell
+            ("a", np.float64),  # 1/slenderness
+            ("omega", np.float64),  # frequency ratio
+            ("rate", np.float64, per_term),  # Omega = omega w
+            ("fastest", np.float64),  # largest of 1 and the rates
+            ("alpha", np.float64),  # slenderness angle [rad], 0: slender limit
+            ("cut_phase", np.float64, cuts),  # see `cuts`
+            ("cut_level", np.float64, cuts),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
+            ("cut_rise", np.float64, cuts),  # sign of f' there
+            ("cut_cosine", np.float64, (*cuts, terms)),
+            ("cut_sine", np.float64, (*cuts, terms)),
+            # the flight
+            ("sign", np.float64),  # sgn(theta)
+            ("force", np.float64, per_term),  # sgn(theta) a c
+            ("phase", np.float64),  # phi at its start
+            ("w0", np.float64),  # velocity there
+            ("q0", np.float64),  # pull there
+            ("cosine0", np.float64, per_term),  # of the angles there
+            ("sine0", np.float64, per_term),
+            ("cosine1", np.float64, per_term),  # at the point last turned to
+            ("sine1", np.float64, per_term),
+            ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
+            ("scaled", np.float64, per_term),
+            # the Taylor step
+            ("z", np.float64, series),  # coefficients of z,
+            ("rate_of_z", np.float64, series),  # of dz/dtau,
+            ("f", np.float64, series),  # of sgn(theta) a f,
+            ("gauss", np.float64, series),  # of the wavelet's Gaussian,
+            ("s", np.float64, series),  # of sin(alpha (1 - z))/alpha
+            ("c", np.float64, series),  # and of cos(alpha (1 - z))
+        ],
+        align=True,
+    )
+
+
+@lru_cache(maxsize=256)
+def prepared(pulse: AbstractPulse) -> Record:
+    """The record of a pulse, to be copied before use."""
+    wavelet = isinstance(pulse, WaveletPulse)
+    terms = ((0.0, 1.0, 0.0),) if wavelet else pulse.terms if isinstance(pulse, SinusoidalPulse) else ()
+    record: Record = np.zeros(1, layout(len(terms)))[0]
+    amplitude, multiple, shift = (np.array(column) for column in zip(*terms, strict=True))
+    record["amplitude"], record["multiple"], record["shift"] = amplitude, multiple, shift
+    if isinstance(pulse, WaveletPulse):
+        record["spread"] = pulse.spread
+        record["polynomial"][: len(pulse.polynomial)] = pulse.polynomial
+    phases = np.array([pulse.start, *pulse.stationary, pulse.end])
+    count = len(phases)
+    record["pieces"] = count - 1
+    record["end_phase"][:count] = phases
+    record["end_shape"][:count] = pulse.shape(phases)
+    angles = multiple * phases[:, None] + shift
+    record["end_cosine"][:count] = np.cos(angles)
+    record["end_sine"][:count] = np.sin(angles)
+    return record
