@@ -14,10 +14,11 @@ ROOT = Path(__file__).parents[1]
 FLOORS = (
     ("errors", "compilation", "provenance"),
     ("block", "pulses", "orientation", "response"),
-    ("free_rocking", "groups", "cube", "interpolation", "scale_law"),
+    ("scratch",),
+    ("free_rocking", "cuts", "groups", "cube", "interpolation", "scale_law"),
     ("slender*", "taylor*", "rigid*", "closed_form*"),
     ("solve*",),
-    ("sweep*", "boundary*", "bounded_response"),
+    ("sweep*", "boundary*", "history", "bounded_response"),
     ("lookup*",),
     ("units",),
     ("cli*",),
@@ -25,16 +26,8 @@ FLOORS = (
 FRONT_DOORS = ("rocking.cli", "api", "workflow", "tests", "benchmarks")
 # What the service may use: it asks for answers and opens no solver.
 OF_THE_SERVICE = (
-    "lookup*",
-    "cube",
-    "boundary*",
-    "errors",
-    "solve*",
-    "block",
-    "pulses",
-    "response",
-    "groups",
-    "provenance",
+    *("lookup*", "cube", "boundary*", "history", "bounded_response", "solve*"),
+    *("errors", "block", "pulses", "response", "groups", "provenance"),
 )
 
 MODULES = {
