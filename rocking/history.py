@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 
 from rocking.errors import in_range
+from rocking.free_history import rock_freely
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
+from rocking.rock import IMPACT_LIMIT, rock
 from rocking.scratch import prepared
-from rocking.slender import IMPACT_LIMIT, rock
-from rocking.slender_history import free_impacts, sample_flights, sample_free
 from rocking.solve import as_pulse, checked_groups
 
 FREE_ROCKING = 8.0
@@ -61,32 +61,33 @@ def time_history(
     if duration is not None:
         in_range("duration", duration, 0.0, np.inf, closed="neither")
     made = as_pulse(pulse)
-    groups = checked_groups(slenderness, frequency_ratio, restitution)
-    s, omega, eta = (float(group) for group in groups)
-    scratch = prepared(made).copy()
-    record = np.empty((2 * IMPACT_LIMIT, 3))
-    outcome, peak, impacts, *_, noted = rock(s, omega, eta, scratch, record)
-    record = record[:noted]
+    s, omega, eta, angle = (
+        float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha)
+    )
     end = (made.end - made.start) / omega
     horizon = end + FREE_ROCKING if duration is None else float(duration)
 
-    starts = (record[:, 0] - made.start) / omega
-    nothing = np.empty(0)
-    z, w, sign = sample_flights(nothing, record, noted, made.start, made.end, scratch, nothing, nothing)
-    times, speeds = np.empty(FREE_IMPACTS), np.empty(FREE_IMPACTS)
-    count = free_impacts(z, w, eta, horizon - end, times, speeds) if sign else 0
+    # once for the events, then again with the events among the samples
+    answer, nothing = prepared(made).copy(), np.empty(0)
+    forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
+    rock(s, omega, eta, angle, answer, nothing, nothing, nothing, forced)
+    free = free[: rock_freely(answer, eta, end, horizon, FALLEN, nothing, nothing, nothing, free)]
+    forced = forced[: min(int(answer["impacts"]), IMPACT_LIMIT)]
+    landings = np.concatenate([forced[forced < end], free])
 
-    tau = np.concatenate([np.linspace(0.0, horizon, int(samples)), starts, [end], end + times[:count]])
+    events = [0.0, end, float(np.nan_to_num(answer["uplift_time"]))]
+    tau = np.concatenate([np.linspace(0.0, horizon, int(samples)), landings, events])
     tau = np.unique(tau[tau <= horizon])
     rotation, velocity = np.zeros(tau.size), np.zeros(tau.size)
-    sample_flights(tau, record, noted, made.start, made.end, scratch, rotation, velocity)
-    sample_free(tau, end, z, w, sign, eta, times, speeds, count, rotation, velocity)
-    if duration is None and outcome >= Outcome.OVERTURNED_DIRECTLY:
+    answer = prepared(made).copy()
+    rock(s, omega, eta, angle, answer, tau, rotation, velocity, nothing)
+    rock_freely(answer, eta, end, horizon, FALLEN, tau, rotation, velocity, np.empty(FREE_IMPACTS))
+    outcome = Outcome(int(answer["outcome"]))
+    if outcome >= Outcome.OVERTURNED_DIRECTLY:
         fallen = np.flatnonzero(np.abs(rotation) > FALLEN)
-        keep = slice(0, int(fallen[0]) + 1 if fallen.size else tau.size)
-        tau, rotation, velocity = tau[keep], rotation[keep], velocity[keep]
+        last = int(fallen[0]) + 1 if fallen.size else int(np.flatnonzero(rotation)[-1]) + 1
+        tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
 
-    landed = np.flatnonzero((record[1:, 1] != record[:-1, 1]) & (record[:-1, 1] != 0.0)) + 1
     return xr.Dataset(
         {
             "rotation": ("tau", rotation, {"long_name": "rotation theta/alpha (3.4)", "units": "1"}),
@@ -98,7 +99,7 @@ def time_history(
             ),
             "impact_time": (
                 "impact",
-                np.concatenate([starts[landed], end + times[:count]]),
+                landings[landings <= horizon],
                 {"long_name": "time of impact p t", "units": "1"},
             ),
         },
@@ -108,11 +109,11 @@ def time_history(
             "slenderness": s,
             "frequency_ratio": omega,
             "restitution": eta,
-            "alpha": 0.0,
-            "outcome": Outcome(outcome).name,
+            "alpha": angle,
+            "outcome": outcome.name,
             "overturned": int(outcome >= Outcome.OVERTURNED_DIRECTLY),
-            "peak_rotation": float(peak),
-            "impacts": int(impacts),
+            "peak_rotation": float(answer["peak"]),
+            "impacts": int(answer["impacts"]),
             "pulse_end": end,
         },
     )

@@ -82,7 +82,7 @@ class Atlas:
         if not any(name.startswith("spectra/") for name in names):
             found["spectra"] = f"no spectrum cubes in {self.catalogue.results}; `make reproduce` builds them"
         for name in names:
-            problem = self._problem(name)
+            problem = self.problem(name)
             if problem is not None:
                 found[name] = problem
         return found
@@ -164,7 +164,8 @@ class Atlas:
                 raise
             return None  # the solver answers; `problems` tells
 
-    def _problem(self, name: str) -> str | None:
+    def problem(self, name: str) -> str | None:
+        """What is wrong with a data set, read and checked once per version of its file; None if nothing is."""
         with self.catalogue.lock:
             path = self.catalogue.path(name)
             stamp = stamp_of(path)

@@ -74,6 +74,18 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("gauss", np.float64, series),  # of the wavelet's Gaussian,
             ("s", np.float64, series),  # of sin(alpha (1 - z))/alpha
             ("c", np.float64, series),  # and of cos(alpha (1 - z))
+            # the answer, as in `response.Response`
+            ("outcome", np.int64),
+            ("peak", np.float64),
+            ("mode", np.int64),
+            ("impacts", np.int64),
+            ("chatter", np.int64),
+            ("uplift_time", np.float64),
+            ("first_time", np.float64),
+            ("first_velocity", np.float64),
+            ("end_z", np.float64),  # state at the end of the pulse, in the mirror image of the flight,
+            ("end_w", np.float64),
+            ("end_sign", np.float64),  # and sgn(theta), 0 at rest
         ],
         align=True,
     )

@@ -101,7 +101,7 @@ def fly(
                     return 0, h, w, 0.0, largest
         else:
             if z_right > 0.0 and (
-                z_right + w_right >= limit or (right == count and free_fate(z_right, w_right, eta)[0] > 0)
+                z_right + w_right >= limit or (right == count and free_fate(z_right, w_right, eta, 0.0)[0] > 0)
             ):
                 return 1, h_right, w_right, z_right, largest
             if not known:
@@ -148,3 +148,18 @@ def hop(flight: Record, longest: float, peak: float) -> tuple[float, float, floa
             top -= velocity(flight, top) / acceleration(flight, top)
         largest = rotation(flight, top)
     return h, velocity(flight, h), largest
+
+
+@kernel
+def sample_arc(
+    flight: Record, origin: float, h: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
+) -> int:
+    """Evaluate the flight of length h at the samples that it covers; the samples filled so far."""
+    begin = (flight.phase - origin) / flight.omega
+    while filled < len(tau) and tau[filled] < begin + h:
+        if tau[filled] >= begin:
+            turn(flight, origin + flight.omega * tau[filled], flight.cosine1, flight.sine1)
+            z, w = state(flight, tau[filled] - begin, flight.cosine1, flight.sine1)
+            rotation[filled], velocity[filled] = flight.sign * z, flight.sign * w
+        filled += 1
+    return filled

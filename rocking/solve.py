@@ -13,7 +13,7 @@ from rocking.errors import InvalidArgumentError, in_range
 from rocking.pulses import AbstractPulse, get_pulse
 from rocking.response import Response
 from rocking.scratch import prepared
-from rocking.slender import rock_many
+from rocking.rock import rock_many
 
 CHUNK = 4096
 """Cells handed to one thread at a time: about a millisecond of work, fine enough to balance the threads."""
@@ -25,20 +25,21 @@ def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
 
 
 def checked_groups(
-    slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike
+    slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
 ) -> list[NDArray[np.float64]]:
-    """The three groups, checked and broadcast against each other."""
+    """The groups, checked and broadcast against each other; alpha = None is the slender limit, 0."""
     groups = (
         in_range("slenderness", slenderness, 0.0, math.inf, closed="neither"),
         in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"),
         in_range("restitution", restitution, 0.0, 1.0),
+        in_range("alpha", 0.0 if alpha is None else alpha, 0.0, math.pi / 2, closed="left", unit="rad"),
     )
     try:
         return list(np.broadcast_arrays(*groups))
     except ValueError:
         shapes = tuple(group.shape for group in groups)
         raise InvalidArgumentError(
-            "slenderness, frequency_ratio, restitution", shapes, "shapes that broadcast against each other"
+            "slenderness, frequency_ratio, restitution, alpha", shapes, "shapes that broadcast against each other"
         ) from None
 
 
@@ -63,8 +64,8 @@ def peak_response(
         omega = omega_g/p [-], > 0.
     restitution : array_like
         Coefficient of restitution eta [-], [0, 1].
-    alpha : None or 0
-        Slenderness angle [rad]; None and 0 are the slender limit (3.1).
+    alpha : array_like, optional
+        Slenderness angle [rad], [0, pi/2); None and 0 are the slender limit (3.1), else (2.2) is solved.
     threads : int, optional
         Threads for large arrays, >= 1; all cores by default.
 
@@ -79,17 +80,20 @@ def peak_response(
         Naming the argument that is out of range, not finite, or of a shape that does not broadcast.
     """
     made = as_pulse(pulse)
-    groups = checked_groups(slenderness, frequency_ratio, restitution)
+    groups = checked_groups(slenderness, frequency_ratio, restitution, alpha)
     shape = groups[0].shape
     cells = [np.ascontiguousarray(group).ravel() for group in groups]
-    types = (np.int8, np.float64, np.int32, np.bool_, np.float64, np.float64, np.float64, np.int32)
-    fields = [np.empty(cells[0].size, dtype) for dtype in types]
+    size = cells[0].size
+    outcome, peak, mode = np.empty(size, np.int8), np.empty(size), np.empty(size, np.int32)
+    impacts, chatter = np.empty(size, np.int32), np.empty(size, np.bool_)
+    uplift, first_time, first_velocity = np.empty(size), np.empty(size), np.empty(size)
+    fields = (outcome, peak, impacts, chatter, uplift, first_time, first_velocity, mode)
 
     def fill(start: int) -> None:
         part = slice(start, start + CHUNK)
         rock_many(*(cell[part] for cell in cells), prepared(made).copy(), *(field[part] for field in fields))
 
-    starts = range(0, cells[0].size, CHUNK)
+    starts = range(0, size, CHUNK)
     workers = min(threads or os.cpu_count() or 1, len(starts))
     if workers <= 1:
         for start in starts:
@@ -97,6 +101,14 @@ def peak_response(
     else:
         with ThreadPoolExecutor(workers) as pool:
             list(pool.map(fill, starts))
-    outcome, peak, impacts, chatter, uplift, first_time, first_velocity, mode = (x.reshape(shape) for x in fields)
-    exceeded = np.isnan(peak) | (peak > 1.0)
-    return Response(peak, outcome, impacts, chatter, exceeded, uplift, first_time, first_velocity, mode)
+    return Response(
+        peak_rotation=peak.reshape(shape),
+        outcome=outcome.reshape(shape),
+        impacts=impacts.reshape(shape),
+        chatter=chatter.reshape(shape),
+        exceeded_alpha=(np.isnan(peak) | (peak > 1.0)).reshape(shape),
+        uplift_time=uplift.reshape(shape),
+        first_impact_time=first_time.reshape(shape),
+        first_impact_velocity=first_velocity.reshape(shape),
+        peak_mode=mode.reshape(shape),
+    )
