@@ -69,10 +69,9 @@ def time_history(
 
     # once for the events, then again with the events among the samples
     answer, nothing = prepared(made).copy(), np.empty(0)
-    forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
+    forced, free = np.full(IMPACT_LIMIT, np.inf), np.empty(FREE_IMPACTS)
     rock(s, omega, eta, angle, answer, nothing, nothing, nothing, forced)
     free = free[: rock_freely(answer, eta, end, horizon, FALLEN, nothing, nothing, nothing, free)]
-    forced = forced[: min(int(answer["impacts"]), IMPACT_LIMIT)]
     landings = np.concatenate([forced[forced < end], free])
 
     events = [0.0, end, float(np.nan_to_num(answer["uplift_time"]))]
