@@ -102,7 +102,7 @@ def coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Coefficien
 def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
     """Free-rocking coefficients of a block without impact so far, the two factors of D0* in (3.9).
 
-    After the pulse `2 theta/alpha = -2 + [falling] e^{p T_ex} e^{-tau} + [growing] e^{tau}`.
+    After the pulse `2 theta/alpha = -2 + [falling] e^{p T_ex} e^{-tau} + [growing] e^{tau}`, (3.5).
 
     Parameters
     ----------
@@ -121,7 +121,8 @@ def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
     a, omega = checked(amplitude, frequency_ratio)
     s, K = cot_psi(a), omega / (omega * omega + 1)
     decay = np.exp(-pulse_end(a, omega))
-    return np.asarray(K * ((omega + s) * decay - a)), np.asarray(K * (omega - s + a * decay))
+    falling, growing = K * ((omega + s) * decay - a), K * (omega - s + a * decay)  # (3.5), factors of D0* in (3.9)
+    return np.asarray(falling), np.asarray(growing)
 
 
 def d0_star(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
