@@ -1,0 +1,190 @@
+"""The answers of the routes. Missing numbers are null: there is no peak where a block overturns."""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from api.questions import HistoryQuestion, OverturningQuestion, ResponseQuestion
+from rocking.bounded_response import BoundedResponse
+from rocking.response import Outcome
+
+VERSION = version("rocking")
+OUTCOMES = [outcome.name for outcome in Outcome]
+
+_OUTCOME = Field(description=f"final fate, one of {', '.join(OUTCOMES)}")
+_BOUND = Field(description="bound of the absolute error of peak_rotation [-]; null if there is no peak or no bound")
+_SOURCE = Field(description="cube (interpolated data set) or solver")
+_PEAK = Field(description="max |theta|/alpha over the whole response [-]; null if overturned")
+_IMPACTS = Field(description="impacts before the pulse ends, and the one after it upon which the block overturns")
+_EXCEEDED = Field(description="|theta| passed alpha at some time; the ground can bring a block back from there")
+_DATA = Field(description="sha256 of the data set that answered; null if the solver did")
+
+
+class ResponseAnswer(BaseModel):
+    """One block."""
+
+    query: ResponseQuestion
+    peak_rotation: float | None = _PEAK
+    overturned: bool
+    outcome: str = _OUTCOME
+    meaning: str = Field(description="the outcome in words")
+    impacts: int = _IMPACTS
+    exceeded_alpha: bool = _EXCEEDED
+    error_bound: float | None = _BOUND
+    note: str | None = Field(None, description="why peak_rotation or error_bound is null")
+    source: str = _SOURCE
+    data_version: str | None = _DATA
+    version: str = VERSION
+
+
+class Columns(BaseModel):
+    """Many blocks, in the order of the question."""
+
+    peak_rotation: list[float | None] = _PEAK
+    overturned: list[bool]
+    outcome: list[str] = _OUTCOME
+    impacts: list[int] = _IMPACTS
+    exceeded_alpha: list[bool] = _EXCEEDED
+    error_bound: list[float | None] = _BOUND
+    source: list[str] = _SOURCE
+    data_versions: list[str] = Field(description="sha256 of each data set that answered some")
+    version: str = VERSION
+
+
+class BatchAnswer(Columns):
+    """A batch."""
+
+    query: dict[str, Any] = Field(description="the options of the question, and how many points it had")
+
+
+class SpectrumAnswer(Columns):
+    """A spectrum."""
+
+    query: dict[str, Any]
+    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+
+
+class Curve(BaseModel):
+    """One boundary curve."""
+
+    outcome: str = Field(description="fate on the side where the block overturns")
+    impacts: int = Field(description="impacts before it overturns there")
+    slenderness: list[float] = Field(description="1/a [-]")
+    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+
+
+class OverturningAnswer(BaseModel):
+    """The boundary curves of a pulse and a restitution."""
+
+    query: OverturningQuestion
+    curves: list[Curve]
+    source: str = Field(description="dataset (read) or solver (traced for this request)")
+    data_version: str | None = _DATA
+    version: str = VERSION
+
+
+class HistoryAnswer(BaseModel):
+    """A motion."""
+
+    query: HistoryQuestion
+    overturned: bool
+    outcome: str = _OUTCOME
+    peak_rotation: float | None = _PEAK
+    impacts: int = _IMPACTS
+    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
+    rotation: list[float] = Field(description="theta/alpha [-]")
+    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
+    ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
+    impact_time: list[float] = Field(description="tau of the impacts [-]")
+    source: str = "solver"
+    version: str = VERSION
+
+
+class DatasetSummary(BaseModel):
+    """A line of the catalogue."""
+
+    name: str
+    size: int = Field(description="bytes of the netCDF file")
+    sha256: str
+    metadata: str = Field(description="path of its description")
+    netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
+    zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
+
+
+class DatasetCatalogue(BaseModel):
+    """All data sets."""
+
+    datasets: list[DatasetSummary]
+
+
+class VariableDescription(BaseModel):
+    """A variable of a data set."""
+
+    dimensions: list[str]
+    shape: list[int]
+    dtype: str
+    attributes: dict[str, Any]
+
+
+class DatasetDescription(DatasetSummary):
+    """What a data set holds."""
+
+    dimensions: dict[str, int]
+    coordinates: dict[str, VariableDescription]
+    variables: dict[str, VariableDescription]
+    attributes: dict[str, Any]
+
+
+class Health(BaseModel):
+    """State of the service."""
+
+    status: str = Field(description="ok, or degraded: it answers by the solver where data sets are missing or damaged")
+    version: str = VERSION
+    datasets: int = Field(description="data sets found")
+    problems: dict[str, str] = Field(description="what is missing or damaged, by name")
+
+
+def columns_of(found: BoundedResponse) -> dict[str, Any]:
+    """The fields of `Columns` as plain lists."""
+    return {
+        "peak_rotation": found.peak_rotation.tolist(),
+        "overturned": found.overturned.tolist(),
+        "outcome": np.array(OUTCOMES)[found.outcome].tolist(),
+        "impacts": found.impacts.tolist(),
+        "exceeded_alpha": found.exceeded_alpha.tolist(),
+        "error_bound": found.error_bound.tolist(),
+        "source": found.source.tolist(),
+    }
+
+
+def response_answer(question: ResponseQuestion, found: BoundedResponse, versions: tuple[str, ...]) -> ResponseAnswer:
+    """The answer about one block."""
+    outcome = Outcome(int(found.outcome))
+    bound = float(found.error_bound)
+    note = None
+    if found.overturned:
+        note = "the block overturns: there is no peak"
+    elif math.isinf(bound):
+        note = "the fate changes within the rounding of the question: there is no bound"
+    return ResponseAnswer(
+        query=question,
+        peak_rotation=_finite(float(found.peak_rotation)),
+        overturned=bool(found.overturned),
+        outcome=outcome.name,
+        meaning=outcome.sentence,
+        impacts=int(found.impacts),
+        exceeded_alpha=bool(found.exceeded_alpha),
+        error_bound=_finite(bound),
+        note=note,
+        source=str(found.source),
+        data_version=versions[0] if versions else None,
+    )
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

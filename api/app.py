@@ -1,0 +1,93 @@
+"""The application: `create_app(settings)`. Nothing happens on import."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import anyio
+import anyio.to_thread
+from fastapi import FastAPI
+from starlette.middleware.cors import CORSMiddleware
+from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
+from starlette.staticfiles import StaticFiles
+
+from api.answers import VERSION
+from api.problems import RESPONSES, Problem, add_handlers
+from api.questions import BatchQuestion
+from api.routes import datasets, health, history, overturning, pages, response, spectrum
+from api.service import Service
+from api.settings import Settings
+from api.zarr_view import ZarrViews
+from rocking.lookup_atlas import Atlas
+
+LOG = logging.getLogger("rocking.service")
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """Build the service over the results folder of the settings, which need not exist."""
+    app = FastAPI(
+        title="rocking",
+        version=VERSION,
+        summary="Does the block fall, and how far does it rock?",
+        description="Response of the free-standing rigid block to pulse ground motion, each number with its error "
+        "bound and its source. Errors are problem+json (RFC 9457).",
+        docs_url=None,
+        redoc_url=None,
+        lifespan=_lifespan,
+        responses=RESPONSES,
+    )
+    atlas = Atlas(settings.results)
+    app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
+    # data sets are compressed already, and a compressed answer has no ranges
+    binary = ("application/x-netcdf", "application/octet-stream")
+    app.add_middleware(GZipMiddleware, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary))
+    if settings.cors_origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=list(settings.cors_origins),
+            allow_methods=["GET", "HEAD", "POST"],
+            expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest"],
+        )
+    add_handlers(app)
+    for module in (response, spectrum, overturning, history, datasets, health, pages):
+        app.include_router(module.router)
+    app.mount("/static", StaticFiles(directory=pages.STATIC))
+    _describe_bodies(app)
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    """Check the data sets and load the solver in the background, so that the first request need not wait for it."""
+    async with anyio.create_task_group() as background:
+        background.start_soon(_look_around, app.state.service)
+        yield
+        background.cancel_scope.cancel()
+
+
+async def _look_around(service: Service) -> None:
+    def work() -> dict[str, str]:
+        service.atlas.response(
+            "sine", slenderness=0.5, frequency_ratio=5.0, restitution=0.85, method="solver"
+        )  # loads the compiled solver
+        return service.atlas.problems()
+
+    problems = await anyio.to_thread.run_sync(work, abandon_on_cancel=True)
+    for name, text in problems.items():
+        LOG.warning("data set %s: %s; the solver answers in its place", name, text)
+
+
+def _describe_bodies(app: FastAPI) -> None:
+    """Add the models that the OpenAPI description refers to but no route declares as a parameter."""
+    generate = app.openapi
+
+    def described() -> dict[str, object]:
+        if app.openapi_schema is None:
+            schemas = generate()["components"]["schemas"]
+            for model in (Problem, BatchQuestion):
+                schemas[model.__name__] = model.model_json_schema()
+        return generate()
+
+    app.openapi = described  # type: ignore[method-assign]

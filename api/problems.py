@@ -1,0 +1,126 @@
+"""Errors as problem+json (RFC 9457): what was wrong, with which value, and what is allowed.
+
+`STATUS` is the one table from exception to status code.
+"""
+
+from __future__ import annotations
+
+import math
+from http import HTTPStatus
+from typing import Any
+
+import pydantic_core
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, Field, ValidationError
+from starlette.exceptions import HTTPException
+
+from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.lookup_files import UnknownDatasetError
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class TooLargeError(InvalidArgumentError):
+    """More than the service takes at once."""
+
+
+class UnsupportedBodyError(InvalidArgumentError):
+    """The body is in a form that the service does not read."""
+
+
+STATUS: dict[type[Exception], int] = {
+    InvalidArgumentError: HTTPStatus.UNPROCESSABLE_ENTITY,  # OutsideCubeError is one
+    TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+    UnsupportedBodyError: HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+    UnknownDatasetError: HTTPStatus.NOT_FOUND,
+    DatasetError: HTTPStatus.SERVICE_UNAVAILABLE,
+    RequestValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    ValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
+}
+
+
+class Problem(BaseModel):
+    """RFC 9457, with the three parts of every message of ours."""
+
+    type: str = "about:blank"
+    title: str = Field(description="what the status code means")
+    status: int
+    detail: str
+    parameter: str | None = Field(None, description="which parameter")
+    value: float | str | None = Field(None, description="what it was")
+    allowed: str | None = Field(None, description="what is allowed")
+
+
+RESPONSES: dict[int | str, dict[str, Any]] = {
+    int(status): {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": schema}}}
+    for schema in [{"$ref": "#/components/schemas/Problem"}]
+    for status in (404, 405, 413, 415, 422, 500, 503)
+}
+"""For the OpenAPI description: what any route may answer instead."""
+
+
+def problem(status: int, detail: str, headers: dict[str, str] | None = None, **parts: Any) -> Response:
+    """The answer to a request that cannot be met."""
+    value = parts.pop("value", None)
+    content = Problem(title=HTTPStatus(status).phrase, status=status, detail=detail, value=_plain(value), **parts)
+    return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
+
+
+def add_handlers(app: FastAPI) -> None:
+    """Answer every exception by its line in the table; any other is a 500 that tells nothing of the inside."""
+    for kind in STATUS:
+        app.add_exception_handler(kind, _handle)
+    app.add_exception_handler(HTTPException, _handle_http)
+    app.add_exception_handler(Exception, _handle_unknown)
+
+
+async def _handle(_: Request, error: Exception) -> Response:
+    status = next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
+    if isinstance(error, RequestValidationError):
+        return _of_validation(status, error.errors()[0])
+    if isinstance(error, ValidationError):
+        return _of_validation(status, error.errors(include_url=False)[0])
+    if isinstance(error, InvalidArgumentError):
+        return problem(status, str(error), parameter=error.parameter, value=error.value, allowed=error.allowed)
+    if isinstance(error, UnknownDatasetError):
+        allowed = "a name that /v1/datasets lists"
+        detail = f"there is no data set `{error.args[0]}`"
+        return problem(status, detail, parameter="name", value=error.args[0], allowed=allowed)
+    return problem(status, str(error))
+
+
+def _of_validation(status: int, error: pydantic_core.ErrorDetails | dict[str, Any]) -> Response:
+    kind, context = str(error["type"]), error.get("ctx", {})
+    where = [str(part) for part in error["loc"] if part not in ("query", "body", "path")]
+    name = where[0] if where else "body"  # what follows is the place inside an array
+    if kind == "missing":
+        return problem(status, f"`{name}` is missing", parameter=name, allowed="required")
+    if kind == "extra_forbidden":
+        detail = f"there is no parameter `{name}`"
+        return problem(status, detail, parameter=name, value=error["input"], allowed="see /docs")
+    if kind == "literal_error":
+        allowed = f"one of {context['expected']}"
+    elif kind.startswith("float"):
+        allowed = "a number"
+    else:
+        allowed = str(error["msg"])
+    text = str(InvalidArgumentError(name, _plain(error["input"]), allowed))
+    return problem(status, text, parameter=name, value=error["input"], allowed=allowed)
+
+
+async def _handle_http(_: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    headers = dict(error.headers) if error.headers else None
+    return problem(error.status_code, str(error.detail), headers)
+
+
+async def _handle_unknown(_: Request, __: Exception) -> Response:
+    return problem(HTTPStatus.INTERNAL_SERVER_ERROR, "an error of the service, not of the question; it was logged")
+
+
+def _plain(value: Any) -> float | str | None:
+    """A value that JSON can carry; nan and inf as words."""
+    if value is None or (isinstance(value, (int, float)) and math.isfinite(value)):
+        return value
+    return str(value)[:200]

@@ -1,0 +1,135 @@
+"""The parameters of the routes. Their ranges stand here for the description; `rocking` itself checks them."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from rocking.errors import in_range
+from rocking.pulses import PULSE_NAMES
+
+PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
+
+PulseName = Annotated[
+    str,
+    Field(description="pulse; a leading minus mirrors it", examples=["sine"], json_schema_extra={"enum": [*PULSES]}),
+]
+Slenderness = Annotated[
+    float,
+    Field(
+        description="dimensionless slenderness g tan(alpha)/a_g = 1/a [-]; from 1 on the block never uplifts",
+        examples=[0.4],
+        json_schema_extra={"exclusiveMinimum": 0},
+    ),
+]
+FrequencyRatio = Annotated[
+    float,
+    Field(description="frequency ratio omega_g/p [-]", examples=[5.0], json_schema_extra={"exclusiveMinimum": 0}),
+]
+Restitution = Annotated[
+    float,
+    Field(
+        description="coefficient of restitution eta [-]",
+        examples=[0.85],
+        json_schema_extra={"minimum": 0, "maximum": 1},
+    ),
+]
+AlphaDeg = Annotated[
+    float | None,
+    Field(description="slenderness angle alpha [deg]; absent or 0: the slender limit", examples=[0.0]),
+]
+Method = Annotated[
+    Literal["auto", "cube", "solver"],
+    Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
+]
+Tolerance = Annotated[
+    float,
+    Field(description="largest absolute error of an interpolated peak_rotation [-]", json_schema_extra={"minimum": 0}),
+]
+Format = Annotated[
+    Literal["json", "csv", "nc"] | None,
+    Field(description="form of the answer; absent: by the Accept header, else JSON (nc: netCDF-3)"),
+]
+
+
+class Question(BaseModel):
+    """What all questions share. An unknown parameter is refused, so that a slip of the pen is not ignored."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class LookupOptions(Question):
+    """How a response is to be found."""
+
+    pulse: PulseName
+    alpha_deg: AlphaDeg = None
+    method: Method = "auto"
+    tolerance: Tolerance = 1e-4
+
+
+class ResponseQuestion(LookupOptions):
+    """One block."""
+
+    slenderness: Slenderness
+    frequency_ratio: FrequencyRatio
+    restitution: Restitution
+
+
+class BatchQuestion(LookupOptions):
+    """Many blocks: numbers, or arrays of one length."""
+
+    slenderness: Slenderness | list[Slenderness]
+    frequency_ratio: FrequencyRatio | list[FrequencyRatio]
+    restitution: Restitution | list[Restitution]
+
+
+class SpectrumQuestion(LookupOptions):
+    """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
+
+    slenderness: Slenderness
+    restitution: Restitution
+    frequency_ratio_min: FrequencyRatio = 0.5
+    frequency_ratio_max: FrequencyRatio = 12.0
+    points: int = Field(200, description="points of the curve [-]", json_schema_extra={"minimum": 2})
+    format: Format = None
+
+
+class OverturningQuestion(Question):
+    """The curves that separate standing from falling."""
+
+    pulse: PulseName
+    restitution: Restitution
+    alpha_deg: AlphaDeg = None
+    format: Format = None
+
+
+class HistoryQuestion(Question):
+    """The motion of one block."""
+
+    pulse: PulseName
+    slenderness: Slenderness
+    frequency_ratio: FrequencyRatio
+    restitution: Restitution
+    alpha_deg: AlphaDeg = None
+    duration: float | None = Field(
+        None,
+        description="length tau = p t [-]; absent: the pulse and some free rocking",
+        json_schema_extra={"exclusiveMinimum": 0},
+    )
+    samples: int = Field(400, description="uniform samples [-]; the events are added", json_schema_extra={"minimum": 2})
+    format: Format = None
+
+
+def alpha_of(alpha_deg: float | None) -> float | None:
+    """Slenderness angle [rad], None for the slender limit.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is not in [0, 90) degrees.
+    """
+    if alpha_deg is None:
+        return None
+    return math.radians(float(in_range("alpha_deg", alpha_deg, 0.0, 90.0, closed="left", unit="deg"))) or None

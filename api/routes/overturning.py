@@ -1,0 +1,91 @@
+"""The curves that separate standing from falling (figure 4)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from fastapi import APIRouter, Query, Request, Response
+from numpy.typing import NDArray
+
+from api.answers import OUTCOMES, Curve, OverturningAnswer
+from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
+from api.questions import OverturningQuestion, alpha_of
+from api.service import Service, ServiceDep
+from rocking.boundary import overturning_boundary
+from rocking.errors import DatasetError, in_range
+from rocking.lookup_files import UnknownDatasetError
+from rocking.pulses import get_pulse
+
+router = APIRouter(prefix="/v1", tags=["curves"])
+
+
+@router.get("/overturning", summary="Boundary curves", response_model=OverturningAnswer, responses=CONTENT)
+async def get_overturning(
+    question: Annotated[OverturningQuestion, Query()], request: Request, service: ServiceDep
+) -> Response:
+    """The curves of the workflow; where there are none for this restitution, they are traced for this request."""
+    form = form_of(request, question.format)
+    return await service.off_loop(lambda: _overturning(service, question, form))
+
+
+def _overturning(service: Service, question: OverturningQuestion, form: str) -> Response:
+    get_pulse(question.pulse)
+    in_range("restitution", question.restitution, 0.0, 1.0)
+    curves, version = _read(service, question)
+    if curves is None:
+        curves = overturning_boundary(
+            question.pulse, restitution=question.restitution, alpha=alpha_of(question.alpha_deg)
+        )
+    if form == "nc":
+        return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
+    if form == "csv":
+        sizes = curves["row_size"].values
+        columns = {
+            "curve": np.repeat(np.arange(sizes.size), sizes).tolist(),
+            "slenderness": curves["slenderness"].values.tolist(),
+            "frequency_ratio": curves["frequency_ratio"].values.tolist(),
+            "outcome": np.repeat(_names(curves), sizes).tolist(),
+            "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
+        }
+        return csv_response(columns, "overturning")
+    source = "dataset" if version else "solver"
+    return json_response(OverturningAnswer(query=question, curves=_curves(curves), source=source, data_version=version))
+
+
+def _read(service: Service, question: OverturningQuestion) -> tuple[xr.Dataset | None, str | None]:
+    """The curves of this question in the data set of its pulse and restitution, and its sha256; None if not there."""
+    # a mirrored pulse overturns the same blocks
+    name = f"overturning/{question.pulse.removeprefix('-')}/eta-{question.restitution:.2f}"
+    catalogue = service.atlas.catalogue
+    try:
+        stored = catalogue.dataset(name)
+        version = catalogue.product(name).sha256
+    except (UnknownDatasetError, DatasetError):
+        return None, None  # /health tells of a damaged one
+    wanted = np.isclose(stored["alpha"].values, alpha_of(question.alpha_deg) or 0.0, rtol=0.0, atol=1e-12)
+    if float(stored["restitution"]) != question.restitution or not wanted.any():
+        return None, None
+    points = np.repeat(wanted, stored["row_size"].values)
+    return stored.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points)), version
+
+
+def _names(curves: xr.Dataset) -> NDArray[np.str_]:
+    return np.asarray(np.array(OUTCOMES)[curves["outcome"].values])
+
+
+def _curves(curves: xr.Dataset) -> list[Curve]:
+    ends = np.cumsum(curves["row_size"].values)
+    parts = zip(
+        np.split(curves["slenderness"].values, ends[:-1]),
+        np.split(curves["frequency_ratio"].values, ends[:-1]),
+        _names(curves).tolist(),
+        curves["impacts"].values.tolist(),
+        strict=True,
+    )
+    return [
+        Curve(outcome=outcome, impacts=impacts, slenderness=s.tolist(), frequency_ratio=w.tolist())
+        for s, w, outcome, impacts in parts
+        if s.size
+    ]

@@ -1,0 +1,53 @@
+"""A rocking spectrum: the peak against the frequency ratio (figure 8)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from fastapi import APIRouter, Query, Request, Response
+
+from api.answers import SpectrumAnswer, columns_of
+from api.formats import CONTENT, csv_response, dataset_of, form_of, json_response, netcdf_response
+from api.problems import TooLargeError
+from api.questions import SpectrumQuestion
+from api.routes.response import ask
+from api.service import Service, ServiceDep
+from rocking.errors import in_range
+
+router = APIRouter(prefix="/v1", tags=["curves"])
+
+
+@router.get(
+    "/spectrum", summary="Peak rotation against frequency ratio", response_model=SpectrumAnswer, responses=CONTENT
+)
+async def get_spectrum(
+    question: Annotated[SpectrumQuestion, Query()], request: Request, service: ServiceDep
+) -> Response:
+    """Blocks of one slenderness over a window of the frequency ratio."""
+    form = form_of(request, question.format)
+    return await service.off_loop(lambda: _spectrum(service, question, form))
+
+
+def _spectrum(service: Service, question: SpectrumQuestion, form: str) -> Response:
+    low = float(in_range("frequency_ratio_min", question.frequency_ratio_min, 0.0, np.inf, closed="neither"))
+    high = float(in_range("frequency_ratio_max", question.frequency_ratio_max, low, np.inf, closed="neither"))
+    in_range("points", question.points, 2, np.inf, closed="left")
+    if question.points > service.settings.max_samples:
+        raise TooLargeError("points", question.points, f"at most {service.settings.max_samples}")
+    frequency_ratio = np.geomspace(low, high, question.points)
+    found, versions = ask(
+        service.atlas,
+        question,
+        slenderness=question.slenderness,
+        frequency_ratio=frequency_ratio,
+        restitution=question.restitution,
+    )
+    query = question.model_dump(exclude={"format"})
+    if form == "nc":
+        attributes = {name: value for name, value in query.items() if value is not None}
+        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, found, attributes), "spectrum")
+    curve = {"frequency_ratio": frequency_ratio.tolist()} | columns_of(found)
+    if form == "csv":
+        return csv_response(curve, "spectrum")
+    return json_response(SpectrumAnswer.model_construct(query=query, data_versions=list(versions), **curve))

@@ -1,0 +1,54 @@
+"""Data sets as zarr stores, made in memory from the netCDF files when first asked."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+
+from zarr.storage import MemoryStore
+
+from rocking.lookup_files import Catalogue
+
+KEPT = 4
+"""Stores kept at once; an older one is made again when asked."""
+
+
+class ZarrViews:
+    """Keys and bytes of the zarr store of a data set.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+        Where the data sets come from.
+    """
+
+    def __init__(self, catalogue: Catalogue) -> None:
+        self._catalogue = catalogue
+        self._lock = threading.Lock()
+        self._stores: OrderedDict[str, dict[str, bytes]] = OrderedDict()
+
+    def store(self, name: str) -> tuple[str, dict[str, bytes]]:
+        """The sha256 of the netCDF file and the contents of its zarr store.
+
+        Raises
+        ------
+        UnknownDatasetError
+            If there is no data set of that name.
+        DatasetError
+            If it is damaged.
+        """
+        version = self._catalogue.product(name).sha256
+        with self._lock:
+            if version not in self._stores:
+                self._stores[version] = self._make(name)
+                while len(self._stores) > KEPT:
+                    self._stores.popitem(last=False)
+            self._stores.move_to_end(version)
+            return version, self._stores[version]
+
+    def _make(self, name: str) -> dict[str, bytes]:
+        dataset = self._catalogue.dataset(name).drop_encoding()  # netCDF's compression is not zarr's
+        content: dict[str, object] = {}
+        # zarr format 2: every client reads it with consolidated metadata, which format 3 has not yet agreed upon
+        dataset.to_zarr(MemoryStore(content), zarr_format=2, consolidated=True)  # type: ignore[arg-type]
+        return {key: value.to_bytes() for key, value in content.items()}  # type: ignore[attr-defined]
