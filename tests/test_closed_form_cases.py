@@ -216,3 +216,9 @@ def test_solver_and_closed_forms_agree_on_every_fate_outside_the_islands():
     during = np.isfinite(found.first_impact_time)
     np.testing.assert_array_equal(during, a < cf.limit_amplitude(omega))
     np.testing.assert_allclose(cf.case_1_1_impact_time(a, omega)[during], found.first_impact_time[during], rtol=1e-10)
+
+
+def test_empty_question_empty_answer():
+    nothing = np.array([])
+    assert all(part.shape == (0,) for part in cf.overturning_amplitudes(nothing, 0.9))
+    assert cf.case_1_1_end(nothing).shape == (0,)
