@@ -8,6 +8,7 @@ from .boundary import overturning_boundary as overturning_boundary
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError
+from .history import time_history as time_history
 from .lookup import Cube as Cube
 from .lookup import open_cube as open_cube
 from .pulses import PULSE_NAMES as PULSE_NAMES
@@ -15,5 +16,3 @@ from .pulses import get_pulse as get_pulse
 from .response import Outcome as Outcome
 from .response import Response as Response
 from .solve import peak_response as peak_response
-from .history import time_history as time_history
-

@@ -40,9 +40,7 @@ class Block:
         in_range("gravity", self.gravity, 0.0, math.inf, closed="neither", unit="m/s2")
 
     @classmethod
-    def from_slenderness_angle(
-        cls, alpha: float, half_diagonal: float, gravity: float = STANDARD_GRAVITY
-    ) -> Block:
+    def from_slenderness_angle(cls, alpha: float, half_diagonal: float, gravity: float = STANDARD_GRAVITY) -> Block:
         """Build a block from alpha [rad], (0, pi/2), and R [m], > 0."""
         in_range("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
         in_range("half_diagonal", half_diagonal, 0.0, math.inf, closed="neither", unit="m")

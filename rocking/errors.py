@@ -79,6 +79,7 @@ def in_range(
 
 
 def reject_range(parameter: str, value: Any, low: float, high: float, closed: str, unit: str) -> NoReturn:
+    """Raise `InvalidArgumentError` with the allowed range in words."""
     left = "[" if closed in ("both", "left") else "("
     right = "]" if closed in ("both", "right") and np.isfinite(high) else ")"
     raise InvalidArgumentError(parameter, value, f"{left}{low:g}, {high:g}{right} [{unit}]")

@@ -61,9 +61,7 @@ def time_history(
     if duration is not None:
         in_range("duration", duration, 0.0, np.inf, closed="neither")
     made = as_pulse(pulse)
-    s, omega, eta, angle = (
-        float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha)
-    )
+    s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
     end = (made.end - made.start) / omega
     horizon = end + FREE_ROCKING if duration is None else float(duration)
 

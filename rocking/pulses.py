@@ -12,6 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import final
 
 import numpy as np
@@ -48,7 +49,7 @@ class AbstractPulse(ABC):
     def monotone_pieces(self) -> tuple[tuple[float, float], ...]:
         """Intervals of phi [rad] that cover the window and on each of which f is monotone."""
         ends = (self.start, *self.stationary, self.end)
-        return tuple(zip(ends[:-1], ends[1:], strict=True))
+        return tuple(pairwise(ends))
 
 
 @final
@@ -81,9 +82,7 @@ class WaveletPulse(AbstractPulse):
 
     def mirrored(self) -> WaveletPulse:
         polynomial = tuple(-c for c in self.polynomial)
-        return WaveletPulse(
-            _mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread
-        )
+        return WaveletPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
 
 
 def _mirrored_name(name: str) -> str:
@@ -185,9 +184,7 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
     return SinusoidalPulse(unscaled.name, -end, end, stationary, terms)
 
 
-def _stationary_phases(
-    terms: tuple[tuple[float, float, float], ...], start: float, end: float
-) -> tuple[float, ...]:
+def _stationary_phases(terms: tuple[tuple[float, float, float], ...], start: float, end: float) -> tuple[float, ...]:
     """All simple zeros of f' inside the window: bracketed on a grid of 256 points a cycle, then Brent."""
 
     def slope(phi: float) -> float:

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.pulses import AbstractPulse, get_pulse
 from rocking.response import Response
-from rocking.scratch import prepared
 from rocking.rock import rock_many
+from rocking.scratch import prepared
 
 CHUNK = 4096
 """Cells handed to one thread at a time: about a millisecond of work, fine enough to balance the threads."""
