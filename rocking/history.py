@@ -78,7 +78,9 @@ def time_history(
     rotation, velocity = np.zeros(tau.size), np.zeros(tau.size)
     answer = prepared(made).copy()
     rock(s, omega, eta, angle, answer, tau, rotation, velocity, nothing)
-    rock_freely(answer, eta, end, horizon, FALLEN, tau, rotation, velocity, np.empty(FREE_IMPACTS))
+    # a step fills the samples before its end: the last one has to lie inside
+    beyond = horizon * (1 + 1e-12)
+    rock_freely(answer, eta, end, beyond, FALLEN, tau, rotation, velocity, np.empty(FREE_IMPACTS))
     outcome = Outcome(int(answer["outcome"]))
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
         fallen = np.flatnonzero(np.abs(rotation) > FALLEN)
