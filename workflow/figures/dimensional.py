@@ -18,6 +18,9 @@ from rocking.pulses import get_pulse
 
 Array = NDArray[np.float64]
 
+AT_REST = 1e-9
+"""Angular velocity in units of p alpha below which free rocking counts as over [-]."""
+
 
 @dataclass(frozen=True)
 class Shaken:
@@ -59,11 +62,14 @@ class Shaken:
                 max_step=self.pulse_period / 50, events=_impact(sign, start), dense_output=True,
             )  # fmt: skip
             inside = (time >= start) & (time <= arc.t[-1])
-            theta[inside], velocity[inside] = arc.sol(time[inside])
+            if inside.any():
+                theta[inside], velocity[inside] = arc.sol(time[inside])
             start, state = arc.t[-1], arc.y[:, -1].copy()
             if arc.status == 1:  # an impact: theta = 0, (2.3)
                 state[0], sign = 0.0, -sign
                 state[1] *= self.restitution
+                if start >= pulse_end and abs(state[1]) < AT_REST * self.block.frequency_parameter * self.block.alpha:
+                    break  # the impacts of free rocking accumulate, and it rests
             start = np.nextafter(start, np.inf)
         return theta, velocity
 

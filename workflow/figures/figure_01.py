@@ -75,7 +75,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 def _draw_block(ax: Axes, data: xr.Dataset) -> None:
     rest, turned = data.at_rest.values, data.rotated.values
-    b, h, alpha, theta = (data.attrs[name] for name in ("half_width", "half_height", "alpha", "rotation"))
+    b, h = data.attrs["half_width"], data.attrs["half_height"]
     pivot, centre = turned[0], turned[4]
     R = np.hypot(b, h)
     ax.set_aspect("equal")

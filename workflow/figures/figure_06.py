@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.block import STANDARD_GRAVITY
-from rocking.solve import time_history
+from rocking.history import time_history
 from workflow.figures import figure_05
 from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, make_figure, panel_letters, plotted
 from workflow.scripts.job import run

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.solve import time_history
+from rocking.history import time_history
 from workflow.figures.style import GREY, WIDTH, make_figure, panel_letters, plotted, shades
 from workflow.scripts.job import run
 
@@ -80,16 +80,18 @@ def draw(data: xr.Dataset) -> Figure:
     labels = {"rotation": r"$g\theta/a_g$ [-]", "angular_velocity": r"$g\dot{\theta}/(p\,a_g)$ [-]"}
     colours = shades(data.restitution.size)
     for row, (name, label) in zip(axes, labels.items(), strict=True):
-        for i, (ax, pulse) in enumerate(zip(row, pulses, strict=True)):
+        for i, ax in enumerate(row):
             for colour, eta in zip(colours, data.restitution.values, strict=True):
                 ax.plot(data.tau, data[name][i].sel(restitution=eta), color=colour, label=f"{eta:.2f}", linewidth=0.9)
             ax.axhline(0, color=GREY, linewidth=0.5)
-            ax.text(0.98, 0.97, f"{pulse} pulse", transform=ax.transAxes, ha="right", va="top")
         row[0].set_ylabel(label)
+    for ax, pulse in zip(axes[0], pulses, strict=True):
+        ax.set_title(f"{pulse} pulse")
     for ax in axes[1]:
         ax.set_xlabel(r"time since the start of the pulse $\tau=pt$ [-]")
         ax.set_xlim(0, float(data.tau.max()))
-    axes[0, 0].legend(title=r"$\eta$", loc="lower right", ncols=3, title_fontsize=7)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, [rf"$\eta={label}$" for label in labels], loc="outside upper center", ncols=len(labels))
     panel_letters(axes.ravel())
     return figure
 

@@ -17,6 +17,8 @@ from rocking.cube import read_spectrum
 from workflow.figures.style import WIDTH, make_figure, panel_letters, plotted, shades
 from workflow.scripts.job import run
 
+DASHED = {"color": "black", "linestyle": (0, (2, 3)), "linewidth": 0.6}
+
 
 def data(
     *,
@@ -86,7 +88,7 @@ def draw(data: xr.Dataset) -> Figure:
                 place = {"slenderness": s, "restitution": one}
                 ax.plot(omega, data.spectrum[i].sel(place), color=colour, linewidth=0.9)
                 if pulse == "sine":
-                    ax.plot(omega, data.closed_form.sel(place), color=colour, linestyle=(0, (2, 2)), linewidth=0.8)
+                    ax.plot(omega, data.closed_form.sel(place), **DASHED)
             ax.text(
                 0.98, 0.96, rf"{pulse}, $g\alpha/a_g={s:.2f}$", transform=ax.transAxes, ha="right", va="top"
             )  # fmt: skip
@@ -95,6 +97,9 @@ def draw(data: xr.Dataset) -> Figure:
     for ax in axes[-1]:
         ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
         ax.set_xlim(omega[0], omega[-1])
+    axes[0, 0].plot([], [], color=colours[eta.size // 2], label="solved event by event")
+    axes[0, 0].plot([], [], label="closed form (4.13)", **DASHED)
+    axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.9))
     steps = np.diff(eta, prepend=2 * eta[0] - eta[1] if eta.size > 1 else eta[0] - 0.02)
     norm = BoundaryNorm([*(eta - steps / 2), eta[-1] + steps[-1] / 2], eta.size)
     bar = figure.colorbar(ScalarMappable(norm, ListedColormap(colours)), ax=axes, ticks=eta, aspect=40, pad=0.01)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import traceback
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
@@ -27,8 +26,8 @@ def run(task: Callable[..., None], snakemake: Any) -> None:
         try:
             task(**paths, **dict(snakemake.params.items()))
         except BaseException:
-            traceback.print_exc()
-            sys.exit(1)  # the traceback stands in the log, which Snakemake shows
+            traceback.print_exc()  # into the log, which Snakemake shows when a job fails
+            raise
 
 
 def _paths(value: Any) -> Path | list[Path]:

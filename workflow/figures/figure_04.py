@@ -1,0 +1,143 @@
+"""Figure 4: overturning curves of the sine in closed form, the regions they bound, and the islands they miss."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
+from rocking.cube import read_dataset
+from workflow.figures.style import BLACK, GREY, WIDTH, make_figure, panel_letters, plotted, shades
+from workflow.scripts.job import run
+
+POINTS = 401
+
+
+def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Dataset:
+    """Closed forms over frequency ratio, and the traced points of islands, as amplitudes a = a_g/(g alpha).
+
+    Parameters
+    ----------
+    boundaries : sequence of paths
+        Traced boundaries of the sine, one file for each restitution.
+    restitution : sequence
+        eta [-].
+    """
+    eta = np.array(restitution)
+    tips = _tips(eta)
+    near = tips[:, None] * (1 - 0.05 * np.linspace(0.0, 1.0, 21) ** 2)  # the curves turn back there
+    omega = np.union1d(np.geomspace(0.2, 8.5, POINTS), near[near < 8.5])
+    closed = overturning_amplitudes(omega, eta[:, None])
+    islands = [_islands(path) for path in boundaries]
+    dims = ("restitution", "frequency_ratio")
+    return xr.Dataset(
+        {
+            "falls_from": plotted(
+                dims, closed.falls_from, "overturns after one impact from here", equation="3.18, 3.30"
+            ),
+            "safe_again": plotted(dims, closed.safe_again, "overturns after one impact up to here", equation="3.18"),
+            "direct": plotted("frequency_ratio", closed.direct[0], "overturns without impact above", equation="3.10"),
+            "limit": plotted(
+                "frequency_ratio", limit_amplitude(omega), "first impact at the end of the pulse", equation="3.31"
+            ),
+            "island_amplitude": plotted("point", np.concatenate([a for a, *_ in islands]), "boundary of an island"),
+            "island_frequency_ratio": plotted("point", np.concatenate([w for _, w, _ in islands]), "its omega"),
+            "island_impacts": plotted("point", np.concatenate([n for *_, n in islands]), "impacts before overturning"),
+            "island_restitution": plotted(
+                "point", np.repeat(eta, [len(a) for a, *_ in islands]), "its coefficient of restitution"
+            ),
+        },
+        coords={
+            "restitution": plotted("restitution", eta, "coefficient of restitution"),
+            "frequency_ratio": plotted("frequency_ratio", omega, "frequency ratio omega_g/p"),
+        },
+        attrs={
+            "title": "Overturning of the slender block by one full sine",
+            "summary": "Curves in closed form and the boundaries of overturning after three or more impacts.",
+        },
+    )
+
+
+def _tips(eta: np.ndarray) -> np.ndarray:
+    """Frequency ratios just short of where the two branches of each restitution meet."""
+    low, high = np.full(eta.size, 2.0), np.full(eta.size, 60.0)
+    for _ in range(60):  # overturning after one impact ends once and for all
+        middle = 0.5 * (low + high)
+        falls = np.isfinite(case_1_2_amplitudes(middle, eta).upper) | (middle < case_1_1_end(eta))
+        low, high = np.where(falls, middle, low), np.where(falls, high, middle)
+    return low
+
+
+def _islands(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Amplitudes, frequency ratios and impacts of the points on curves that the closed forms miss."""
+    curves = read_dataset(path)
+    rows = curves.row_size.values
+    on_island = np.repeat(curves.island.values == 1, rows)
+    impacts = np.repeat(curves.impacts.values, rows)
+    return 1 / curves.slenderness.values[on_island], curves.frequency_ratio.values[on_island], impacts[on_island]
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """The whole control plane on the left, the islands near the tip of the safe region on the right."""
+    figure = Figure(figsize=(WIDTH, 3.9))
+    left, right = figure.subplots(1, 2, width_ratios=[1.7, 1])
+    _curves(left, data, islands=False)
+    _curves(right, data, islands=True)
+    left.set_yscale("log")
+    left.set_ylim(1, 12)
+    left.set_yticks([1, 2, 3, 4, 5, 6, 8, 10, 12], labels=["1", "2", "3", "4", "5", "6", "8", "10", "12"])
+    left.minorticks_off()
+    left.set_xlim(0.2, 8.5)
+    for x, y, text in (
+        (1.75, 6.0, "overturns without impact,\ncase 2"),
+        (3.4, 2.85, "overturns,\ncase 1.2"),
+        (2.65, 1.7, "overturns,\ncase 1.1"),
+        (6.6, 1.5, "safe, first impact\nwhile the pulse acts"),
+        (7.3, 4.0, "safe, first impact\nafter the pulse"),
+    ):
+        left.text(x, y, text, ha="center", va="center", fontsize=7, color="#333333")
+    left.annotate("(3.10)", (5.6, 8.9), ha="right", va="bottom", fontsize=7)
+    left.annotate("(3.31)", (8.4, 2.98), ha="right", va="bottom", fontsize=7, color=GREY)
+    right.set_xlim(0.3, 1.35)
+    right.set_ylim(1.04, 1.18)
+    right.text(
+        0.97, 0.06, "points: overturning after\n3, 5, ... impacts", transform=right.transAxes, ha="right", fontsize=7
+    )
+    left.legend(loc="lower right", ncols=2, fontsize=6.5)
+    for ax in (left, right):
+        ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
+    left.indicate_inset([0.3, 1.04, 1.05, 0.14], edgecolor=GREY)
+    left.text(1.42, 1.09, "(b)", fontsize=7, color=GREY, va="center")
+    left.set_ylabel(r"amplitude $a=a_g/(g\alpha)$ [-]")
+    panel_letters([left, right])
+    return figure
+
+
+def _curves(ax: Axes, data: xr.Dataset, *, islands: bool) -> None:
+    omega = data.frequency_ratio.values
+    for colour, eta in zip(shades(data.restitution.size), data.restitution.values, strict=True):
+        one = data.sel(restitution=eta)
+        known = np.isfinite(one.falls_from.values)
+        # down one branch and back along the other, joined at the tip unless that lies outside the panel
+        joint = [np.nan] if known[-1] else []
+        ax.plot(
+            np.concatenate([omega[known], joint, omega[known][::-1]]),
+            np.concatenate([one.falls_from.values[known], joint, one.safe_again.values[known][::-1]]),
+            color=colour,
+            label=rf"$\eta={eta:.2f}$",
+        )
+        here = data.island_restitution.values == eta
+        if islands:
+            ax.plot(data.island_frequency_ratio[here], data.island_amplitude[here], ".", color=colour, markersize=1.4)
+    ax.plot(omega, data.direct, color=BLACK, linewidth=1.4)
+    ax.plot(omega, data.limit, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
+
+
+if __name__ == "__main__":
+    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -1,0 +1,108 @@
+"""Extra figure: how well peak rotation scales with eta squared, (4.16), over the control space of the sine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, Normalize, TwoSlopeNorm
+from matplotlib.figure import Figure
+
+from rocking.closed_form import limit_amplitude, small_peak
+from rocking.cube import read_spectrum
+from rocking.scale_law import largest_deviation, restitution_exponent
+from workflow.figures.style import WIDTH, make_figure, panel_letters, plotted
+from workflow.scripts.job import run
+
+
+def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: float) -> xr.Dataset:
+    """Errors of the law where the block survives for every restitution.
+
+    Parameters
+    ----------
+    cubes : sequence of paths
+        Spectrum cubes of the sine, one for each restitution.
+    restitution : sequence
+        eta [-].
+    reference : float
+        The eta from which the law predicts the others [-].
+    """
+    opened = [read_spectrum(path).sel(alpha=0.0) for path in cubes]
+    eta = np.array(restitution)
+    peaks = np.stack([cube.peak_rotation.values for cube in opened])
+    s, omega = opened[0].slenderness.values, opened[0].frequency_ratio.values
+    survives = np.isfinite(peaks).all(axis=0)
+    peaks[:, ~survives] = np.nan
+    closed = small_peak(1 / s[:, None], omega, eta[:, None, None])
+    dims = ("slenderness", "frequency_ratio")
+    return xr.Dataset(
+        {
+            "deviation": plotted(
+                dims,
+                largest_deviation(peaks, eta, reference=reference),
+                "largest relative error over eta, predicted from the reference eta",
+                equation="4.16",
+            ),
+            "exponent": plotted(
+                dims, restitution_exponent(peaks, eta), "exponent n of peak = constant eta^n", equation="4.16"
+            ),
+            "closed_form_error": plotted(
+                dims, np.abs(closed / peaks - 1).max(axis=0), "largest relative error with f = 1 - D0*", equation="4.16"
+            ),
+        },
+        coords={
+            "slenderness": plotted("slenderness", s, "dimensionless slenderness g alpha/a_g"),
+            "frequency_ratio": plotted("frequency_ratio", omega, "frequency ratio omega_g/p"),
+            "limit": plotted("frequency_ratio", 1 / limit_amplitude(omega), "slenderness of (3.31)", equation="3.31"),
+        },
+        attrs={
+            "title": "Error of the scale law for the coefficient of restitution, sine pulse",
+            "summary": f"Peak rotation against eta squared for eta from {eta.min()} to {eta.max()}, relative to "
+            f"eta = {reference}; missing where the block overturns for one of them.",
+            "restitution": eta,
+            "reference": reference,
+        },
+    )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Error with f measured at one eta; fitted exponent; error with the closed form f."""
+    figure = Figure(figsize=(WIDTH, 2.9))
+    axes = figure.subplots(1, 3, sharey=True)
+    error = LogNorm(1e-3, 1.0)
+    eta = data.attrs["reference"]
+    panels: tuple[tuple[str, str, Normalize, str], ...] = (
+        ("deviation", "viridis_r", error, f"error, from $\\eta={eta:.2f}$ [-]"),
+        ("exponent", "PuOr", TwoSlopeNorm(2.0, 0.0, 4.0), "exponent of $\\eta$ [-]"),
+        ("closed_form_error", "viridis_r", error, "error, $f=1-D_0^*$ [-]"),
+    )  # fmt: skip
+    for ax, (name, colours, norm, label) in zip(axes, panels, strict=True):
+        _map(ax, data, name, colours, norm, label)
+    axes[0].set_ylabel(r"dimensionless slenderness $g\alpha/a_g$ [-]")
+    panel_letters(axes)
+    return figure
+
+
+def _map(ax: Axes, data: xr.Dataset, name: str, colours: str, norm: Normalize, label: str) -> None:
+    omega, s = data.frequency_ratio.values, data.slenderness.values
+    ax.set_facecolor("#DDDDDD")  # overturns for one eta at least
+    mesh = ax.pcolormesh(omega, s, data[name], cmap=colours, norm=norm, rasterized=True, shading="nearest")
+    ax.plot(omega, data.limit, color="black", linewidth=1)
+    ax.annotate("(3.31)", (omega[-1], float(data.limit[-1])), xytext=(-2, -3), textcoords="offset points", ha="right",
+                va="top", fontsize=7)  # fmt: skip
+    ax.set_xlabel(r"frequency ratio $\omega_g/p$ [-]")
+    ax.set_xlim(omega[0], omega[-1])
+    ax.set_ylim(s[0], s[-1])
+    ax.text(0.04, 0.04, "overturns", transform=ax.transAxes, fontsize=7, color="#555555")
+    bar = ax.figure.colorbar(mesh, ax=ax, location="top", extend="both", pad=0.02)
+    bar.set_label(label)
+    bar.ax.tick_params(labelsize=6)
+    bar.ax.minorticks_off()
+
+
+if __name__ == "__main__":
+    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -1,0 +1,51 @@
+"""Table 1: products of the unit orientations, computed from Siano's rules (4.4) and (4.5)."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from rocking.orientation import Orientation, multiplication_table
+from workflow.figures.style import make_figure, plotted
+from workflow.scripts.job import run
+
+
+def data() -> xr.Dataset:
+    """The table as indices of l_0, l_x, l_y, l_z."""
+    order = list(Orientation)
+    table = np.array([[order.index(product) for product in row] for row in multiplication_table()], dtype=np.int8)
+    flags = {"flag_values": np.arange(len(order), dtype=np.int8), "flag_meanings": "l_0 l_x l_y l_z"}
+    element = plotted("left", np.arange(len(order), dtype=np.int8), "left factor", **flags)
+    return xr.Dataset(
+        {"product": plotted(("left", "right"), table, "product of unit orientations", equation="4.4", **flags)},
+        coords={"left": element, "right": plotted("right", element.values, "right factor", **flags)},
+        attrs={
+            "title": "Multiplication table of the unit orientations",
+            "summary": "Row times column in the group of Siano (1985), a Klein four-group.",
+        },
+    )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """The table, row times column."""
+    symbols = ["$l_0$", "$l_x$", "$l_y$", "$l_z$"]
+    figure = Figure(figsize=(2.6, 1.5))
+    ax = figure.subplots()
+    ax.set_axis_off()
+    cells = [[symbols[int(k)] for k in row] for row in data["product"].values]
+    table = ax.table(cells, rowLabels=symbols, colLabels=symbols, cellLoc="center", rowLoc="center", loc="center")
+    table.scale(1, 1.25)
+    width = 1 / (len(symbols) + 1)
+    for (row, column), cell in table.get_celld().items():
+        cell.set_linewidth(0.4)
+        cell.set_width(width)
+        if row == 0 or column == -1:
+            cell.set_facecolor("#E4EEF6")
+    return figure
+
+
+if __name__ == "__main__":
+    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

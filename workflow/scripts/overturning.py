@@ -1,0 +1,90 @@
+"""Traces the overturning boundaries of one pulse; for the sine, beside the closed forms with their difference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from rocking.boundary import RESOLUTION, overturning_boundary
+from rocking.closed_form import overturning_amplitudes
+from rocking.cube import MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
+from rocking.response import Outcome
+from workflow.scripts.job import run
+
+
+def main(
+    *,
+    pulse: str,
+    restitution: Sequence[float],
+    boundary: Mapping[str, Mapping[str, float]],
+    boundaries: Sequence[Path],
+    provenance: Mapping[str, str],
+) -> None:
+    """Trace one set of curves per restitution [-] inside the configured window and write it to its path."""
+    window = {name: (limits["low"], limits["high"]) for name, limits in boundary.items()}
+    for eta, path in zip(restitution, boundaries, strict=True):
+        curves = curves_of(pulse, eta, window)
+        write_dataset(describe(curves, **provenance), path)
+        print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
+
+
+def curves_of(pulse: str, restitution: float, window: Mapping[str, tuple[float, float]]) -> xr.Dataset:
+    """The boundary curves with our attributes: contiguous ragged polylines, `row_size` points each."""
+    traced = overturning_boundary(pulse, restitution=restitution, **window)
+    if pulse == "sine":
+        traced = traced.assign(_closed_forms(traced, restitution))
+    traced["outcome"].attrs |= VARIABLES["outcome"][1] | {"long_name": "fate on the overturning side"}
+    traced["alpha"] = xr.Variable(
+        "curve",
+        np.zeros(traced.sizes["curve"]),
+        {"units": "rad", "long_name": "slenderness angle of the block, 0 for the slender limit"},
+    )
+    for name in ("slenderness", "frequency_ratio", "impacts"):
+        traced[name].attrs |= MODEL_RESULT
+    return describe(
+        traced.drop_attrs(deep=False).assign_coords(scalar_coordinates(pulse, restitution)),
+        title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
+        summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
+        f"overturn from blocks which survive, each point bisected with the solver to {RESOLUTION:g}.",
+        history="rocking.boundary.overturning_boundary",
+        id=f"overturning/{pulse}/eta-{restitution:.2f}",
+    )
+
+
+def _closed_forms(traced: xr.Dataset, restitution: float) -> dict[str, xr.Variable]:
+    """Slenderness by (3.10), (3.18), (3.20) with (3.21) at the frequency ratio of each traced point of that mode."""
+    rows = traced.row_size.values
+    outcome, impacts = (np.repeat(traced[name].values, rows) for name in ("outcome", "impacts"))
+    s, omega = traced.slenderness.values, traced.frequency_ratio.values
+    closed = overturning_amplitudes(omega, restitution)
+    once = [1 / closed.falls_from, 1 / closed.safe_again]  # the curve of one impact has two branches: the nearer one
+    nearer = np.where(np.abs(once[0] - s) <= np.abs(once[1] - s), once[0], once[1])
+    nearer = np.where(np.isnan(once[0]), np.nan, nearer)
+    expected = np.where(
+        outcome == Outcome.OVERTURNED_DIRECTLY, 1 / closed.direct, np.where(impacts == 1, nearer, np.nan)
+    )
+    island = np.where(traced.impacts.values > 1, 1, 0).astype(np.int8)
+    return {
+        "closed_form_slenderness": xr.Variable(
+            "point",
+            expected,
+            {**MODEL_RESULT, "long_name": "slenderness of the boundary in closed form", "equation": "3.10, 3.18, 3.20",
+             "comment": "missing for overturning after three or more impacts, which has no closed form"},
+        ),
+        "closed_form_difference": xr.Variable(
+            "point", s - expected, {**MODEL_RESULT, "long_name": "traced minus closed form slenderness"}
+        ),
+        "island": xr.Variable(
+            "curve",
+            island,
+            {"units": "1", "long_name": "overturning after three or more impacts, which the closed forms miss",
+             "flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"},
+        ),
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    run(main, snakemake)  # noqa: F821  (given by Snakemake)
