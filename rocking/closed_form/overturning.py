@@ -39,9 +39,9 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
 
     Notes
     -----
-    Not complete, whatever the paper says: near the tip of the safe region (1/a from 0.90 to 0.99, omega from 0.2 to
-    1.1) there are islands where the block overturns after three, five or more impacts, always an odd number, all
-    before the pulse ends. They are not among these curves; everywhere else the curves are the whole truth.
+    Not complete, whatever the paper says: near the tip of the safe region (1/a > 0.897, omega < 1.1) there are islands
+    where the block overturns after three, five or more impacts, always an odd number, all before the pulse ends. They
+    are not among these curves. Everywhere else 900 000 random blocks, eta from 0.3 to 1, had the fate told by them.
     """
     during = case_1_1_amplitudes(frequency_ratio, restitution)
     after = case_1_2_amplitudes(frequency_ratio, restitution)
