@@ -1,0 +1,129 @@
+"""A block in metres under a pulse in m/s2 and seconds."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field, JsonValue
+
+from api.answers import ResponseAnswer, response_answer
+from api.questions import Method, PulseName, Question, ResponseQuestion, Tolerance
+from api.routes.response import ask
+from api.service import Service, ServiceDep
+from rocking.block import STANDARD_GRAVITY, Block
+from rocking.boundary import critical_amplitude
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.groups import GroupSet, Problem, groups_of
+
+router = APIRouter(prefix="/v1/blocks", tags=["response"])
+
+_Positive: dict[str, JsonValue] = {"exclusiveMinimum": 0}
+
+
+class BlockQuestion(Question):
+    """A block and a pulse in SI units."""
+
+    pulse: PulseName
+    half_width: float = Field(description="b [m]; the base is 2b wide", examples=[0.2], json_schema_extra=_Positive)
+    half_height: float = Field(description="h [m]", examples=[0.8], json_schema_extra=_Positive)
+    peak_acceleration: float = Field(description="a_g [m/s2]", examples=[4.0], json_schema_extra=_Positive)
+    pulse_period: float = Field(description="T_p = 2 pi/omega_g [s]", examples=[0.5], json_schema_extra=_Positive)
+    restitution: Literal["housner"] | float = Field("housner", description="eta [-], or housner: (2.4)")
+    gravity: float = Field(STANDARD_GRAVITY, description="g [m/s2]", json_schema_extra=_Positive)
+    method: Method = "auto"
+    tolerance: Tolerance = 1e-4
+
+
+class Threshold(BaseModel):
+    """An amplitude at which the fate changes."""
+
+    peak_acceleration: float = Field(description="a_g [m/s2]")
+    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+
+
+class BlockAnswer(BaseModel):
+    """What happens to the block."""
+
+    query: BlockQuestion
+    response: ResponseAnswer = Field(description="the same question and answer in dimensionless groups")
+    overturned: bool
+    meaning: str
+    peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
+    top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
+    alpha_deg: float = Field(description="slenderness angle [deg]")
+    half_diagonal: float = Field(description="R [m]")
+    frequency_parameter: float = Field(description="p [rad/s]")
+    restitution: float = Field(description="eta [-]")
+    uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
+    thresholds: list[Threshold] = Field(description="all amplitudes at which the fate changes, this period, ascending")
+    largest_safe_acceleration: float | None = Field(
+        description="amplitude below which no block of this shape falls at this period [m/s2]; null: none found"
+    )
+    friction_at_uplift: float = Field(
+        description="coefficient of friction below which it slides instead of rocking [-]"
+    )
+
+
+@router.get("/response", summary="A block in SI units")
+async def get_block(question: Annotated[BlockQuestion, Query()], service: ServiceDep) -> BlockAnswer:
+    """Fate, rotation in degrees, displacement in metres, and the amplitudes at which the fate changes, by (2.2)."""
+    return await service.off_loop(lambda: _block(service, question))
+
+
+def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
+    block = Block(question.half_width, question.half_height, question.gravity)
+    eta = _restitution(block, question.restitution)
+    period = float(in_range("pulse_period", question.pulse_period, 0.0, math.inf, closed="neither", unit="s"))
+    frequency = 2.0 * math.pi / period
+    problem = Problem(block.alpha, block.frequency_parameter, question.peak_acceleration, frequency, question.gravity)
+    groups = groups_of(problem, GroupSet.RIGID)  # (5.3)
+    asked = ResponseQuestion(
+        pulse=question.pulse,
+        method=question.method,
+        tolerance=question.tolerance,
+        alpha_deg=math.degrees(block.alpha),
+        slenderness=float(groups.slenderness),  # type: ignore[arg-type]
+        frequency_ratio=float(groups.frequency_ratio),  # type: ignore[arg-type]
+        restitution=eta,
+    )
+    points = {name: getattr(asked, name) for name in ("slenderness", "frequency_ratio", "restitution")}
+    found = response_answer(asked, *ask(service.atlas, asked, **points))
+    changes = critical_amplitude(
+        question.pulse, frequency_ratio=asked.frequency_ratio, restitution=eta, alpha=block.alpha
+    )
+    thresholds = [
+        Threshold(peak_acceleration=float(a) * block.uplift_acceleration, overturns_above=bool(above))
+        for a, above in zip(changes.amplitude, changes.overturns_above, strict=True)
+    ]
+    peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
+    return BlockAnswer(
+        query=question,
+        response=found,
+        overturned=found.overturned,
+        meaning=found.meaning,
+        peak_rotation_deg=None if peak is None else math.degrees(peak),
+        top_displacement=None if peak is None else _top_displacement(block, peak),
+        alpha_deg=math.degrees(block.alpha),
+        half_diagonal=block.half_diagonal,
+        frequency_parameter=block.frequency_parameter,
+        restitution=eta,
+        uplift_acceleration=block.uplift_acceleration,
+        thresholds=thresholds,
+        largest_safe_acceleration=thresholds[0].peak_acceleration if thresholds else None,
+        friction_at_uplift=block.half_width / block.half_height,
+    )
+
+
+def _restitution(block: Block, asked: str | float) -> float:
+    if isinstance(asked, float):
+        return asked
+    if block.housner_restitution < 0.0:
+        raise InvalidArgumentError("restitution", "housner", "a number: (2.4) is negative for so stocky a block")
+    return block.housner_restitution
+
+
+def _top_displacement(block: Block, rotation: float) -> float:
+    """Horizontal way of the top corner above the pivot, at height 2h over it, [m]."""
+    return 2.0 * block.half_height * math.sin(rotation)

@@ -1,0 +1,151 @@
+"""GET /v1/spectrum, /v1/overturning and /v1/history, in every form."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from rocking.history import time_history
+from rocking.solve import peak_response
+from tests.service.conftest import assert_problem, client_of
+
+BLOCK = {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 50}
+ROUTES = {
+    "/v1/spectrum": SPECTRUM,
+    "/v1/overturning": {"pulse": "sine", "restitution": 0.85},
+    "/v1/history": BLOCK,
+}
+
+
+def read_netcdf(response):
+    assert response.headers["content-type"] == "application/x-netcdf"
+    return xr.open_dataset(io.BytesIO(response.content), engine="scipy").load()
+
+
+def read_csv(response):
+    assert response.headers["content-type"].startswith("text/csv")
+    return list(csv.DictReader(io.StringIO(response.text)))
+
+
+def test_spectrum_lies_within_its_bounds(client):
+    answer = client.get("/v1/spectrum", params=SPECTRUM).json()
+    truth = peak_response("sine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 50), restitution=0.85)
+    assert answer["frequency_ratio"] == np.geomspace(0.5, 12.0, 50).tolist()
+    assert answer["overturned"] == truth.overturned.tolist()
+    assert any(answer["overturned"])
+    assert {"cube", "solver"} >= set(answer["source"])
+    for peak, bound, exact in zip(answer["peak_rotation"], answer["error_bound"], truth.peak_rotation, strict=True):
+        assert peak is None or abs(peak - exact) <= bound
+
+
+def test_the_three_forms_of_a_spectrum_agree(client):
+    answer = client.get("/v1/spectrum", params=SPECTRUM).json()
+    rows = read_csv(client.get("/v1/spectrum", params=SPECTRUM | {"format": "csv"}))
+    stored = read_netcdf(client.get("/v1/spectrum", params=SPECTRUM, headers={"accept": "application/x-netcdf"}))
+    assert [row["outcome"] for row in rows] == answer["outcome"]
+    assert [float(row["peak_rotation"]) if row["peak_rotation"] else None for row in rows] == answer["peak_rotation"]
+    np.testing.assert_array_equal(
+        stored["peak_rotation"], [np.nan if peak is None else peak for peak in answer["peak_rotation"]]
+    )
+    assert stored.attrs["slenderness"] == 0.6
+
+
+def test_overturning_reads_the_curves_of_the_workflow(client, results):
+    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+    stored = xr.load_dataset(results / "overturning" / "sine" / "eta-0.85.nc")
+    assert answer["source"] == "dataset"
+    assert answer["data_version"] == client.get("/v1/datasets/overturning/sine/eta-0.85").json()["sha256"]
+    assert [len(curve["slenderness"]) for curve in answer["curves"]] == stored["row_size"].values.tolist()
+    np.testing.assert_array_equal(
+        np.concatenate([curve["slenderness"] for curve in answer["curves"]]), stored["slenderness"]
+    )
+    assert {curve["outcome"] for curve in answer["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
+
+
+@pytest.mark.parametrize("changes", [{"restitution": 0.5}, {"pulse": "half_sine"}])
+def test_overturning_traces_curves_that_are_not_stored(client, changes):
+    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | changes).json()
+    assert (answer["source"], answer["data_version"]) == ("solver", None)
+    curve = max(answer["curves"], key=lambda curve: len(curve["slenderness"]))
+    assert curve["outcome"].startswith("OVERTURNED")
+    for s, w in list(zip(curve["slenderness"], curve["frequency_ratio"], strict=True))[::40]:
+        beside = s * (1 + np.array([-1e-9, 1e-9]))
+        pulse, eta = changes.get("pulse", "sine"), changes.get("restitution", 0.85)
+        fate = peak_response(pulse, slenderness=beside, frequency_ratio=w, restitution=eta).overturned
+        assert fate[0] != fate[1] or s < 0.02
+
+
+def test_damaged_curves_are_traced_instead(own_results):
+    (own_results / "overturning" / "sine" / "eta-0.85.nc").write_bytes(b"not a netCDF file")
+    with client_of(own_results) as client:
+        assert client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()["source"] == "solver"
+
+
+def test_overturning_as_csv_and_netcdf(client):
+    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+    rows = read_csv(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "csv"}))
+    stored = read_netcdf(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "nc"}))
+    points = sum(len(curve["slenderness"]) for curve in answer["curves"])
+    assert len(rows) == stored.sizes["point"] == points
+    assert int(rows[-1]["curve"]) == stored.sizes["curve"] - 1
+
+
+def test_history_is_the_solver_s(client):
+    answer = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
+    truth = time_history(**BLOCK, samples=50)
+    for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
+        assert answer[name] == truth[name].values.tolist()
+    assert answer["outcome"] == "SAFE"
+    assert answer["peak_rotation"] == pytest.approx(max(map(abs, answer["rotation"])), rel=0.05)
+
+
+def test_history_of_a_block_that_falls_has_no_peak(client):
+    answer = client.get("/v1/history", params=BLOCK | {"slenderness": 0.1, "duration": 3.0}).json()
+    assert answer["overturned"]
+    assert answer["peak_rotation"] is None
+    assert answer["tau"][-1] <= 3.0
+
+
+def test_history_as_csv_and_netcdf(client):
+    rows = read_csv(client.get("/v1/history", params=BLOCK | {"format": "csv"}))
+    stored = read_netcdf(client.get("/v1/history", params=BLOCK | {"format": "nc"}))
+    assert [float(row["rotation"]) for row in rows] == stored["rotation"].values.tolist()
+
+
+@pytest.mark.parametrize(
+    ("route", "changes", "status", "parameter"),
+    [
+        ("/v1/spectrum", {"pulse": "sinus"}, 422, "pulse"),
+        ("/v1/spectrum", {"slenderness": "nan"}, 422, "slenderness"),
+        ("/v1/spectrum", {"frequency_ratio_min": 0}, 422, "frequency_ratio_min"),
+        ("/v1/spectrum", {"frequency_ratio_max": 0.1}, 422, "frequency_ratio_max"),
+        ("/v1/spectrum", {"points": 1}, 422, "points"),
+        ("/v1/spectrum", {"points": 1.5}, 422, "points"),
+        ("/v1/spectrum", {"points": 10**9}, 413, "points"),
+        ("/v1/spectrum", {"format": "xml"}, 422, "format"),
+        ("/v1/spectrum", {"restitution": 0.7, "method": "cube"}, 422, "restitution"),
+        ("/v1/overturning", {"pulse": "sinus"}, 422, "pulse"),
+        ("/v1/overturning", {"restitution": 2}, 422, "restitution"),
+        ("/v1/overturning", {"restitution": "nan"}, 422, "restitution"),
+        ("/v1/overturning", {"alpha_deg": -1}, 422, "alpha_deg"),
+        ("/v1/history", {"pulse": "sinus"}, 422, "pulse"),
+        ("/v1/history", {"slenderness": 0}, 422, "slenderness"),
+        ("/v1/history", {"duration": -1}, 422, "duration"),
+        ("/v1/history", {"duration": "inf"}, 422, "duration"),
+        ("/v1/history", {"samples": 1}, 422, "samples"),
+        ("/v1/history", {"samples": 10**9}, 413, "samples"),
+        ("/v1/history", {"colour": "red"}, 422, "colour"),
+    ],
+)
+def test_bad_input(client, route, changes, status, parameter):
+    assert_problem(client.get(route, params=ROUTES[route] | changes), status, parameter)
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_other_methods_are_not_allowed(client, route):
+    response = client.put(route)
+    assert_problem(response, 405)
+    assert "GET" in response.headers["allow"]

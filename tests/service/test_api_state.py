@@ -1,0 +1,152 @@
+"""Health, pages, and what the service does when data sets are missing or damaged."""
+
+import hashlib
+import logging
+import re
+import time
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+
+import api
+from api.app import create_app
+from api.settings import Settings
+from tests.service.conftest import assert_problem, client_of
+
+STATIC = Path(api.__file__).parent / "static"
+QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+
+
+def test_healthy(client):
+    assert client.get("/health").json() | {"version": ""} == {
+        "status": "ok",
+        "version": "",
+        "datasets": 3,
+        "problems": {},
+    }
+
+
+def test_without_results_the_solver_answers_and_health_says_so(tmp_path):
+    with client_of(tmp_path / "none") as client:
+        health = client.get("/health").json()
+        assert health["status"] == "degraded"
+        assert "make reproduce" in health["problems"]["spectra"]
+        assert client.get("/v1/response", params=QUESTION).json()["source"] == "solver"
+        assert client.get("/v1/datasets").json() == {"datasets": []}
+        assert_problem(client.get("/v1/response", params=QUESTION | {"method": "cube"}), 422, "restitution")
+
+
+def test_with_a_damaged_cube_the_solver_answers_and_health_says_so(client, own_results):
+    path = own_results / "spectra" / "sine" / "eta-0.85.nc"
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with client_of(own_results) as damaged:
+        answer = damaged.get("/v1/response", params=QUESTION).json()
+        assert answer["source"] == "solver"
+        assert (
+            answer["peak_rotation"]
+            == client.get("/v1/response", params=QUESTION | {"method": "solver"}).json()["peak_rotation"]
+        )
+        health = damaged.get("/health").json()
+        assert health["status"] == "degraded"
+        assert "damaged" in health["problems"]["spectra/sine/eta-0.85"]
+        assert_problem(damaged.get("/v1/response", params=QUESTION | {"method": "cube"}), 503)
+        path.write_bytes(whole)  # mended: noticed without a restart
+        assert damaged.get("/v1/response", params=QUESTION).json()["source"] == "cube"
+        assert damaged.get("/health").json()["status"] == "ok"
+
+
+def test_a_cube_under_another_name_is_refused(own_results):
+    own = own_results / "spectra"
+    (own / "sine" / "eta-0.85.nc").write_bytes((own / "cosine" / "eta-0.90.nc").read_bytes())
+    with client_of(own_results) as client:
+        assert client.get("/v1/response", params=QUESTION).json()["source"] == "solver"
+        assert "holds cosine" in client.get("/health").json()["problems"]["spectra/sine/eta-0.85"]
+
+
+def test_the_start_warns_of_what_is_missing(tmp_path, caplog):
+    with caplog.at_level(logging.WARNING, "rocking.service"), client_of(tmp_path):
+        deadline = time.monotonic() + 20
+        while "no spectrum cubes" not in caplog.text and time.monotonic() < deadline:
+            time.sleep(0.02)
+    assert "no spectrum cubes" in caplog.text
+
+
+@pytest.mark.parametrize("page", ["/", "/docs"])
+def test_pages_load_nothing_from_outside(client, page):
+    response = client.get(page)
+    assert response.headers["content-type"].startswith("text/html")
+    assert "default-src 'self'" in response.headers["content-security-policy"]
+    for link in re.findall(r'(?:src|href|action)="([^"]+)"', response.text):
+        assert link.startswith("/")
+        assert client.get(link).status_code in (200, 422)  # 422: the form's action, without its parameters
+    assert "http" not in response.text
+
+
+def test_vendored_files_are_what_was_published():
+    listed = (STATIC / "swagger-ui" / "SHA256SUMS").read_text().split()
+    digests = dict(zip(listed[1::2], listed[::2], strict=True))
+    assert {"LICENSE", "NOTICE"} < set(digests)
+    assert set(digests) == {path.name for path in (STATIC / "swagger-ui").iterdir()} - {"SHA256SUMS"}
+    for name, digest in digests.items():
+        assert hashlib.sha256((STATIC / "swagger-ui" / name).read_bytes()).hexdigest() == digest
+
+
+def test_openapi_describes_every_route(client):
+    described = client.get("/openapi.json").json()
+    assert set(described["paths"]) == {
+        "/v1/response",
+        "/v1/spectrum",
+        "/v1/overturning",
+        "/v1/history",
+        "/v1/blocks/response",
+        "/v1/datasets",
+        "/v1/datasets/{name}",
+        "/v1/datasets/{name}.nc",
+        "/v1/datasets/{name}.zarr/{key}",
+        "/health",
+    }
+    text = str(described)
+    for reference in set(re.findall(r"#/components/schemas/(\w+)", text)):
+        assert reference in described["components"]["schemas"]
+
+
+def test_unknown_route_is_a_problem(client):
+    assert_problem(client.get("/v2/response"), 404)
+
+
+def test_an_error_of_our_own_tells_nothing_of_the_inside(results):
+    app = create_app(Settings(results=results))
+
+    @app.get("/broken")
+    async def broken():
+        raise ZeroDivisionError("inside")
+
+    with TestClient(app, raise_server_exceptions=False) as client:
+        problem = assert_problem(client.get("/broken"), 500)
+        assert "inside." not in problem["detail"]
+        assert "ZeroDivision" not in problem["detail"]
+
+
+def test_only_text_is_compressed(client):
+    accept = {"accept-encoding": "gzip"}
+    question = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85}
+    assert client.get("/v1/spectrum", params=question, headers=accept).headers["content-encoding"] == "gzip"
+    netcdf = client.get("/v1/spectrum", params=question | {"format": "nc"}, headers=accept)
+    assert "content-encoding" not in netcdf.headers
+
+
+def test_other_origins_are_let_in_only_if_asked(results, client):
+    origin = {"origin": "https://example.org"}
+    assert "access-control-allow-origin" not in client.get("/health", headers=origin).headers
+    with client_of(results, cors_origins=("https://example.org",)) as open_client:
+        headers = open_client.get("/health", headers=origin).headers
+    assert headers["access-control-allow-origin"] == "https://example.org"
+    assert "ETag" in headers["access-control-expose-headers"]
+
+
+def test_settings_come_from_the_environment(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROCKING_RESULTS", str(tmp_path))
+    monkeypatch.setenv("ROCKING_MAX_POINTS", "7")
+    assert (Settings().results, Settings().max_points) == (tmp_path, 7)
