@@ -88,11 +88,10 @@ def cut(slenderness: float, flight: Record) -> int:
                 continue
             level += rise
             if single:
-                half_turn = math.floor((0.5 * (left + right) + flight.shift[0]) * (1.0 / math.pi))
-                upright = 1.0 - 2.0 * (half_turn % 2.0)  # the cosine falls from +1 here, or rises from -1
+                upright = flight.upright[piece]  # the cosine falls from +1 here, or rises from -1
                 value = target * flight.amplitude[0]
-                angle = half_turn * math.pi + cap if value * upright > 0.0 else (half_turn + 1.0) * math.pi - cap
-                place(flight, count, angle - flight.shift[0], level, rise)
+                turned = cap if value * upright > 0.0 else math.pi - cap
+                place(flight, count, flight.half_turn[piece] + turned, level, rise)
                 flight.cut_cosine[count, 0], flight.cut_sine[count, 0] = value, upright * root
             else:
                 phi = crossing(target, left, right, rise > 0.0, flight)

@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from rocking.errors import in_range
-from rocking.free_history import rock_freely
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
-from rocking.rock import IMPACT_LIMIT, rock
+from rocking.rock import IMPACT_LIMIT
+from rocking.sampling import rock_and_sample, rock_freely
 from rocking.scratch import prepared
 from rocking.solve import as_pulse, checked_groups
 
@@ -67,17 +67,17 @@ def time_history(
 
     # once for the events, then again with the events among the samples
     answer, nothing = prepared(made).copy(), np.empty(0)
-    forced, free = np.full(IMPACT_LIMIT, np.inf), np.empty(FREE_IMPACTS)
-    rock(s, omega, eta, angle, answer, nothing, nothing, nothing, forced)
+    forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
+    forced = forced[: rock_and_sample(s, omega, eta, angle, answer, nothing, nothing, nothing, forced)]
     free = free[: rock_freely(answer, eta, end, horizon, FALLEN, nothing, nothing, nothing, free)]
-    landings = np.concatenate([forced[forced < end], free])
+    landings = np.concatenate([forced, free])
 
     events = [0.0, end, float(np.nan_to_num(answer["uplift_time"]))]
     tau = np.concatenate([np.linspace(0.0, horizon, int(samples)), landings, events])
     tau = np.unique(tau[tau <= horizon])
     rotation, velocity = np.zeros(tau.size), np.zeros(tau.size)
     answer = prepared(made).copy()
-    rock(s, omega, eta, angle, answer, tau, rotation, velocity, nothing)
+    rock_and_sample(s, omega, eta, angle, answer, tau, rotation, velocity, nothing)
     # a step fills the samples before its end: the last one has to lie inside
     beyond = horizon * (1 + 1e-12)
     rock_freely(answer, eta, end, beyond, FALLEN, tau, rotation, velocity, np.empty(FREE_IMPACTS))

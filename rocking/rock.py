@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from rocking.chatter import settles
 from rocking.compilation import Record, Vector, kernel
 from rocking.cuts import cut
 from rocking.free_rocking import free_fate
-from rocking.slender_events import fly, hop, sample_arc
+from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_flight, turn
-from rocking.taylor_flight import FALLEN, IMPACT, PULSE_END, fly_steps
+from rocking.taylor_flight import FALLEN, IMPACT, fly_steps
 
 IMPACT_LIMIT = 100_000
 """Impacts after which a block that neither rests nor overturns is declared at rest, and flagged as chattering."""
@@ -27,22 +25,39 @@ NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 
 
 @kernel
-def begin(slenderness: float, omega: float, alpha: float, flight: Record) -> int:
-    """Set up a cell and the empty answer; returns the number of intervals between cuts, 0 if it cannot uplift."""
+def begin(slenderness: float, omega: float, alpha: float, flight: Record) -> None:
+    """Set up a cell: the empty answer, the cuts, rest before the first of them."""
     flight.outcome, flight.peak, flight.mode = NO_UPLIFT, 0.0, -1
-    flight.impacts, flight.chatter = 0, False
+    flight.impacts, flight.chatter = 0, 0
     flight.uplift_time, flight.first_time, flight.first_velocity = math.nan, math.nan, math.nan
     flight.end_z, flight.end_w, flight.end_sign = 0.0, 0.0, 0.0
+    flight.interval, flight.count, flight.at_rest = 0, 0, 1
     if slenderness >= 1.0:
-        return 0
-    flight.a = 1.0 / slenderness
-    flight.omega = omega
-    flight.alpha = alpha
+        return
+    flight.a, flight.omega, flight.alpha = 1.0 / slenderness, omega, alpha
     flight.fastest = 1.0
     for k in range(len(flight.force)):
         flight.rate[k] = omega * flight.multiple[k]
         flight.fastest = max(flight.fastest, flight.rate[k])
-    return cut(slenderness, flight)
+    flight.count = cut(slenderness, flight)
+
+
+@kernel
+def uplift(flight: Record) -> bool:
+    """Go from rest to the next uplift; False if there is none."""
+    while flight.interval < flight.count and flight.cut_level[flight.interval] == 0.0:
+        flight.interval += 1
+    if flight.interval == flight.count:
+        return False
+    flight.next_phase, flight.next_w = flight.cut_phase[flight.interval], 0.0
+    flight.next_sign = -flight.cut_level[flight.interval]  # positive ground acceleration: negative rotation
+    for k in range(len(flight.force)):
+        flight.cosine0[k] = flight.cut_cosine[flight.interval, k]
+        flight.sine0[k] = flight.cut_sine[flight.interval, k]
+    if flight.outcome == NO_UPLIFT:
+        flight.outcome = SAFE
+        flight.uplift_time = (flight.next_phase - flight.end_phase[0]) / flight.omega
+    return True
 
 
 @kernel
@@ -59,17 +74,55 @@ def conclude(flight: Record, z: float, w: float, eta: float, fallen: bool) -> No
 
 
 @kernel
-def rock(
-    slenderness: float,
-    omega: float,
-    eta: float,
-    alpha: float,
-    flight: Record,
-    tau: Vector,
-    rotation: Vector,
-    velocity: Vector,
-    landings: Vector,
-) -> None:
+def land(flight: Record, w: float, eta: float) -> None:
+    """An impact with velocity w < 0 ends the flight: what starts the next one, or rest."""
+    phase = flight.phase + flight.omega * flight.length
+    if flight.impacts == 0:
+        flight.first_time, flight.first_velocity = flight.length, flight.sign * w
+    flight.impacts += 1
+    flight.next_phase, flight.next_w, flight.next_sign = phase, -eta * w, -flight.sign  # (2.3)
+    while flight.interval < flight.count - 1 and phase >= flight.cut_phase[flight.interval + 1]:
+        flight.interval += 1
+    turn(flight, phase, flight.cosine0, flight.sine0)
+    flight.at_rest = 0
+    if flight.cut_level[flight.interval] == 0.0:
+        if flight.next_w <= 0.0:
+            flight.at_rest = 1
+        elif flight.impacts >= IMPACT_LIMIT or settles(
+            flight, flight.next_w, eta, phase, flight.cut_phase[flight.interval + 1], flight.peak
+        ):
+            flight.at_rest = flight.chatter = 1
+    elif flight.next_w <= 0.0:  # eta = 0 while the ground already pushes: up again at once
+        flight.next_sign, flight.next_w = -flight.cut_level[flight.interval], 0.0
+
+
+@kernel
+def advance(flight: Record, eta: float) -> bool:
+    """Follow the next flight to its end; False if there is none, or if it was the last."""
+    if flight.at_rest == 1 and not uplift(flight):
+        return False
+    lifted = flight.at_rest == 1 and flight.interval > 0
+    start_flight(flight, flight.next_phase, flight.next_w, flight.next_sign, lifted)
+    ended, z = IMPACT, 0.0
+    if flight.alpha == 0.0 and flight.spread == 0.0:
+        to_cut = (flight.cut_phase[flight.interval + 1] - flight.phase) / flight.omega
+        h, w, top = hop(flight, to_cut, flight.peak)
+        if h < 0.0:
+            ended, h, w, z, top = fly(flight, eta)
+    else:
+        ended, h, w, z, top = fly_steps(flight)
+    flight.length = h
+    if top > flight.peak:
+        flight.peak, flight.mode = top, 2 * flight.impacts
+    if ended != IMPACT:
+        conclude(flight, z, w, eta, ended == FALLEN)
+        return False
+    land(flight, w, eta)
+    return True
+
+
+@kernel
+def rock(slenderness: float, omega: float, eta: float, alpha: float, flight: Record) -> None:
     """One block from rest to its final fate; the answer is left in `flight`.
 
     Parameters
@@ -78,69 +131,10 @@ def rock(
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
     flight
         The pulse, scratch and answer, laid out as in `scratch.layout`.
-    tau : float array (samples,)
-        Times from the pulse's start [-], ascending, at which to fill `rotation` theta/alpha and `velocity`
-        theta'/(p alpha) as long as the pulse lasts; zero on entry; may be empty.
-    landings : float array
-        Filled with the times of the impacts as far as it reaches; may be empty.
     """
-    count = begin(slenderness, omega, alpha, flight)
-    interval = 0
-    origin = flight.end_phase[0]
-    exact = alpha == 0.0 and flight.spread == 0.0
-    phase, w, sign, peak, filled = 0.0, 0.0, 0.0, 0.0, 0
-    at_rest = True
-    while True:
-        if at_rest:
-            while interval < count and flight.cut_level[interval] == 0.0:
-                interval += 1
-            if interval == count:
-                return
-            phase, w, sign = flight.cut_phase[interval], 0.0, -flight.cut_level[interval]
-            for k in range(len(flight.force)):
-                flight.cosine0[k] = flight.cut_cosine[interval, k]
-                flight.sine0[k] = flight.cut_sine[interval, k]
-            if flight.outcome == NO_UPLIFT:
-                flight.outcome = SAFE
-                flight.uplift_time = (phase - origin) / omega
-        start_flight(flight, phase, w, sign, at_rest and interval > 0)
-        ended, z = IMPACT, 0.0
-        if exact:
-            h, w_end, top = hop(flight, (flight.cut_phase[interval + 1] - phase) / omega, flight.peak)
-            if h < 0.0:
-                ended, h, w_end, z, top = fly(flight, interval, count, eta)
-            if filled < len(tau):
-                filled = sample_arc(flight, origin, h, tau, filled, rotation, velocity)
-        else:
-            ended, h, w_end, z, top, filled = fly_steps(
-                flight, interval, count, at_rest and interval > 0, origin, tau, filled, rotation, velocity
-            )
-        if top > flight.peak:
-            flight.peak, flight.mode = top, 2 * flight.impacts
-        if ended != IMPACT:
-            conclude(flight, z, w_end, eta, ended == FALLEN)
-            return
-        phase += omega * h
-        if flight.impacts < len(landings):
-            landings[flight.impacts] = (phase - origin) / omega
-        if flight.impacts == 0:
-            flight.first_time, flight.first_velocity = h, sign * w_end
-        flight.impacts += 1
-        w = -eta * w_end  # (2.3)
-        sign = -sign
-        while interval < count - 1 and phase >= flight.cut_phase[interval + 1]:
-            interval += 1
-        turn(flight, phase, flight.cosine0, flight.sine0)
-        at_rest = False
-        if flight.cut_level[interval] == 0.0:
-            if w <= 0.0:
-                at_rest = True
-            elif flight.impacts >= IMPACT_LIMIT or settles(
-                flight, w, eta, phase, flight.cut_phase[interval + 1], flight.peak
-            ):
-                at_rest = flight.chatter = True
-        elif w <= 0.0:  # eta = 0 while the ground already pushes: up again at once
-            sign, w = -flight.cut_level[interval], 0.0
+    begin(slenderness, omega, alpha, flight)
+    while advance(flight, eta):
+        pass
 
 
 @kernel
@@ -160,9 +154,8 @@ def rock_many(
     mode: Vector,
 ) -> None:
     """`rock` for each entry of the first four arrays (cells,); fills the last eight (cells,). `flight` as there."""
-    nothing = np.empty(0)
     for i in range(len(slenderness)):
-        rock(slenderness[i], omega[i], eta[i], alpha[i], flight, nothing, nothing, nothing, nothing)
+        rock(slenderness[i], omega[i], eta[i], alpha[i], flight)
         outcome[i] = flight.outcome
         peak[i] = flight.peak
         impacts[i] = flight.impacts

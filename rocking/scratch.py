@@ -44,6 +44,8 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("end_shape", np.float64, ends),
             ("end_cosine", np.float64, (*ends, terms)),
             ("end_sine", np.float64, (*ends, terms)),
+            ("half_turn", np.float64, ends),  # single sinusoid: phase at which the piece's half-turn of it starts,
+            ("upright", np.float64, ends),  # and its cosine there, +1 or -1
             # the cell
             ("a", np.float64),  # 1/slenderness
             ("omega", np.float64),  # frequency ratio
@@ -55,12 +57,26 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("cut_rise", np.float64, cuts),  # sign of f' there
             ("cut_cosine", np.float64, (*cuts, terms)),
             ("cut_sine", np.float64, (*cuts, terms)),
+            # where `rock` stands
+            ("count", np.int64),  # intervals between cuts
+            ("interval", np.int64),  # the one that holds the start of the next flight
+            ("at_rest", np.int64),  # whether that starts with an uplift
+            ("next_phase", np.float64),  # its start
+            ("next_w", np.float64),
+            ("next_sign", np.float64),
             # the flight
             ("sign", np.float64),  # sgn(theta)
             ("force", np.float64, per_term),  # sgn(theta) a c
             ("phase", np.float64),  # phi at its start
             ("w0", np.float64),  # velocity there
+            ("length", np.float64),  # its duration [tau]
+            ("lifted", np.int64),  # whether it starts with an uplift through |a f| = 1, where q is exactly 0
             ("q0", np.float64),  # pull there
+            ("share", np.float64, per_term),  # coefficients of its arc, see `slender_arcs.anchor`
+            ("x0", np.float64),
+            ("y0", np.float64),
+            ("below", np.float64),
+            ("slope", np.float64),
             ("cosine0", np.float64, per_term),  # of the angles there
             ("sine0", np.float64, per_term),
             ("cosine1", np.float64, per_term),  # at the point last turned to
@@ -110,4 +126,7 @@ def prepared(pulse: AbstractPulse) -> Record:
     angles = multiple * phases[:, None] + shift
     record["end_cosine"][:count] = np.cos(angles)
     record["end_sine"][:count] = np.sin(angles)
+    half_turn = np.floor((0.5 * (angles[:-1, 0] + angles[1:, 0])) / np.pi)
+    record["half_turn"][: count - 1] = half_turn * np.pi - shift[0]
+    record["upright"][: count - 1] = 1.0 - 2.0 * (half_turn % 2.0)
     return record

@@ -38,20 +38,31 @@ def hyperbolic(h: float) -> tuple[float, float]:
 
 
 @kernel
+def anchor(flight: Record) -> None:
+    """Coefficients of the arc from the flight's start, once `force`, `w0`, `cosine0` and `sine0` are set."""
+    x0, y0, below, slope = -1.0, flight.w0, 0.0, flight.w0
+    for k in range(len(flight.force)):
+        share = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
+        flight.share[k] = share
+        below -= share * flight.cosine0[k]
+        x0 -= share * flight.cosine0[k]
+        y0 += share * flight.rate[k] * flight.sine0[k]
+        slope += share * flight.rate[k] * flight.sine0[k]
+    flight.x0, flight.y0, flight.below, flight.slope = x0, y0, below, slope
+
+
+@kernel
 def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, float]:
     """State (z, w) a time h after the flight's start (z = 0, w = w0), where the angles have that cosine and sine.
 
-    (3.4) with F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
+    (3.4) with `share` = F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
     """
-    moved, x0, y0, slope = 0.0, -1.0, flight.w0, 0.0
+    moved, slope = flight.below, flight.slope
     for k in range(len(flight.force)):
-        particular = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
-        moved += particular * (cosine[k] - flight.cosine0[k])
-        slope -= particular * flight.rate[k] * (sine[k] - flight.sine0[k])
-        x0 -= particular * flight.cosine0[k]
-        y0 += particular * flight.rate[k] * flight.sine0[k]
+        moved += flight.share[k] * cosine[k]
+        slope -= flight.share[k] * flight.rate[k] * sine[k]
     cosh1, sinh = hyperbolic(h)
-    return moved + x0 * cosh1 + y0 * sinh, flight.w0 + slope + x0 * sinh + y0 * cosh1
+    return moved + (flight.x0 * cosh1 + flight.y0 * sinh), slope + (flight.x0 * sinh + flight.y0 * cosh1)
 
 
 @kernel
@@ -93,31 +104,35 @@ def expand(flight: Record, z: float, w: float, q: float, cosine: Vector, sine: V
 
 @kernel
 def rotation(flight: Record, delta: float) -> float:
-    """z at `delta` from the point of expansion."""
-    coef = flight.coef
-    total = coef[COEFFICIENTS - 1]
-    for i in range(COEFFICIENTS - 1):
-        total = total * delta + coef[COEFFICIENTS - 2 - i]
-    return total
+    """z at `delta` from the point of expansion; pairs, fours, eights: a short chain of operations."""
+    c = flight.coef
+    d2 = delta * delta
+    d4 = d2 * d2
+    low = (c[0] + c[1] * delta) + d2 * (c[2] + c[3] * delta)
+    middle = (c[4] + c[5] * delta) + d2 * (c[6] + c[7] * delta)
+    high = (c[8] + c[9] * delta) + d2 * (c[10] + c[11] * delta) + d4 * c[12]
+    return low + d4 * (middle + d4 * high)
 
 
 @kernel
 def velocity(flight: Record, delta: float) -> float:
     """w = dz/dtau there."""
-    coef = flight.coef
-    total = (COEFFICIENTS - 1) * coef[COEFFICIENTS - 1]
-    for i in range(COEFFICIENTS - 2):
-        total = total * delta + (COEFFICIENTS - 2 - i) * coef[COEFFICIENTS - 2 - i]
-    return total
+    c = flight.coef
+    d2 = delta * delta
+    d4 = d2 * d2
+    low = (c[1] + 2.0 * c[2] * delta) + d2 * (3.0 * c[3] + 4.0 * c[4] * delta)
+    middle = (5.0 * c[5] + 6.0 * c[6] * delta) + d2 * (7.0 * c[7] + 8.0 * c[8] * delta)
+    high = (9.0 * c[9] + 10.0 * c[10] * delta) + d2 * (11.0 * c[11] + 12.0 * c[12] * delta)
+    return low + d4 * (middle + d4 * high)
 
 
 @kernel
 def acceleration(flight: Record, delta: float) -> float:
     """z'' there."""
-    coef = flight.coef
-    top = COEFFICIENTS - 1
-    total = top * (top - 1) * coef[top]
-    for i in range(top - 2):
-        n = top - 1 - i
-        total = total * delta + n * (n - 1) * coef[n]
-    return total
+    c = flight.coef
+    d2 = delta * delta
+    d4 = d2 * d2
+    low = (2.0 * c[2] + 6.0 * c[3] * delta) + d2 * (12.0 * c[4] + 20.0 * c[5] * delta)
+    middle = (30.0 * c[6] + 42.0 * c[7] * delta) + d2 * (56.0 * c[8] + 72.0 * c[9] * delta)
+    high = (90.0 * c[10] + 110.0 * c[11] * delta) + d2 * (132.0 * c[12])
+    return low + d4 * (middle + d4 * high)

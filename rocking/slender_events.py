@@ -40,11 +40,7 @@ def run_peak(
         lo, hi = h_left, h_right
         w_lo, w_hi = w_left, w_right
         rising_pull = flight.sign * flight.cut_rise[left] >= 0.0
-        if left == first:
-            turn(flight, start + omega * h_left, flight.cosine1, flight.sine1)
-            q_left = pull(flight, flight.cosine1)
-        else:
-            q_left = pull(flight, flight.cut_cosine[left])
+        q_left = flight.q0 if h_left == 0.0 else pull(flight, flight.cut_cosine[left])
         q_right = pull(flight, flight.cut_cosine[right])
         d_left, d_right = z_left - q_left, z_right - q_right
         if w_lo > 0.0 and w_hi >= 0.0 and not rising_pull and d_left < 0.0 < d_right:
@@ -65,9 +61,9 @@ def run_peak(
 
 @kernel
 def fly(
-    flight: Record, interval: int, count: int, eta: float
+    flight: Record, eta: float
 ) -> tuple[int, float, float, float, float]:
-    """Follow one flight from its start inside `interval` to its impact or to the end of the pulse.
+    """Follow one flight from its start to its impact or to the end of the pulse.
 
     Returns what ended it (0: impact, 1: pulse), time and velocity w there (after z at the end of the pulse), and the
     largest z on the way; the latter only if the block is not overturned for good. Beyond
@@ -78,7 +74,7 @@ def fly(
     known = True
     sign, limit = flight.sign, 1.0 + flight.a
     largest = 0.0
-    left = interval
+    left, count = flight.interval, flight.count
     while left < count:
         pushed = flight.cut_level[left] * sign < 0.0
         right = left + 1
@@ -148,18 +144,3 @@ def hop(flight: Record, longest: float, peak: float) -> tuple[float, float, floa
             top -= velocity(flight, top) / acceleration(flight, top)
         largest = rotation(flight, top)
     return h, velocity(flight, h), largest
-
-
-@kernel
-def sample_arc(
-    flight: Record, origin: float, h: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
-) -> int:
-    """Evaluate the flight of length h at the samples that it covers; the samples filled so far."""
-    begin = (flight.phase - origin) / flight.omega
-    while filled < len(tau) and tau[filled] < begin + h:
-        if tau[filled] >= begin:
-            turn(flight, origin + flight.omega * tau[filled], flight.cosine1, flight.sine1)
-            z, w = state(flight, tau[filled] - begin, flight.cosine1, flight.sine1)
-            rotation[filled], velocity[filled] = flight.sign * z, flight.sign * w
-        filled += 1
-    return filled

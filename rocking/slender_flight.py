@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, Vector, kernel
-from rocking.slender_arcs import RADIUS, acceleration, arc, expand, pull, rotation, velocity
+from rocking.slender_arcs import RADIUS, acceleration, anchor, arc, expand, pull, rotation, velocity
 
 
 @kernel
@@ -18,14 +18,16 @@ def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
 
 
 @kernel
-def start_flight(flight: Record, phase: float, w0: float, sign: float, at_uplift: bool) -> None:
+def start_flight(flight: Record, phase: float, w0: float, sign: float, lifted: bool) -> None:
     """Begin at `phase`, where `cosine0` and `sine0` are set already; q is exactly 0 at uplift through |a f| = 1."""
     flight.sign = sign
     for k in range(len(flight.force)):
         flight.force[k] = sign * flight.a * flight.amplitude[k]
     flight.phase = phase
     flight.w0 = w0
-    flight.q0 = 0.0 if at_uplift else pull(flight, flight.cosine0)
+    flight.lifted = int(lifted)
+    flight.q0 = 0.0 if lifted else pull(flight, flight.cosine0)
+    anchor(flight)
 
 
 @kernel
@@ -39,12 +41,15 @@ def state(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float
 
 @kernel
 def derivative(flight: Record, order: int, delta: float) -> float:
-    """Derivative of z of that order (0, 1 or 2) from the local series."""
+    """Derivative of z of that order (0 to 3) from the local series."""
     if order == 0:
         return rotation(flight, delta)
     if order == 1:
         return velocity(flight, delta)
-    return acceleration(flight, delta)
+    if order == 2:
+        return acceleration(flight, delta)
+    c = flight.coef
+    return 6.0 * c[3] + delta * (24.0 * c[4] + delta * (60.0 * c[5] + delta * 120.0 * c[6]))
 
 
 @kernel
@@ -62,27 +67,23 @@ def locate(
         turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
         z, w = state(flight, h, flight.cosine1, flight.sine1)
         expand(flight, z, w, pull(flight, flight.cosine1), flight.cosine1, flight.sine1)
-        value = derivative(flight, order, 0.0)
+        value = derivative(flight, order, 0.0)  # of z'' only the change of sign is used
         if (value > 0.0) == falling:
             lo = h
         else:
             hi = h
-        delta = 0.0
-        step = math.inf
+        delta, near = 0.0, False
         for _ in range(8):
-            if order == 0:
-                step = -rotation(flight, delta) / velocity(flight, delta)
-            elif order == 1:
-                step = -velocity(flight, delta) / acceleration(flight, delta)
-            else:  # a secant of z'' over the bracket's remaining uncertainty is enough: only its sign change is used
-                slope = 6.0 * flight.coef[3] + delta * (24.0 * flight.coef[4] + delta * 60.0 * flight.coef[5])
-                step = -acceleration(flight, delta) / slope
+            step = -derivative(flight, order, delta) / derivative(flight, order + 1, delta)
             delta += step
-            if not abs(delta) <= reach or abs(step) <= 1e-8 * reach:
+            if not abs(delta) <= reach or abs(step) <= 1e-4 * reach:
+                near = abs(delta) <= reach
                 break
-        # steps square: one below 1e-8 of the radius leaves an error at rounding level
-        if abs(step) <= 1e-8 * reach and abs(delta) <= reach and lo <= h + delta <= hi:
-            return h + delta, rotation(flight, delta), velocity(flight, delta)
+        if near and lo <= h + delta <= hi:
+            # steps square: one more from here leaves an error of 1e-16, and the series need not be summed again after it
+            z, w, bend = rotation(flight, delta), velocity(flight, delta), acceleration(flight, delta)
+            last = -z / w if order == 0 else (-w / bend if order == 1 else 0.0)
+            return h + delta + last, z + last * (w + 0.5 * bend * last), w + last * bend
         if hi - lo <= 4e-16 * hi:
             return h, z, w
         follow = h + delta
@@ -99,7 +100,7 @@ def hermite_root(f0: float, d0: float, f1: float, d1: float, length: float) -> f
     c3 = 2.0 * (f0 - f1) + d0 + d1
     lo, hi = 0.0, 1.0
     x = f0 / (f0 - f1)
-    for _ in range(3):
+    for _ in range(2):
         value = f0 + x * (d0 + x * (c2 + x * c3))
         if (value > 0.0) == (f0 > 0.0):
             lo = x

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from rocking.compilation import Record, Vector, kernel
+from rocking.compilation import Record, kernel
 from rocking.scratch import ORDER
 from rocking.taylor_step import evaluate, expand_motion, expand_pulse, first_crossing, polish, step_size
 
@@ -50,47 +50,20 @@ def impact_in_step(flight: Record, h: float, pushed: bool, grounded: bool) -> fl
 
 
 @kernel
-def sample(
-    flight: Record, start: float, h: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
-) -> int:
-    """Evaluate the step that began at time `start` at the samples up to `start` + h; the samples filled so far."""
-    while filled < len(tau) and tau[filled] < start + h:
-        if tau[filled] >= start:
-            rotation[filled] = flight.sign * evaluate(flight.z, ORDER, tau[filled] - start)
-            velocity[filled] = flight.sign * evaluate(flight.rate_of_z, ORDER - 1, tau[filled] - start)
-        filled += 1
-    return filled
-
-
-@kernel
-def fly_steps(
-    flight: Record,
-    interval: int,
-    count: int,
-    at_uplift: bool,
-    origin: float,
-    tau: Vector,
-    filled: int,
-    rotation: Vector,
-    velocity: Vector,
-) -> tuple[int, float, float, float, float, int]:
-    """Follow one flight from its start inside `interval` to its impact, to the end of the pulse, or to its fall.
-
-    `tau` (samples,), ascending from the pulse's start at phase `origin`, may be empty; `rotation` and `velocity`
-    are filled there.
+def fly_steps(flight: Record) -> tuple[int, float, float, float, float]:
+    """Follow one flight from its start to its impact, to the end of the pulse, or to its fall.
 
     Returns
     -------
-    what ended it, time since its start, velocity w and rotation z then, largest z on the way, samples filled
+    what ended it, time since its start, velocity w and rotation z then, largest z on the way
     """
     phase, z, w, elapsed, largest = flight.phase, 0.0, flight.w0, 0.0, 0.0
     fallen = 0.5 * math.pi / flight.alpha if flight.alpha > 0.0 else math.inf
     beyond = math.inf if flight.alpha > 0.0 else 1.0 + flight.a  # see `slender_events.fly`
-    begin = (phase - origin) / flight.omega
-    first = True
-    while interval < count:
+    interval, first = flight.interval, True
+    while interval < flight.count:
         expand_pulse(flight, phase)
-        if first and at_uplift:
+        if first and flight.lifted == 1:
             flight.f[0] = -1.0  # exactly: |a f| = 1
         expand_motion(flight, z, w)
         to_cut = (flight.cut_phase[interval + 1] - phase) / flight.omega
@@ -101,18 +74,16 @@ def fly_steps(
             h = impact
         if not pushed:
             largest = max(largest, highest(flight, h))
-        if filled < len(tau):
-            filled = sample(flight, begin + elapsed, h, tau, filled, rotation, velocity)
         elapsed += h
         z, w = evaluate(flight.z, ORDER, h), evaluate(flight.rate_of_z, ORDER - 1, h)
         if impact >= 0.0:
-            return IMPACT, elapsed, w, 0.0, largest, filled
+            return IMPACT, elapsed, w, 0.0, largest
         if z >= fallen or largest >= fallen or z + w >= beyond:
-            return FALLEN, elapsed, w, z, largest, filled
+            return FALLEN, elapsed, w, z, largest
         if h == to_cut:
             interval += 1
             phase = flight.cut_phase[interval]
         else:
             phase += flight.omega * h
         first = False
-    return PULSE_END, elapsed, w, z, largest, filled
+    return PULSE_END, elapsed, w, z, largest

@@ -1,0 +1,185 @@
+"""Answers of the `rocking` command: computed by the solver, printed as text, JSON or CSV."""
+
+from __future__ import annotations
+
+import csv as csv_writer
+import json as json_writer
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+
+from rocking.boundary import overturning_boundary
+from rocking.bounded_response import BoundedResponse, solve_with_bound
+from rocking.cli_question import Question
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.history import time_history
+from rocking.response import Outcome
+
+Form = Literal["text", "json", "csv"]
+
+
+def form(*, json: bool, csv: bool) -> Form:
+    """The form that was asked for.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If both were.
+    """
+    if json and csv:
+        raise InvalidArgumentError("csv", True, "one of --json and --csv")
+    return "json" if json else "csv" if csv else "text"
+
+
+def response(question: Question, form: Form) -> None:
+    """Print fate and peak of one block."""
+    found = _solve(question, question.frequency_ratio)
+    answer = _groups(question) | {name: column[0] for name, column in _columns(found).items()}
+    peak = answer["peak_rotation"]
+    if question.block is not None and peak is not None:
+        answer["peak_rotation_deg"] = math.degrees(peak * question.block.alpha)
+    if form == "json":
+        _print_json(answer)
+    elif form == "csv":
+        _print_csv({name: [value] for name, value in answer.items()})
+    else:
+        print(Outcome[answer["outcome"]].sentence)
+        _print_text(answer)
+
+
+def history(question: Question, duration: float | None, samples: int, form: Form) -> None:
+    """Print the motion of one block."""
+    motion = time_history(
+        question.pulse,
+        slenderness=question.slenderness,
+        frequency_ratio=question.frequency_ratio,
+        restitution=question.restitution,
+        alpha=question.alpha,
+        duration=duration,
+        samples=samples,
+    )
+    names = ("tau", "rotation", "angular_velocity", "ground_acceleration")
+    columns = {name: motion[name].values.tolist() for name in names}
+    if form == "csv":
+        _print_csv(columns)
+        return
+    about = _groups(question) | {
+        "outcome": str(motion.attrs["outcome"]),
+        "overturned": bool(motion.attrs["overturned"]),
+        "peak_rotation": _number(float(motion.attrs["peak_rotation"])),
+        "impact_time": motion["impact_time"].values.tolist(),
+    }
+    if form == "json":
+        _print_json(about | columns)
+    else:
+        _print_text(about)
+        _print_table(columns)
+
+
+def spectrum(question: Question, window: tuple[float, float], points: int, form: Form) -> None:
+    """Print the peak against the frequency ratio."""
+    in_range("points", points, 2, 1_000_000)
+    frequency_ratio = np.geomspace(*window, points)
+    columns = {"frequency_ratio": frequency_ratio.tolist()} | _columns(_solve(question, frequency_ratio))
+    about = {name: value for name, value in _groups(question).items() if name != "frequency_ratio"}
+    if form == "json":
+        _print_json(about | columns)
+    elif form == "csv":
+        _print_csv(columns)
+    else:
+        _print_text(about)
+        _print_table({name: columns[name] for name in ("frequency_ratio", "peak_rotation", "outcome", "impacts")})
+
+
+def boundary(question: Question, window: tuple[float, float], form: Form) -> None:
+    """Print the curves that separate standing from falling."""
+    curves = overturning_boundary(
+        question.pulse, restitution=question.restitution, alpha=question.alpha, frequency_ratio=window
+    )
+    sizes = curves["row_size"].values
+    outcomes = [Outcome(int(code)).name for code in curves["outcome"].values]
+    columns = {
+        "curve": np.repeat(np.arange(sizes.size), sizes).tolist(),
+        "slenderness": curves["slenderness"].values.tolist(),
+        "frequency_ratio": curves["frequency_ratio"].values.tolist(),
+        "outcome": np.repeat(outcomes, sizes).tolist(),
+        "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
+    }
+    if form == "json":
+        about = {"pulse": question.pulse, "restitution": question.restitution, "alpha": question.alpha}
+        _print_json(about | columns)
+    elif form == "csv":
+        _print_csv(columns)
+    else:
+        _print_table(columns)
+
+
+def _solve(question: Question, frequency_ratio: Any) -> BoundedResponse:
+    return solve_with_bound(
+        question.pulse,
+        slenderness=question.slenderness,
+        frequency_ratio=frequency_ratio,
+        restitution=question.restitution,
+        alpha=question.alpha,
+    )
+
+
+def _groups(question: Question) -> dict[str, Any]:
+    return {
+        "pulse": question.pulse,
+        "slenderness": question.slenderness,
+        "frequency_ratio": question.frequency_ratio,
+        "restitution": question.restitution,
+        "alpha": question.alpha,
+    }
+
+
+def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
+    return {
+        "peak_rotation": [_number(peak) for peak in found.peak_rotation.ravel().tolist()],
+        "overturned": found.overturned.ravel().tolist(),
+        "outcome": [Outcome(code).name for code in found.outcome.ravel().tolist()],
+        "impacts": found.impacts.ravel().tolist(),
+        "exceeded_alpha": found.exceeded_alpha.ravel().tolist(),
+        "error_bound": [_number(bound) for bound in found.error_bound.ravel().tolist()],
+    }
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _print_json(answer: Mapping[str, Any]) -> None:
+    print(json_writer.dumps(answer, allow_nan=False))
+
+
+def _print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
+    writer = csv_writer.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(columns)
+    cells = ([str(v).lower() if isinstance(v, bool) else v for v in column] for column in columns.values())
+    writer.writerows(zip(*cells, strict=True))
+
+
+def _print_text(answer: Mapping[str, Any]) -> None:
+    width = max(map(len, answer))
+    for name, value in answer.items():
+        if value is not None:
+            print(f"{name:<{width}}  {_text(value)}")
+
+
+def _print_table(columns: Mapping[str, Sequence[Any]]) -> None:
+    rows = [list(columns), *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
+    for row in rows:
+        print("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    if isinstance(value, list):
+        return " ".join(_text(one) for one in value)
+    return "-" if value is None else str(value)
