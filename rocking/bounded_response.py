@@ -104,7 +104,7 @@ def solve_with_bound(
     peak, outcome = found.peak_rotation[0], found.outcome[0]
     with np.errstate(invalid="ignore"):
         change = np.abs(found.peak_rotation[1:] - peak).sum(axis=0)
-    bound = (RIGID_ERROR if alpha else SOLVER_ERROR) * peak + change
+    bound = np.asarray((RIGID_ERROR if alpha else SOLVER_ERROR) * peak + change)
     bound[found.overturned.any(axis=0)] = np.inf
     bound[found.overturned[0]] = np.nan
     bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact

@@ -10,12 +10,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
+import typer
 
-from rocking.boundary import overturning_boundary
 from rocking.bounded_response import BoundedResponse, solve_with_bound
 from rocking.cli_question import Question
 from rocking.errors import InvalidArgumentError, in_range
-from rocking.history import time_history
 from rocking.response import Outcome
 
 Form = Literal["text", "json", "csv"]
@@ -46,12 +45,14 @@ def response(question: Question, form: Form) -> None:
     elif form == "csv":
         _print_csv({name: [value] for name, value in answer.items()})
     else:
-        print(Outcome[answer["outcome"]].sentence)
+        typer.echo(Outcome[answer["outcome"]].sentence)
         _print_text(answer)
 
 
 def history(question: Question, duration: float | None, samples: int, form: Form) -> None:
     """Print the motion of one block."""
+    from rocking.history import time_history  # noqa: PLC0415  (xarray: a second that `response` need not wait)
+
     motion = time_history(
         question.pulse,
         slenderness=question.slenderness,
@@ -96,6 +97,8 @@ def spectrum(question: Question, window: tuple[float, float], points: int, form:
 
 def boundary(question: Question, window: tuple[float, float], form: Form) -> None:
     """Print the curves that separate standing from falling."""
+    from rocking.boundary import overturning_boundary  # noqa: PLC0415  (xarray, as above)
+
     curves = overturning_boundary(
         question.pulse, restitution=question.restitution, alpha=question.alpha, frequency_ratio=window
     )
@@ -153,7 +156,7 @@ def _number(value: float) -> float | None:
 
 
 def _print_json(answer: Mapping[str, Any]) -> None:
-    print(json_writer.dumps(answer, allow_nan=False))
+    typer.echo(json_writer.dumps(answer, allow_nan=False))
 
 
 def _print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
@@ -167,14 +170,14 @@ def _print_text(answer: Mapping[str, Any]) -> None:
     width = max(map(len, answer))
     for name, value in answer.items():
         if value is not None:
-            print(f"{name:<{width}}  {_text(value)}")
+            typer.echo(f"{name:<{width}}  {_text(value)}")
 
 
 def _print_table(columns: Mapping[str, Sequence[Any]]) -> None:
     rows = [list(columns), *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
     widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
     for row in rows:
-        print("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+        typer.echo("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
 
 
 def _text(value: Any) -> str:
@@ -182,4 +185,6 @@ def _text(value: Any) -> str:
         return f"{value:.9g}"
     if isinstance(value, list):
         return " ".join(_text(one) for one in value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     return "-" if value is None else str(value)

@@ -40,7 +40,7 @@ def si_value(parameter: str, text: str, unit: str) -> float:
     if unit == "m/s**2":  # of an acceleration, g is that of gravity, not the gram
         written = re.sub(r"(?<![A-Za-z_])g(?![A-Za-z_])", " standard_gravity", written)
     try:
-        quantity = _registry().Quantity(written)
+        quantity: pint.Quantity[float] = _registry().Quantity(written)
         if quantity.unitless:  # a bare number, which for an angle pint would take for radians
             raise InvalidArgumentError(parameter, text, allowed)
         value = float(quantity.to(unit).magnitude)
