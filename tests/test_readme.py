@@ -25,7 +25,10 @@ README = (ROOT / "README.md").read_text()
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
 PYTHON_BLOCKS = [code for language, code in BLOCKS if language == "python"]
 COMMANDS = [
-    shlex.split(line, comments=True) for language, code in BLOCKS if language == "bash" for line in code.splitlines()
+    shlex.split(line, comments=True)
+    for language, code in BLOCKS
+    if language == "bash"
+    for line in code.replace("\\\n", " ").splitlines()
 ]
 MAKE = [command for command in COMMANDS if command[0] == "make"]
 CURL = [command for command in COMMANDS if command[0] == "curl"]
