@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import matplotlib.patches as patches
 import numpy as np
 import xarray as xr
@@ -12,8 +10,7 @@ from matplotlib.figure import Figure
 
 from rocking.block import Block
 from rocking.pulses import get_pulse
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, make_figure, panel_letters, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
 
 def data(
@@ -140,7 +137,3 @@ def _draw_pulse(ax: Axes, data: xr.Dataset) -> None:
     ax.set_ylim(-1.35 * a, 1.2 * a)
     ax.set_xlabel("time since the start of the pulse [s]")
     ax.set_ylabel(r"ground acceleration $\ddot{u}_g/g$ [-]")
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.history import time_history
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, make_figure, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, plotted
 
 DURATION = 9.0  # of tau, after which every fate is plain
 SAMPLES = 451
@@ -140,7 +138,3 @@ def _tree(ax: Axes) -> None:
         lift = 0.05 if BOXES[start][1] == BOXES[end][1] else 0.0
         gap = {"facecolor": "white", "edgecolor": "none", "pad": 0.8} if text and not lift else None
         ax.text(x, y + lift, text, ha="center", va="center", fontsize=6.5, color="#333333", bbox=gap)
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.closed_form import case_1_1_amplitudes, case_1_1_end, semi_analytical_amplitudes, within_pulse
-from workflow.figures.style import GREY, WIDTH, make_figure, panel_letters, plotted, shades
-from workflow.scripts.job import run
+from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
 
 
 def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) -> xr.Dataset:
@@ -85,7 +83,3 @@ def draw(data: xr.Dataset) -> Figure:
     right.set_xlim(omega[0], omega[-1])
     panel_letters([left, right])
     return figure
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

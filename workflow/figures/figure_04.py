@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +12,7 @@ from matplotlib.figure import Figure
 
 from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
 from rocking.cube import read_dataset
-from workflow.figures.style import BLACK, GREY, WIDTH, make_figure, panel_letters, plotted, shades
-from workflow.scripts.job import run
+from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
 
 POINTS = 401
 
@@ -137,7 +135,3 @@ def _curves(ax: Axes, data: xr.Dataset, *, islands: bool) -> None:
             ax.plot(data.island_frequency_ratio[here], data.island_amplitude[here], ".", color=colour, markersize=1.4)
     ax.plot(omega, data.direct, color=BLACK, linewidth=1.4)
     ax.plot(omega, data.limit, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -11,8 +10,7 @@ from matplotlib.figure import Figure
 
 from rocking.block import STANDARD_GRAVITY, Block
 from workflow.figures.dimensional import Shaken
-from workflow.figures.style import BLUE, VERMILION, WIDTH, make_figure, panel_letters, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import BLUE, VERMILION, WIDTH, panel_letters, plotted
 
 
 def data(
@@ -99,7 +97,3 @@ def _describe(data: xr.Dataset, k: int) -> str:
         rf"$\alpha={np.degrees(one.alpha):.1f}$°, $R={float(one.half_diagonal):g}$ m, "
         rf"$a_g={float(one.peak_acceleration) / STANDARD_GRAVITY:.2f}\,g$, $T_p={float(one.pulse_period):.2f}$ s"
     )
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,7 @@ from matplotlib.figure import Figure
 from rocking.block import STANDARD_GRAVITY
 from rocking.history import time_history
 from workflow.figures import figure_05
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, make_figure, panel_letters, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
 
 def data(**settings: Any) -> xr.Dataset:
@@ -81,7 +79,3 @@ def draw(data: xr.Dataset) -> Figure:
     axes[1].set_xlim(0, float(data.tau.max()))
     panel_letters(axes)
     return figure
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.history import time_history
-from workflow.figures.style import GREY, WIDTH, make_figure, panel_letters, plotted, shades
-from workflow.scripts.job import run
+from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
 
 SAMPLES = 900
 
@@ -94,7 +92,3 @@ def draw(data: xr.Dataset) -> Figure:
     figure.legend(handles, [rf"$\eta={label}$" for label in labels], loc="outside upper center", ncols=len(labels))
     panel_letters(axes.ravel())
     return figure
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +13,7 @@ from matplotlib.figure import Figure
 
 from rocking.closed_form import case_1_2_peak_by_pulse
 from rocking.cube import read_spectrum
-from workflow.figures.style import WIDTH, make_figure, panel_letters, plotted, shades
-from workflow.scripts.job import run
+from workflow.figures.style import WIDTH, panel_letters, plotted, shades
 
 DASHED = {"color": "black", "linestyle": (0, (2, 3)), "linewidth": 0.6}
 
@@ -107,7 +105,3 @@ def draw(data: xr.Dataset) -> Figure:
     bar.ax.minorticks_off()
     panel_letters(axes.ravel())
     return figure
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.closed_form import EXPANSION_TIME, ad_hoc_sine, pulse_end, uplift_phase
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, make_figure, panel_letters, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
 
 def data(*, slenderness: float, frequency_ratio: Sequence[float]) -> xr.Dataset:
@@ -70,7 +68,3 @@ def draw(data: xr.Dataset) -> Figure:
     figure.supxlabel(r"time since uplift $\tau=pt$ [-]", fontsize=8)
     figure.supylabel(r"ground acceleration $\ddot{u}_g/a_g$ [-]", fontsize=8)
     return figure
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +14,7 @@ from matplotlib.figure import Figure
 from rocking.closed_form import limit_amplitude, small_peak
 from rocking.cube import read_spectrum
 from rocking.scale_law import largest_deviation, restitution_exponent
-from workflow.figures.style import WIDTH, make_figure, panel_letters, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import WIDTH, panel_letters, plotted
 
 
 def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: float) -> xr.Dataset:
@@ -102,7 +100,3 @@ def _map(ax: Axes, data: xr.Dataset, name: str, colours: str, norm: Normalize, l
     bar.set_label(label)
     bar.ax.tick_params(labelsize=6)
     bar.ax.minorticks_off()
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

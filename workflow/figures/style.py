@@ -1,19 +1,17 @@
-"""What all figures share: size, type, colours that stay apart for colour-blind eyes, and how they are saved."""
+"""What all figures share: size, type, colours that stay apart for colour-blind eyes, and variables of plotted data."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from rocking.cube import MODEL_RESULT, describe, write_dataset
+from rocking.cube import MODEL_RESULT
 
 WIDTH = 6.7
 """Width of a figure in print [in]."""
@@ -58,40 +56,3 @@ def panel_letters(axes: Sequence[Axes]) -> None:
 def plotted(dims: str | Sequence[str], values: ArrayLike, long_name: str, **attributes: Any) -> xr.Variable:
     """A variable of plotted data; dimensionless unless `units` says otherwise."""
     return xr.Variable(dims, np.asarray(values), {**MODEL_RESULT, "long_name": long_name, **attributes})
-
-
-def make_figure(
-    data: Callable[..., xr.Dataset],
-    draw: Callable[[xr.Dataset], Figure],
-    *,
-    svg: Path,
-    png: Path,
-    nc: Path,
-    provenance: Mapping[str, str],
-    paper: Mapping[str, Any] | None = None,
-    ours: Mapping[str, Any] | None = None,
-    **inputs: Any,
-) -> None:
-    """Compute the plotted data, save them, draw them, save the drawing twice.
-
-    Parameters
-    ----------
-    data : callable
-        Takes the input paths and the configured values by name, returns what is plotted, with `title` and `summary`.
-    draw : callable
-        Draws that data set and nothing else.
-    svg, png, nc : path
-        Outputs.
-    provenance : mapping
-        Digests of the code and settings.
-    paper, ours : mapping, optional
-        Values that the paper prints, and values that it does not print and that we chose.
-    **inputs : path or list of paths
-        Data sets to read.
-    """
-    dataset = data(**inputs, **(paper or {}), **(ours or {}))
-    chosen = {"values_chosen_here": ", ".join(ours)} if ours else {}
-    write_dataset(describe(dataset, id=nc.stem, history=f"workflow/figures/{nc.stem}", **chosen, **provenance), nc)
-    figure = draw(dataset)
-    figure.savefig(svg, metadata={"Date": None, "Creator": None})
-    figure.savefig(png, metadata={"Software": None})

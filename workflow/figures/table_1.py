@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.orientation import Orientation, multiplication_table
-from workflow.figures.style import make_figure, plotted
-from workflow.scripts.job import run
+from workflow.figures.style import plotted
 
 
 def data() -> xr.Dataset:
@@ -45,7 +42,3 @@ def draw(data: xr.Dataset) -> Figure:
         if row == 0 or column == -1:
             cell.set_facecolor("#E4EEF6")
     return figure
-
-
-if __name__ == "__main__":
-    run(partial(make_figure, data, draw), snakemake)  # noqa: F821  (given by Snakemake)

@@ -28,14 +28,14 @@ def overturning_files(pulse, etas):
     return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
 
 
-def provenance(rule_name, script, settings, products):
+def provenance(rule_name, scripts, settings, products):
     """Digests of the code and the settings behind a rule's products, which are noted for the manifest.
 
     Snakemake sees a changed script, but not a changed module that the script imports: as a parameter, the digest of
-    the script and of all that it imports makes it see both, and nothing that the script does not import.
+    the scripts and of all that they import makes it see both, and nothing that they do not import.
     """
     digests = {
-        "code_sha256": code_digest(PROJECT / "workflow" / script),
+        "code_sha256": code_digest(*(PROJECT / "workflow" / script for script in scripts)),
         "settings_sha256": settings_digest(settings),
     }
     for path in products:

@@ -3,14 +3,14 @@
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",
-    "scripts/spectra.py",
+    ["scripts/spectra.py"],
     SPECTRUM_SETTINGS,
     [path for pulse in PULSES for path in spectrum_files(pulse, ETAS)],
 )
 OVERTURNING_SETTINGS = {"boundary": config["boundary"], "restitution": config["restitution"]}
 OVERTURNING_PROVENANCE = provenance(
     "overturning",
-    "scripts/overturning.py",
+    ["scripts/overturning.py"],
     OVERTURNING_SETTINGS,
     [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
 )

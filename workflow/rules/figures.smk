@@ -31,9 +31,12 @@ for _figure, _files in FIGURES.items():
             f"logs/benchmarks/{_figure}.tsv"
         params:
             **_figures[_figure],
-            provenance=provenance(_name, f"figures/{_name}.py", _figures[_figure], _files.values()),
+            figure=_name,
+            provenance=provenance(
+                _name, ["scripts/figure.py", f"figures/{_name}.py"], _figures[_figure], _files.values()
+            ),
         script:
-            f"../figures/{_name}.py"
+            "../scripts/figure.py"
 
 
 FIGURE_FILES = list(chain.from_iterable(files.values() for files in FIGURES.values()))

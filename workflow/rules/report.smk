@@ -8,6 +8,7 @@ rule claims:
     input:
         boundaries=overturning_files("sine", ETAS),
         cubes=spectrum_files("sine", ETAS),
+        collapse="results/figures/figure-06.nc",
     output:
         **CLAIM_FILES,
     log:
@@ -16,7 +17,7 @@ rule claims:
         "logs/benchmarks/claims.tsv"
     params:
         **config["claims"],
-        provenance=provenance("claims", "scripts/claims.py", config["claims"], CLAIM_FILES.values()),
+        provenance=provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values()),
     script:
         "../scripts/claims.py"
 

@@ -1,7 +1,5 @@
 """Runs the tests of the finished products (workflow/checks) and keeps their verdicts."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Sequence

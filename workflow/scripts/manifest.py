@@ -1,7 +1,5 @@
 """Lists every product with its size, sha256, rule and the digests of the code and the settings behind it."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping, Sequence

@@ -1,9 +1,8 @@
 """Traces the overturning boundaries of one pulse; for the sine, beside the closed forms with their difference."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,19 +18,19 @@ def main(
     *,
     pulse: str,
     restitution: Sequence[float],
-    boundary: Mapping[str, Mapping[str, float]],
+    boundary: Mapping[str, Any],
     boundaries: Sequence[Path],
     provenance: Mapping[str, str],
 ) -> None:
     """Trace one set of curves per restitution [-] inside the configured window and write it to its path."""
-    window = {name: (limits["low"], limits["high"]) for name, limits in boundary.items()}
+    limits = {name: (boundary[name]["low"], boundary[name]["high"]) for name in ("slenderness", "frequency_ratio")}
     for eta, path in zip(restitution, boundaries, strict=True):
-        curves = curves_of(pulse, eta, window)
+        curves = curves_of(pulse, eta, nodes=boundary["nodes"], **limits)
         write_dataset(describe(curves, **provenance), path)
         print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
-def curves_of(pulse: str, restitution: float, window: Mapping[str, tuple[float, float]]) -> xr.Dataset:
+def curves_of(pulse: str, restitution: float, **window: Any) -> xr.Dataset:
     """The boundary curves with our attributes: contiguous ragged polylines, `row_size` points each."""
     traced = overturning_boundary(pulse, restitution=restitution, **window)
     if pulse == "sine":

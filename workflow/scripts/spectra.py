@@ -1,7 +1,5 @@
 """Makes the spectrum cubes of one pulse, one file for each coefficient of restitution."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,0 +1,93 @@
+# ruff: noqa: D103
+"""The finished products: all there, whole, and saying what they should. Run by `rule check_results`."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rocking.closed_form import overturning_amplitudes
+from rocking.cube import read_dataset, read_spectrum
+from rocking.response import Outcome
+from rocking.solve import peak_response
+
+RESULTS = Path(os.environ["ROCKING_RESULTS"])
+PRODUCTS = json.loads((RESULTS / "manifest.json").read_text(encoding="utf-8"))["products"]
+
+
+def listed(folder: str, suffix: str = ".nc") -> list[str]:
+    return [name for name in PRODUCTS if name.startswith(folder) and name.endswith(suffix)]
+
+
+@pytest.mark.parametrize("name", PRODUCTS)
+def test_product_is_the_one_listed(name: str) -> None:
+    content = (RESULTS / name).read_bytes()
+    assert len(content) == PRODUCTS[name]["size"]
+    assert hashlib.sha256(content).hexdigest() == PRODUCTS[name]["sha256"]
+
+
+@pytest.mark.parametrize("name", listed("spectra/"))
+def test_cube_answers_as_the_solver(name: str) -> None:
+    cube = read_spectrum(RESULTS / name).sel(alpha=0.0)
+    rows, columns = (np.linspace(0, n - 1, 12).astype(int) for n in cube.peak_rotation.shape)
+    part = cube.isel(slenderness=rows, frequency_ratio=columns)
+    solved = peak_response(
+        cube.pulse.attrs["pulse_name"],
+        slenderness=part.slenderness.values[:, None],
+        frequency_ratio=part.frequency_ratio.values,
+        restitution=float(cube.restitution),
+    )
+    # 1e-6: chatter magnifies the rounding by which two processors differ
+    np.testing.assert_allclose(part.peak_rotation, solved.peak_rotation, rtol=1e-6)
+    np.testing.assert_array_equal(part.outcome, solved.outcome)
+
+
+@pytest.mark.parametrize("name", listed("spectra/"))
+def test_cube_is_consistent(name: str) -> None:
+    cube = read_spectrum(RESULTS / name)
+    overturned = cube.outcome.values >= Outcome.OVERTURNED_DIRECTLY
+    np.testing.assert_array_equal(np.isnan(cube.peak_rotation.values), overturned)
+    assert np.all(cube.exceeded_alpha.values[overturned] == 1)
+    np.testing.assert_array_equal(cube.peak_rotation.values > 1, (cube.exceeded_alpha.values == 1) & ~overturned)
+    assert np.isfinite(cube.interpolation_error.values).any()
+
+
+@pytest.mark.parametrize("name", listed("overturning/sine/"))
+def test_traced_boundaries_agree_with_the_closed_forms(name: str) -> None:
+    curves = read_dataset(RESULTS / name)
+    assert curves.row_size.sum() == curves.sizes["point"]
+    assert np.nanmax(np.abs(curves.closed_form_difference)) < 1e-9
+    # a point halfway between the two branches overturns, so the closed forms are not vacuous
+    middle = overturning_amplitudes(3.0, float(curves.restitution))
+    a = 0.5 * (middle.falls_from + middle.safe_again)
+    assert peak_response(
+        "sine", slenderness=1 / a, frequency_ratio=3.0, restitution=float(curves.restitution)
+    ).overturned
+
+
+@pytest.mark.parametrize("name", listed("figures/", ".png"))
+def test_figure_comes_with_its_data_and_a_scalable_drawing(name: str) -> None:
+    stem = RESULTS / name.removesuffix(".png")
+    assert (RESULTS / name).read_bytes().startswith(b"\x89PNG")
+    svg = stem.with_name(stem.name + ".svg").read_text(encoding="utf-8")
+    assert "<svg" in svg
+    assert "dc:date" not in svg
+    data = read_dataset(stem.with_name(stem.name + ".nc"))
+    assert data.attrs["title"]
+    assert data.data_vars
+
+
+def test_every_claim_has_a_verdict() -> None:
+    claims = json.loads((RESULTS / "claims.json").read_text(encoding="utf-8"))["claims"]
+    keys = [claim["key"] for claim in claims]
+    assert len(set(keys)) == len(keys) > 20
+    assert all(claim["verdict"] and claim["found"] for claim in claims)
+    verdicts = {claim["key"]: claim["verdict"] for claim in claims}
+    for exact in ("curve-case-2", "curve-case-1.2", "curve-case-1.1", "collapse", "table-1", "no-real-root"):
+        assert verdicts[exact] == "holds"
+    assert verdicts["complete"] == "does not hold"
