@@ -80,7 +80,10 @@ def cut(slenderness: float, flight: Record) -> int:
         level = 1.0 if f_left > slenderness else (-1.0 if f_left < -slenderness else 0.0)
         place(flight, count, left, level, rise)
         for k in range(terms):
-            flight.cut_cosine[count, k], flight.cut_sine[count, k] = flight.end_cosine[piece, k], flight.end_sine[piece, k]
+            flight.cut_cosine[count, k], flight.cut_sine[count, k] = (
+                flight.end_cosine[piece, k],
+                flight.end_sine[piece, k],
+            )
         count += 1
         for turn in (-rise, rise):
             target = turn * slenderness
@@ -102,5 +105,8 @@ def cut(slenderness: float, flight: Record) -> int:
             count += 1
     place(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
     for k in range(terms):
-        flight.cut_cosine[count, k], flight.cut_sine[count, k] = flight.end_cosine[flight.pieces, k], flight.end_sine[flight.pieces, k]
+        flight.cut_cosine[count, k], flight.cut_sine[count, k] = (
+            flight.end_cosine[flight.pieces, k],
+            flight.end_sine[flight.pieces, k],
+        )
     return count

@@ -61,6 +61,14 @@ def uplift(flight: Record) -> bool:
 
 
 @kernel
+def raise_peak(flight: Record, peak: float, mode: int) -> None:
+    """Take a later peak if it is higher; of two that differ by rounding the mode of the earlier one stands."""
+    if peak > flight.peak * (1.0 + 1e-12):
+        flight.mode = mode
+    flight.peak = max(flight.peak, peak)
+
+
+@kernel
 def conclude(flight: Record, z: float, w: float, eta: float, fallen: bool) -> None:
     """Decide the fate from the state at the end of the pulse, or after a fall during it."""
     flight.end_z, flight.end_w, flight.end_sign = z, w, flight.sign
@@ -69,8 +77,8 @@ def conclude(flight: Record, z: float, w: float, eta: float, fallen: bool) -> No
         flight.outcome = DIRECTLY if escapes == 1 and flight.impacts == 0 else AFTER_IMPACT
         flight.impacts += escapes - 1
         flight.peak, flight.mode = math.nan, -1
-    elif peak > flight.peak:
-        flight.peak, flight.mode = peak, 2 * (flight.impacts + after) + 1
+    else:
+        raise_peak(flight, peak, 2 * (flight.impacts + after) + 1)
 
 
 @kernel
@@ -112,8 +120,7 @@ def advance(flight: Record, eta: float) -> bool:
     else:
         ended, h, w, z, top = fly_steps(flight)
     flight.length = h
-    if top > flight.peak:
-        flight.peak, flight.mode = top, 2 * flight.impacts
+    raise_peak(flight, top, 2 * flight.impacts)
     if ended != IMPACT:
         conclude(flight, z, w, eta, ended == FALLEN)
         return False

@@ -16,8 +16,8 @@ from rocking.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
 MOST_PIECES = 84
 """Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
 
-COEFFICIENTS = 13
-"""Length of the series of the slender arcs: degree 12 in z."""
+COEFFICIENTS = 17
+"""Length of the series of the slender arcs: degree 16 in z."""
 
 ORDER = 20
 """Degree of the Taylor steps."""

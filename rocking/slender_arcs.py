@@ -19,8 +19,9 @@ from rocking.scratch import COEFFICIENTS
 LARGEST_EXPONENT = 350.0
 """e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""
 
-RADIUS = 0.25
-"""Largest max(1, Omega) |delta| at which the series below is exact to rounding: 0.25^12/12! = 1e-16."""
+RADIUS = 0.68
+"""Largest max(1, Omega) |delta| at which the series below is exact to rounding: 0.68^16/16! = 1e-16."""
+
 
 @kernel
 def hyperbolic(h: float) -> tuple[float, float]:
@@ -110,8 +111,9 @@ def rotation(flight: Record, delta: float) -> float:
     d4 = d2 * d2
     low = (c[0] + c[1] * delta) + d2 * (c[2] + c[3] * delta)
     middle = (c[4] + c[5] * delta) + d2 * (c[6] + c[7] * delta)
-    high = (c[8] + c[9] * delta) + d2 * (c[10] + c[11] * delta) + d4 * c[12]
-    return low + d4 * (middle + d4 * high)
+    high = (c[8] + c[9] * delta) + d2 * (c[10] + c[11] * delta)
+    top = (c[12] + c[13] * delta) + d2 * (c[14] + c[15] * delta) + d4 * c[16]
+    return low + d4 * (middle + d4 * (high + d4 * top))
 
 
 @kernel
@@ -123,7 +125,8 @@ def velocity(flight: Record, delta: float) -> float:
     low = (c[1] + 2.0 * c[2] * delta) + d2 * (3.0 * c[3] + 4.0 * c[4] * delta)
     middle = (5.0 * c[5] + 6.0 * c[6] * delta) + d2 * (7.0 * c[7] + 8.0 * c[8] * delta)
     high = (9.0 * c[9] + 10.0 * c[10] * delta) + d2 * (11.0 * c[11] + 12.0 * c[12] * delta)
-    return low + d4 * (middle + d4 * high)
+    top = (13.0 * c[13] + 14.0 * c[14] * delta) + d2 * (15.0 * c[15] + 16.0 * c[16] * delta)
+    return low + d4 * (middle + d4 * (high + d4 * top))
 
 
 @kernel
@@ -134,5 +137,14 @@ def acceleration(flight: Record, delta: float) -> float:
     d4 = d2 * d2
     low = (2.0 * c[2] + 6.0 * c[3] * delta) + d2 * (12.0 * c[4] + 20.0 * c[5] * delta)
     middle = (30.0 * c[6] + 42.0 * c[7] * delta) + d2 * (56.0 * c[8] + 72.0 * c[9] * delta)
-    high = (90.0 * c[10] + 110.0 * c[11] * delta) + d2 * (132.0 * c[12])
-    return low + d4 * (middle + d4 * high)
+    high = (90.0 * c[10] + 110.0 * c[11] * delta) + d2 * (132.0 * c[12] + 156.0 * c[13] * delta)
+    top = (182.0 * c[14] + 210.0 * c[15] * delta) + d2 * (240.0 * c[16])
+    return low + d4 * (middle + d4 * (high + d4 * top))
+
+
+@kernel
+def jerk(flight: Record, delta: float) -> float:
+    """z''' there, to some digits only: it scales corrections."""
+    c = flight.coef
+    low = 6.0 * c[3] + delta * (24.0 * c[4] + delta * (60.0 * c[5] + delta * 120.0 * c[6]))
+    return low + delta**4 * (210.0 * c[7] + delta * 336.0 * c[8])

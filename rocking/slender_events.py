@@ -60,9 +60,7 @@ def run_peak(
 
 
 @kernel
-def fly(
-    flight: Record, eta: float
-) -> tuple[int, float, float, float, float]:
+def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start to its impact or to the end of the pulse.
 
     Returns what ended it (0: impact, 1: pulse), time and velocity w there (after z at the end of the pulse), and the
@@ -102,9 +100,7 @@ def fly(
                 return 1, h_right, w_right, z_right, largest
             if not known:
                 z_left, w_left = state(flight, h_left, flight.cut_cosine[left], flight.cut_sine[left])
-            top, h_peak, z_peak = run_peak(
-                flight, left, right, h_left, z_left, w_left, z_right, w_right
-            )
+            top, h_peak, z_peak = run_peak(flight, left, right, h_left, z_left, w_left, z_right, w_right)
             largest = max(largest, top)
             if z_right <= 0.0:
                 guess = h_peak + hermite_root(z_peak, 0.0, z_right, w_right, h_right - h_peak)
