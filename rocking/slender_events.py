@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from rocking.compilation import Record, Vector, kernel
+from rocking.compilation import Record, kernel
 from rocking.free_rocking import free_fate
 from rocking.slender_arcs import RADIUS, acceleration, expand, pull, rotation, velocity
-from rocking.slender_flight import hermite_root, locate, state, turn
+from rocking.slender_flight import hermite_root, locate, state
 
 
 @kernel
@@ -64,8 +64,8 @@ def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start to its impact or to the end of the pulse.
 
     Returns what ended it (0: impact, 1: pulse), time and velocity w there (after z at the end of the pulse), and the
-    largest z on the way; the latter only if the block is not overturned for good. Beyond
-    z + w = `limit` = 1 + a no ground acceleration of this pulse brings the block back, since (z + w)' = (z + w) - q, q <= limit.
+    largest z on the way; the latter only if the block is not overturned for good. Beyond z + w = `limit` = 1 + a no
+    ground acceleration of this pulse brings the block back, since (z + w)' = (z + w) - q and q <= limit.
     """
     start, omega = flight.phase, flight.omega
     z_left, w_left, h_left = 0.0, flight.w0, 0.0

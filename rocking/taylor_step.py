@@ -2,7 +2,7 @@
 
 In the mirror image of a flight, z = |theta|/alpha and w = dz/dtau, (2.2) reads
 
-    z'' = -S - T F C,   S = sin(alpha (1 - z))/alpha,  C = cos(alpha (1 - z)),  T = tan(alpha)/alpha,  F = sgn(theta) a f
+    z'' = -S - T F C,  S = sin(alpha (1 - z))/alpha,  C = cos(alpha (1 - z)),  T = tan(alpha)/alpha,  F = sgn(theta) a f
 
 and tends to (3.1) as alpha goes to 0 without a special form. S and C follow from S' = -C z', C' = alpha^2 S z'.
 """
