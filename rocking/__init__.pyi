@@ -16,3 +16,4 @@ from .pulses import get_pulse as get_pulse
 from .response import Outcome as Outcome
 from .response import Response as Response
 from .solve import peak_response as peak_response
+from .version import __version__ as __version__
