@@ -20,8 +20,8 @@ include: "workflow/rules/report.smk"
 
 rule all:
     default_target: True
-    message:
-        "All products are in results/, listed in results/manifest.json"
     input:
         manifest="results/manifest.json",
         checks="results/checks.txt",
+    message:
+        "All products are in results/, listed in results/manifest.json"

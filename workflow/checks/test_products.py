@@ -1,4 +1,3 @@
-# ruff: noqa: D103
 """The finished products: all there, whole, and saying what they should. Run by `rule check_results`."""
 
 from __future__ import annotations

@@ -10,6 +10,8 @@ os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.enviro
 
 from rocking.provenance import code_digest, settings_digest
 
+from snakemake.exceptions import WorkflowError
+
 ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
 PULSES = config["pulses"]
 PRODUCTS = {}  # path -> rule and digests, for the manifest
@@ -18,6 +20,25 @@ PRODUCTS = {}  # path -> rule and digests, for the manifest
 wildcard_constraints:
     pulse="[a-z0-9_]+",
     eta=r"[01]\.[0-9]{2}",
+
+
+def check_configuration():
+    """Refuse what the schema cannot see: names of files that would clash, figures of data that nobody makes."""
+    for eta, name in zip(config["restitution"], ETAS):
+        if float(name) != eta:
+            raise WorkflowError(f"restitution {eta}: two decimals at most, they name the files")
+    needed = {"figure-04": ["sine"], "figure-08": ["sine", "cosine"], "figure-scale-law": ["sine"]}
+    for figure, pulses in needed.items():
+        for pulse in pulses:
+            if pulse not in PULSES:
+                raise WorkflowError(f"{figure} needs the pulse {pulse}, which is not among the pulses {PULSES}")
+        values = config["figures"][figure]
+        for eta in {**values.get("paper", {}), **values["ours"]}["restitution"]:
+            if f"{eta:.2f}" not in ETAS:
+                raise WorkflowError(f"{figure} asks for restitution {eta:.2f}, which is not among {ETAS}")
+
+
+check_configuration()
 
 
 def spectrum_files(pulse, etas):

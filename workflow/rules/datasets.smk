@@ -17,8 +17,6 @@ OVERTURNING_PROVENANCE = provenance(
 
 
 rule spectra:
-    message:
-        "Spectrum cubes of the {wildcards.pulse} pulse"
     output:
         cubes=spectrum_files("{pulse}", ETAS),
     log:
@@ -29,13 +27,13 @@ rule spectra:
         **SPECTRUM_SETTINGS,
         provenance=SPECTRUM_PROVENANCE,
         pulse=lambda wildcards: wildcards.pulse,
+    message:
+        "Spectrum cubes of the {wildcards.pulse} pulse"
     script:
         "../scripts/spectra.py"
 
 
 rule overturning:
-    message:
-        "Overturning boundaries of the {wildcards.pulse} pulse"
     output:
         boundaries=overturning_files("{pulse}", ETAS),
     log:
@@ -46,5 +44,7 @@ rule overturning:
         **OVERTURNING_SETTINGS,
         provenance=OVERTURNING_PROVENANCE,
         pulse=lambda wildcards: wildcards.pulse,
+    message:
+        "Overturning boundaries of the {wildcards.pulse} pulse"
     script:
         "../scripts/overturning.py"

@@ -9,9 +9,7 @@ FIGURE_INPUTS = {
     },
     "figure-scale-law": {"cubes": spectrum_files("sine", _figures["figure-scale-law"]["ours"]["restitution"])},
 }
-FIGURES = {
-    figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures
-}
+FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
 
 for _figure, _files in FIGURES.items():
     _name = _figure.replace("-", "_")
@@ -19,8 +17,6 @@ for _figure, _files in FIGURES.items():
     rule:
         name:
             _name
-        message:
-            f"Drawing {_figure}"
         input:
             **FIGURE_INPUTS.get(_figure, {}),
         output:
@@ -35,6 +31,8 @@ for _figure, _files in FIGURES.items():
             provenance=provenance(
                 _name, ["scripts/figure.py", f"figures/{_name}.py"], _figures[_figure], _files.values()
             ),
+        message:
+            f"Drawing {_figure}"
         script:
             "../scripts/figure.py"
 

@@ -3,8 +3,6 @@ CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md"}
 
 
 rule claims:
-    message:
-        "Checking the quantitative claims of sections 3 and 4"
     input:
         boundaries=overturning_files("sine", ETAS),
         cubes=spectrum_files("sine", ETAS),
@@ -18,13 +16,13 @@ rule claims:
     params:
         **config["claims"],
         provenance=provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values()),
+    message:
+        "Checking the quantitative claims of sections 3 and 4"
     script:
         "../scripts/claims.py"
 
 
 rule manifest:
-    message:
-        "Listing all products"
     input:
         products=list(PRODUCTS),
     output:
@@ -37,13 +35,13 @@ rule manifest:
         sources=PRODUCTS,
         title=config["title"],
         code=code_digest(PROJECT / "workflow/scripts/manifest.py"),
+    message:
+        "Listing all products"
     script:
         "../scripts/manifest.py"
 
 
 rule check_results:
-    message:
-        "Testing the finished products"
     input:
         manifest=rules.manifest.output.manifest,
         tests=[str(path) for path in sorted((PROJECT / "workflow/checks").glob("*.py"))],
@@ -55,5 +53,7 @@ rule check_results:
         "logs/benchmarks/check_results.tsv"
     params:
         code=code_digest(*(PROJECT / "workflow/checks").glob("*.py")),
+    message:
+        "Testing the finished products"
     script:
         "../scripts/check_results.py"

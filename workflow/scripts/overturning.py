@@ -35,14 +35,15 @@ def curves_of(pulse: str, restitution: float, **window: Any) -> xr.Dataset:
     traced = overturning_boundary(pulse, restitution=restitution, **window)
     if pulse == "sine":
         traced = traced.assign(_closed_forms(traced, restitution))
-    traced["outcome"].attrs |= VARIABLES["outcome"][1] | {"long_name": "fate on the overturning side"}
+    for name, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
+        traced[name].attrs |= VARIABLES["outcome"][1] | {"long_name": f"fate on the {side} side"}
     traced["alpha"] = xr.Variable(
         "curve",
         np.zeros(traced.sizes["curve"]),
         {"units": "rad", "long_name": "slenderness angle of the block, 0 for the slender limit"},
     )
-    for name in ("slenderness", "frequency_ratio", "impacts"):
-        traced[name].attrs |= MODEL_RESULT
+    for variable in traced.data_vars.values():
+        variable.attrs = MODEL_RESULT | variable.attrs
     return describe(
         traced.drop_attrs(deep=False).assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
