@@ -17,7 +17,7 @@ from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_flight, turn
 from rocking.taylor_flight import FALLEN, IMPACT, fly_steps
 
-IMPACT_LIMIT = 100_000
+IMPACT_LIMIT = 20_000
 """Impacts after which a block that neither rests nor overturns is declared at rest, and flagged as chattering."""
 
 NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
