@@ -1,4 +1,4 @@
-"""Settings shared by all tests: the same random examples on every run."""
+"""Settings shared by all tests: the same random examples on every run, one run of the workflow."""
 
 from hypothesis import HealthCheck, settings
 
@@ -7,3 +7,5 @@ settings.register_profile(
     "rocking", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("rocking")
+
+pytest_plugins = ["tests.workflow_fixtures"]
