@@ -28,7 +28,6 @@ test: .venv/project ## format, lint, types and all tests, among them a small rea
 	ruff check .
 	mypy
 	snakefmt --check Snakefile workflow
-	snakemake --lint
 	pytest
 
 serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)

@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import tomllib
-from importlib import metadata
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -18,6 +17,7 @@ ROOT = Path(__file__).parents[1]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 PUBLIC_NAMES = {
+    "__version__",
     "Block",
     "Cube",
     "DatasetError",
@@ -62,7 +62,7 @@ def test_public_names() -> None:
 
 
 def test_version_is_stated_once() -> None:
-    assert metadata.version("rocking") == VERSION
+    assert rocking.__version__ == VERSION
     stated = re.compile(rf"(?<![\d.]){re.escape(VERSION)}(?![\d.])")
     ours = ("rocking/", "api/", "workflow/", "docs/", "README.md", "CITATION.cff", "Makefile", "Snakefile")
     places = [name for name, text in TEXTS.items() if name.startswith(ours) and stated.search(text)]
