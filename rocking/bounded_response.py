@@ -80,8 +80,9 @@ def solve_with_bound(
 ) -> BoundedResponse:
     """Ask the solver, and ask it again beside the question to learn how well the question determines the answer.
 
-    The bound is `SOLVER_ERROR` (`RIGID_ERROR`) of the peak, plus the change of the peak under relative changes of `SOLVER_ERROR` in
-    each of the three groups: rounding errors act like such changes, and beside a fate boundary they are amplified.
+    The bound is `SOLVER_ERROR` (`RIGID_ERROR`) of the peak, plus the change of the peak under relative changes of
+    `SOLVER_ERROR` in each of the three groups: rounding errors act like such changes, and beside a fate boundary they
+    are amplified.
 
     Parameters
     ----------
