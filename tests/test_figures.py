@@ -1,0 +1,87 @@
+"""Figures: drawn twice they are the same file, and their data say what the captions claim."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from rocking.cube import read_dataset
+from tests.workflow_fixtures import PROJECT, SMOKE
+from workflow.scripts.figure import main
+
+CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
+
+
+@pytest.mark.parametrize("name", ["figure-01", "table-1"])
+def test_the_same_figure_has_the_same_bytes(name: str, smoke_results: Path, tmp_path: Path) -> None:
+    paths = {kind: tmp_path / f"{name}.{kind}" for kind in ("svg", "png", "nc")}
+    written = read_dataset(smoke_results / f"figures/{name}.nc").attrs
+    provenance = {key: written[key] for key in ("code_sha256", "settings_sha256")}
+    main(figure=name.replace("-", "_"), **paths, **CONFIGURED[name], provenance=provenance)
+    for kind, path in paths.items():
+        there = smoke_results / f"figures/{name}.{kind}"
+        assert hashlib.sha256(path.read_bytes()).digest() == hashlib.sha256(there.read_bytes()).digest(), kind
+
+
+@pytest.mark.parametrize("name", CONFIGURED)
+def test_figure_says_which_values_are_ours_and_has_a_caption(name: str, smoke_results: Path) -> None:
+    attributes = read_dataset(smoke_results / f"figures/{name}.nc").attrs
+    assert attributes.get("values_chosen_here", "") == ", ".join(CONFIGURED[name].get("ours", {}))
+    assert f"[{name}](#" in (PROJECT / "docs/figures.md").read_text()
+
+
+def test_two_blocks_collapse_to_the_master_curve(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-06.nc")
+    for name in ("rotation", "angular_velocity"):
+        one, other = data[name].values
+        scale = np.abs(one).max()
+        np.testing.assert_allclose(one, other, atol=1e-9 * scale)
+    master = np.interp(data.tau[0], data.tau_master, data.master_rotation)
+    np.testing.assert_allclose(data.rotation[0], master, atol=1e-9)
+
+
+def test_dimensional_blocks_have_the_groups_they_were_given(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-05.nc")
+    gravity = 9.80665
+    np.testing.assert_allclose(gravity * data.alpha / data.peak_acceleration, data.attrs["slenderness"], rtol=1e-12)
+    omega = 2 * np.pi / data.pulse_period / data.frequency_parameter
+    np.testing.assert_allclose(omega, data.attrs["frequency_ratio"], rtol=1e-12)
+    assert np.ptp(data.half_diagonal.values) > 1
+    assert np.ptp(data.alpha.values) > 0.1
+
+
+def test_figure_2_shows_what_its_cases_are(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-02.nc")
+    for i, case in enumerate(data.attrs["case_names"].split()):
+        overturning, surviving = data.rotation[i]
+        last = overturning.values[np.isfinite(overturning)][-1]
+        assert abs(last) > 2
+        assert np.abs(surviving.values).max() < 2
+        impact, end = float(data.first_impact[i, 0]), float(data.pulse_end[i])
+        assert {"2": np.isnan(impact) and last < 0, "1.2": impact > end and last > 0, "1.1": impact < end and last > 0}[
+            case
+        ]
+
+
+def test_closed_form_of_figure_8_is_exact_on_its_main_branch(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-08.nc")
+    top = data.sel(slenderness=0.30, method="nearest").where(data.frequency_ratio > 6, drop=True)
+    spectrum, closed = top.spectrum[0].values, top.closed_form.values
+    known = np.isfinite(spectrum)
+    assert known.sum() > 40
+    np.testing.assert_allclose(closed[known], spectrum[known], rtol=1e-10)
+    # and is not where the first impact falls inside the pulse
+    below = data.sel(slenderness=0.60, method="nearest").where(data.frequency_ratio > 6, drop=True)
+    assert np.nanmin(np.abs(below.closed_form.values / below.spectrum[0].values - 1)) > 0.05
+
+
+def test_islands_of_figure_4_lie_where_expected(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-04.nc")
+    assert data.sizes["point"] > 50
+    assert 1 / data.island_amplitude.max() > 0.89
+    assert data.island_frequency_ratio.max() < 1.1
+    assert set(np.unique(data.island_impacts)) >= {3, 5}
