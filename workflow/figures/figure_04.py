@@ -65,9 +65,10 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
 def _tips(eta: np.ndarray) -> np.ndarray:
     """Frequency ratios just short of where the two branches of each restitution meet."""
     low, high = np.full(eta.size, 2.0), np.full(eta.size, 60.0)
+    during = case_1_1_end(eta)
     for _ in range(40):  # overturning after one impact ends once and for all
         middle = 0.5 * (low + high)
-        falls = np.isfinite(case_1_2_amplitudes(middle, eta).upper) | (middle < case_1_1_end(eta))
+        falls = np.isfinite(case_1_2_amplitudes(middle, eta).upper) | (middle < during)
         low, high = np.where(falls, middle, low), np.where(falls, high, middle)
     return low
 
