@@ -43,6 +43,8 @@ def crossing(level: float, left: float, right: float, rising: bool, flight: Reco
     phi = 0.5 * (left + right)
     for _ in range(100):
         f, slope = shape_and_slope(phi, flight)
+        if f == level:
+            return phi
         if (f > level) == rising:
             right = phi
         else:
@@ -50,7 +52,7 @@ def crossing(level: float, left: float, right: float, rising: bool, flight: Reco
         follow = phi - (f - level) / slope if slope != 0.0 else left
         if not left < follow < right:
             follow = 0.5 * (left + right)
-        if abs(follow - phi) <= 2e-16 * abs(phi):
+        if abs(follow - phi) <= 4.5e-16 * abs(phi):  # two neighbouring doubles could alternate for ever
             return follow
         phi = follow
     return phi

@@ -145,7 +145,7 @@ def polish(series: Vector, top: int, lo: float, hi: float, falling: bool, deflat
         follow = h - value / rate if rate != 0.0 else lo
         if not lo <= follow <= hi:
             follow = 0.5 * (lo + hi)
-        if abs(follow - h) <= 2e-16 * abs(h):
+        if abs(follow - h) <= 4.5e-16 * abs(h):
             return follow
         h = follow
     return h
