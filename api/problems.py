@@ -109,9 +109,12 @@ def _of_validation(status: int, error: pydantic_core.ErrorDetails | dict[str, An
     return problem(status, text, parameter=name, value=error["input"], allowed=allowed)
 
 
-async def _handle_http(_: Request, error: Exception) -> Response:
+async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     headers = dict(error.headers) if error.headers else None
+    methods = request.app.openapi()["paths"].get(request.url.path)
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and methods:
+        headers = {"Allow": ", ".join(method.upper() for method in methods)}  # of all routes of the path
     return problem(error.status_code, str(error.detail), headers)
 
 

@@ -5,12 +5,19 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking.errors import in_range
 from rocking.pulses import PULSE_NAMES
 
 PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
+
+# The border of the service, far outside of all practice: beyond it the solver's numbers leave the range of doubles.
+SMALLEST_SLENDERNESS = 1e-9
+FREQUENCY_RATIOS = (1e-6, 1e6)
+SMALLEST_ALPHA_DEG = 1e-6
 
 PulseName = Annotated[
     str,
@@ -21,12 +28,16 @@ Slenderness = Annotated[
     Field(
         description="dimensionless slenderness g tan(alpha)/a_g = 1/a [-]; from 1 on the block never uplifts",
         examples=[0.4],
-        json_schema_extra={"exclusiveMinimum": 0},
+        json_schema_extra={"minimum": SMALLEST_SLENDERNESS},
     ),
 ]
 FrequencyRatio = Annotated[
     float,
-    Field(description="frequency ratio omega_g/p [-]", examples=[5.0], json_schema_extra={"exclusiveMinimum": 0}),
+    Field(
+        description="frequency ratio omega_g/p [-]",
+        examples=[5.0],
+        json_schema_extra={"minimum": FREQUENCY_RATIOS[0], "maximum": FREQUENCY_RATIOS[1]},
+    ),
 ]
 Restitution = Annotated[
     float,
@@ -122,14 +133,27 @@ class HistoryQuestion(Question):
     format: Format = None
 
 
+def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """A slenderness or a frequency ratio inside the border of the service.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If one is outside.
+    """
+    if name == "slenderness":
+        return in_range(name, value, SMALLEST_SLENDERNESS, np.inf, closed="left")
+    return in_range(name, value, *FREQUENCY_RATIOS)
+
+
 def alpha_of(alpha_deg: float | None) -> float | None:
     """Slenderness angle [rad], None for the slender limit.
 
     Raises
     ------
     InvalidArgumentError
-        If it is not in [0, 90) degrees.
+        If it is neither 0 nor in [1e-6, 90) degrees.
     """
-    if alpha_deg is None:
+    if not alpha_deg:
         return None
-    return math.radians(float(in_range("alpha_deg", alpha_deg, 0.0, 90.0, closed="left", unit="deg"))) or None
+    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, 90.0, closed="left", unit="deg")))

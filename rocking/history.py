@@ -84,7 +84,7 @@ def time_history(
     outcome = Outcome(int(answer["outcome"]))
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
         fallen = np.flatnonzero(np.abs(rotation) > FALLEN)
-        last = int(fallen[0]) + 1 if fallen.size else int(np.flatnonzero(rotation)[-1]) + 1
+        last = int(fallen[0]) + 1 if fallen.size else int(np.flatnonzero(rotation).max(initial=0)) + 1
         tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
 
     return xr.Dataset(

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, Field, JsonValue
+from pydantic import BaseModel, Field
 
 from api.answers import ResponseAnswer, response_answer
 from api.questions import Method, PulseName, Question, ResponseQuestion, Tolerance
@@ -19,19 +19,31 @@ from rocking.groups import GroupSet, Problem, groups_of
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"])
 
-_Positive: dict[str, JsonValue] = {"exclusiveMinimum": 0}
+BORDER = {
+    "half_width": (1e-4, 1e4, "m"),
+    "half_height": (1e-4, 1e4, "m"),
+    "peak_acceleration": (1e-6, 1e6, "m/s2"),
+    "pulse_period": (1e-4, 1e4, "s"),
+    "gravity": (1e-3, 1e3, "m/s2"),
+}
+"""What the service takes, far outside of all practice, so that no number leaves the range of doubles."""
+
+
+def _quantity(name: str, text: str, **more: Any) -> Any:
+    low, high, unit = BORDER[name]
+    return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
 
 
 class BlockQuestion(Question):
     """A block and a pulse in SI units."""
 
     pulse: PulseName
-    half_width: float = Field(description="b [m]; the base is 2b wide", examples=[0.2], json_schema_extra=_Positive)
-    half_height: float = Field(description="h [m]", examples=[0.8], json_schema_extra=_Positive)
-    peak_acceleration: float = Field(description="a_g [m/s2]", examples=[4.0], json_schema_extra=_Positive)
-    pulse_period: float = Field(description="T_p = 2 pi/omega_g [s]", examples=[0.5], json_schema_extra=_Positive)
+    half_width: float = _quantity("half_width", "b; the base is 2b wide", examples=[0.2])
+    half_height: float = _quantity("half_height", "h", examples=[0.8])
+    peak_acceleration: float = _quantity("peak_acceleration", "a_g", examples=[4.0])
+    pulse_period: float = _quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
     restitution: Literal["housner"] | float = Field("housner", description="eta [-], or housner: (2.4)")
-    gravity: float = Field(STANDARD_GRAVITY, description="g [m/s2]", json_schema_extra=_Positive)
+    gravity: float = _quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
     tolerance: Tolerance = 1e-4
 
@@ -73,10 +85,11 @@ async def get_block(question: Annotated[BlockQuestion, Query()], service: Servic
 
 
 def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
+    for name, (low, high, unit) in BORDER.items():
+        in_range(name, getattr(question, name), low, high, unit=unit)
     block = Block(question.half_width, question.half_height, question.gravity)
     eta = _restitution(block, question.restitution)
-    period = float(in_range("pulse_period", question.pulse_period, 0.0, math.inf, closed="neither", unit="s"))
-    frequency = 2.0 * math.pi / period
+    frequency = 2.0 * math.pi / question.pulse_period
     problem = Problem(block.alpha, block.frequency_parameter, question.peak_acceleration, frequency, question.gravity)
     groups = groups_of(problem, GroupSet.RIGID)  # (5.3)
     asked = ResponseQuestion(

@@ -11,7 +11,7 @@ from fastapi import APIRouter, Query, Request, Response
 from api.answers import HistoryAnswer
 from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
-from api.questions import HistoryQuestion, alpha_of
+from api.questions import HistoryQuestion, alpha_of, checked
 from api.service import ServiceDep
 from rocking.history import time_history
 
@@ -30,8 +30,8 @@ async def get_history(question: Annotated[HistoryQuestion, Query()], request: Re
 def _history(question: HistoryQuestion, form: str) -> Response:
     motion = time_history(
         question.pulse,
-        slenderness=question.slenderness,
-        frequency_ratio=question.frequency_ratio,
+        slenderness=float(checked("slenderness", question.slenderness)),
+        frequency_ratio=float(checked("frequency_ratio", question.frequency_ratio)),
         restitution=question.restitution,
         alpha=alpha_of(question.alpha_deg),
         duration=question.duration,

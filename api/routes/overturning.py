@@ -20,6 +20,9 @@ from rocking.pulses import get_pulse
 
 router = APIRouter(prefix="/v1", tags=["curves"])
 
+NODES = 201
+"""Grid on which curves are looked for on request: half as fine as the workflow's, seconds for the wavelets [-]."""
+
 
 @router.get("/overturning", summary="Boundary curves", response_model=OverturningAnswer, responses=CONTENT)
 async def get_overturning(
@@ -36,7 +39,7 @@ def _overturning(service: Service, question: OverturningQuestion, form: str) -> 
     curves, version = _read(service, question)
     if curves is None:
         curves = overturning_boundary(
-            question.pulse, restitution=question.restitution, alpha=alpha_of(question.alpha_deg)
+            question.pulse, restitution=question.restitution, alpha=alpha_of(question.alpha_deg), nodes=NODES
         )
     if form == "nc":
         return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")

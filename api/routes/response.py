@@ -6,11 +6,12 @@ from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
+from numpy.typing import ArrayLike
 
 from api.answers import BatchAnswer, ResponseAnswer, columns_of, response_answer
 from api.batch import Batch, body_form, limited_body, read_batch
 from api.formats import CONTENT, MEDIA_TYPES, Form, csv_response, dataset_of, form_of, json_response, netcdf_response
-from api.questions import LookupOptions, ResponseQuestion, alpha_of
+from api.questions import LookupOptions, ResponseQuestion, alpha_of, checked
 from api.service import Service, ServiceDep
 from rocking.bounded_response import BoundedResponse
 from rocking.lookup_atlas import Atlas
@@ -64,11 +65,20 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     return await service.off_loop(lambda: _answer(service, body, given, form, parameters))
 
 
-def ask(atlas: Atlas, options: LookupOptions, **groups: object) -> tuple[BoundedResponse, tuple[str, ...]]:
+def ask(
+    atlas: Atlas,
+    options: LookupOptions,
+    *,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike,
+    restitution: ArrayLike,
+) -> tuple[BoundedResponse, tuple[str, ...]]:
     """Ask the atlas with the options of a question."""
     return atlas.response(
         options.pulse,
-        **groups,  # type: ignore[arg-type]
+        slenderness=checked("slenderness", slenderness),
+        frequency_ratio=checked("frequency_ratio", frequency_ratio),
+        restitution=restitution,
         alpha=alpha_of(options.alpha_deg),
         tolerance=options.tolerance,
         method=options.method,

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from api.answers import SpectrumAnswer, columns_of
 from api.formats import CONTENT, csv_response, dataset_of, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
-from api.questions import SpectrumQuestion
+from api.questions import FREQUENCY_RATIOS, SpectrumQuestion
 from api.routes.response import ask
 from api.service import Service, ServiceDep
 from rocking.errors import in_range
@@ -30,8 +30,9 @@ async def get_spectrum(
 
 
 def _spectrum(service: Service, question: SpectrumQuestion, form: str) -> Response:
-    low = float(in_range("frequency_ratio_min", question.frequency_ratio_min, 0.0, np.inf, closed="neither"))
-    high = float(in_range("frequency_ratio_max", question.frequency_ratio_max, low, np.inf, closed="neither"))
+    smallest, largest = FREQUENCY_RATIOS
+    low = float(in_range("frequency_ratio_min", question.frequency_ratio_min, smallest, largest))
+    high = float(in_range("frequency_ratio_max", question.frequency_ratio_max, low, largest, closed="right"))
     in_range("points", question.points, 2, np.inf, closed="left")
     if question.points > service.settings.max_samples:
         raise TooLargeError("points", question.points, f"at most {service.settings.max_samples}")

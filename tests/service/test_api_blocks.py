@@ -70,6 +70,7 @@ def test_a_weak_pulse_moves_nothing(client):
         ({"pulse_period": 0}, "pulse_period"),
         ({"pulse_period": "inf"}, "pulse_period"),
         ({"gravity": 0}, "gravity"),
+        ({"half_width": 1e5}, "half_width"),
         ({"pulse": "sinus"}, "pulse"),
         ({"restitution": 1.5}, "restitution"),
         ({"restitution": "bouncy"}, "restitution"),

@@ -221,3 +221,32 @@ def test_too_much_at_once(results):
         grid = xr.Dataset(coords={"slenderness": [0.5, 0.6], "frequency_ratio": [5.0, 6.0]})
         content = bytes(grid.to_netcdf(engine="scipy"))
         assert_problem(post(client, content, "application/x-netcdf", pulse="sine", restitution=1.0), 413, "points")
+
+
+def test_other_methods_are_not_allowed(client):
+    response = client.put("/v1/response")
+    assert_problem(response, 405)
+    assert response.headers["allow"] == "GET, POST"
+
+
+@pytest.mark.parametrize(
+    ("changes", "parameter"),
+    [
+        ({"slenderness": 1e-10}, "slenderness"),
+        ({"frequency_ratio": 1e7}, "frequency_ratio"),
+        ({"frequency_ratio": 1e-7}, "frequency_ratio"),
+        ({"alpha_deg": 1e-9}, "alpha_deg"),
+    ],
+)
+def test_beyond_the_border_of_the_service(client, changes, parameter):
+    assert_problem(ask(client, **changes), 422, parameter)
+
+
+@pytest.mark.parametrize("slenderness", [1e-9, 1e-4, 0.5, 0.9999999, 1.0, 1e300])
+@pytest.mark.parametrize("frequency_ratio", [1e-6, 0.05, 50.0, 1e6])
+@pytest.mark.parametrize("alpha_deg", [0.0, 1e-6, 89.999])
+def test_up_to_the_border_every_question_has_an_answer(client, slenderness, frequency_ratio, alpha_deg):
+    answer = ask(client, slenderness=slenderness, frequency_ratio=frequency_ratio, alpha_deg=alpha_deg)
+    assert answer.status_code == 200
+    found = answer.json()
+    assert found["overturned"] == (found["peak_rotation"] is None)

@@ -1,0 +1,46 @@
+"""Questions that a machine makes up from the OpenAPI description: no 5xx, and every answer as described."""
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from api.app import create_app
+from api.settings import Settings
+
+CHECKS = [not_a_server_error, content_type_conformance, response_schema_conformance, status_code_conformance]
+
+
+# All routes but the tracing of curves, which takes seconds for each new restitution.
+OPERATIONS = [
+    ("/v1/response", "GET"),
+    ("/v1/response", "POST"),
+    ("/v1/spectrum", "GET"),
+    ("/v1/history", "GET"),
+    ("/v1/blocks/response", "GET"),
+    ("/v1/datasets", "GET"),
+    ("/v1/datasets/{name}", "GET"),
+    ("/v1/datasets/{name}.nc", "GET"),
+    ("/v1/datasets/{name}.zarr/{key}", "GET"),
+    ("/health", "GET"),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("path", "method"), OPERATIONS)
+def test_made_up_questions(results, path, method):
+    schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(Settings(results=results, max_samples=2000)))
+
+    few = 6 if "blocks" in path else 40  # thresholds without damping, restitution 1, take seconds
+
+    @settings(max_examples=few, suppress_health_check=list(HealthCheck))
+    @given(case=schema[path][method].as_strategy())
+    def ask(case):
+        case.call_and_validate(checks=CHECKS)
+
+    ask()
