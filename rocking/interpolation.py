@@ -30,8 +30,8 @@ def uniform_index(axis: NDArray[np.float64], value: ArrayLike) -> NDArray[np.flo
         In the unit of the axis.
     """
     value = np.asarray(value, dtype=np.float64)
-    position = (value - axis[0]) / (axis[-1] - axis[0]) * (axis.size - 1)
     inside = (value >= axis[0]) & (value <= axis[-1])  # by value: rounding of the index must not lose the end nodes
+    position = (np.where(inside, value, axis[0]) - axis[0]) / (axis[-1] - axis[0]) * (axis.size - 1)
     return np.where(inside, np.clip(position, 0.0, axis.size - 1), np.nan)
 
 
