@@ -54,7 +54,7 @@ def response(
     csv: Csv = False,
 ) -> None:
     """Fate and peak rotation of one block, by the solver."""
-    from rocking import cli_answers, cli_question  # noqa: PLC0415  (heavy, see above)
+    from rocking import cli_answers, cli_question
 
     with cli_question.refusals():
         question = cli_question.read(
@@ -81,7 +81,7 @@ def history(
     csv: Csv = False,
 ) -> None:
     """Rotation and angular velocity of one block against time."""
-    from rocking import cli_answers, cli_question  # noqa: PLC0415  (heavy, see above)
+    from rocking import cli_answers, cli_question
 
     with cli_question.refusals():
         question = cli_question.read(
@@ -104,7 +104,7 @@ def spectrum(
     csv: Csv = False,
 ) -> None:
     """Peak rotation against the frequency ratio."""
-    from rocking import cli_answers, cli_question  # noqa: PLC0415  (heavy, see above)
+    from rocking import cli_answers, cli_question
 
     with cli_question.refusals():
         window = cli_question.window(frequency_ratio_min, frequency_ratio_max)
@@ -123,7 +123,7 @@ def boundary(
     csv: Csv = False,
 ) -> None:
     """The curves that separate standing from falling, traced."""
-    from rocking import cli_answers, cli_question  # noqa: PLC0415  (heavy, see above)
+    from rocking import cli_answers, cli_question
 
     with cli_question.refusals():
         window = cli_question.window(frequency_ratio_min, frequency_ratio_max)
@@ -138,10 +138,10 @@ def serve(
     results: Annotated[Path, typer.Option(help="Folder that the workflow filled.")] = Path("results"),
 ) -> None:
     """Answer over HTTP until interrupted; the routes are described under /docs."""
-    import uvicorn  # noqa: PLC0415  (heavy, see above)
+    import uvicorn
 
-    from api.app import create_app  # noqa: PLC0415
-    from api.settings import Settings  # noqa: PLC0415
+    from api.app import create_app
+    from api.settings import Settings
 
     uvicorn.run(create_app(Settings(results=results)), host=host, port=port, ws="none")
 

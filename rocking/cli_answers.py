@@ -51,7 +51,7 @@ def response(question: Question, form: Form) -> None:
 
 def history(question: Question, duration: float | None, samples: int, form: Form) -> None:
     """Print the motion of one block."""
-    from rocking.history import time_history  # noqa: PLC0415  (xarray: a second that `response` need not wait)
+    from rocking.history import time_history
 
     motion = time_history(
         question.pulse,
@@ -97,7 +97,7 @@ def spectrum(question: Question, window: tuple[float, float], points: int, form:
 
 def boundary(question: Question, window: tuple[float, float], form: Form) -> None:
     """Print the curves that separate standing from falling."""
-    from rocking.boundary import overturning_boundary  # noqa: PLC0415  (xarray, as above)
+    from rocking.boundary import overturning_boundary
 
     curves = overturning_boundary(
         question.pulse, restitution=question.restitution, alpha=question.alpha, frequency_ratio=window
