@@ -40,7 +40,8 @@ def time_history(
     pulse, slenderness, frequency_ratio, restitution, alpha
         As for `peak_response`; scalars.
     duration : float, optional
-        Length [tau], > 0. By default the pulse and 8 units after it, or until |theta|/alpha = 4 where it overturns.
+        Length [tau], > 0. By default the pulse and 8 units after it; where the block overturns, until
+        |theta|/alpha = 4 or |theta| = pi/2.
     samples : int
         Uniform samples, 2 to 1,000,000; uplift, impacts and the end of the pulse are added to them.
 
@@ -49,8 +50,7 @@ def time_history(
     xarray.Dataset
         tau(tau): time p t from the start of the pulse [-]; rotation(tau): theta/alpha [-]; angular_velocity(tau):
         theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(tau): a f [-];
-        impact_time(impact) [-], impact_velocity(impact) before the impact [-]. Attributes: the question,
-        outcome, overturned, peak_rotation, impacts.
+        impact_time(impact) [-]. Attributes: the question, outcome, overturned, peak_rotation, impacts.
 
     Raises
     ------
@@ -65,11 +65,13 @@ def time_history(
     end = (made.end - made.start) / omega
     horizon = end + FREE_ROCKING if duration is None else float(duration)
 
+    farthest = min(FALLEN, 0.5 * np.pi / angle) if angle > 0 else FALLEN  # it lies on the ground at pi/2
+
     # once for the events, then again with the events among the samples
     answer, nothing = prepared(made).copy(), np.empty(0)
     forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
-    forced = forced[: rock_and_sample(s, omega, eta, angle, answer, nothing, nothing, nothing, forced)]
-    free = free[: rock_freely(answer, eta, end, horizon, FALLEN, nothing, nothing, nothing, free)]
+    forced = forced[: rock_and_sample(s, omega, eta, angle, answer, farthest, nothing, nothing, nothing, forced)]
+    free = free[: rock_freely(answer, eta, end, horizon, farthest, nothing, nothing, nothing, free)]
     landings = np.concatenate([forced, free])
 
     events = [0.0, end, float(np.nan_to_num(answer["uplift_time"]))]
@@ -77,13 +79,13 @@ def time_history(
     tau = np.unique(tau[tau <= horizon])
     rotation, velocity = np.zeros(tau.size), np.zeros(tau.size)
     answer = prepared(made).copy()
-    rock_and_sample(s, omega, eta, angle, answer, tau, rotation, velocity, nothing)
+    rock_and_sample(s, omega, eta, angle, answer, farthest, tau, rotation, velocity, nothing)
     # a step fills the samples before its end: the last one has to lie inside
     beyond = horizon * (1 + 1e-12)
-    rock_freely(answer, eta, end, beyond, FALLEN, tau, rotation, velocity, np.empty(FREE_IMPACTS))
+    rock_freely(answer, eta, end, beyond, farthest, tau, rotation, velocity, np.empty(FREE_IMPACTS))
     outcome = Outcome(int(answer["outcome"]))
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
-        fallen = np.flatnonzero(np.abs(rotation) > FALLEN)
+        fallen = np.flatnonzero(np.abs(rotation) > farthest)
         last = int(fallen[0]) + 1 if fallen.size else int(np.flatnonzero(rotation).max(initial=0)) + 1
         tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
 

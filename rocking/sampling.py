@@ -17,43 +17,58 @@ INVISIBLE = 1e-7
 
 @kernel
 def sample_step(
-    flight: Record, start: float, h: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
+    flight: Record, start: float, stop: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
 ) -> int:
-    """Evaluate the Taylor step that began at time `start` at the samples up to `start` + h; the samples passed."""
-    while filled < len(tau) and tau[filled] < start + h:
-        if tau[filled] >= start:
-            rotation[filled] = flight.sign * evaluate(flight.z, ORDER, tau[filled] - start)
-            velocity[filled] = flight.sign * evaluate(flight.rate_of_z, ORDER - 1, tau[filled] - start)
+    """Evaluate the Taylor step that began at time `start` at the samples before `stop`; the samples passed."""
+    while filled < len(tau) and tau[filled] < stop:
+        h = max(tau[filled] - start, 0.0)  # sums of steps round differently
+        rotation[filled] = flight.sign * evaluate(flight.z, ORDER, h)
+        velocity[filled] = flight.sign * evaluate(flight.rate_of_z, ORDER - 1, h)
         filled += 1
     return filled
 
 
 @kernel
-def sample_steps(flight: Record, start: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector) -> int:
-    """Step through the last flight of `advance` once more; the samples passed."""
+def sample_steps(
+    flight: Record,
+    start: float,
+    stop: float,
+    farthest: float,
+    tau: Vector,
+    filled: int,
+    rotation: Vector,
+    velocity: Vector,
+) -> tuple[int, float, float]:
+    """Step through the last flight of `advance` once more, at most to z = `farthest`; the samples passed, last z, w."""
     phase, z, w, elapsed = flight.phase, 0.0, flight.w0, 0.0
-    while elapsed < flight.length:
+    while elapsed < flight.length and z < farthest:
         expand_pulse(flight, phase)
         expand_motion(flight, z, w)
         h = min(step_size(flight), flight.length - elapsed)
-        filled = sample_step(flight, start + elapsed, h, tau, filled, rotation, velocity)
+        last = elapsed + h >= flight.length
+        filled = sample_step(
+            flight, start + elapsed, stop if last else start + (elapsed + h), tau, filled, rotation, velocity
+        )
         z, w = evaluate(flight.z, ORDER, h), evaluate(flight.rate_of_z, ORDER - 1, h)
         elapsed += h
         phase += flight.omega * h
-    return filled
+    return filled, z, w
 
 
 @kernel
-def sample_arc(flight: Record, start: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector) -> int:
-    """Evaluate the arc of the last flight of `advance`; the samples passed."""
-    while filled < len(tau) and tau[filled] < start + flight.length:
-        if tau[filled] >= start:
-            h = tau[filled] - start
-            turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
-            z, w = state(flight, h, flight.cosine1, flight.sine1)
-            rotation[filled], velocity[filled] = flight.sign * z, flight.sign * w
+def sample_arc(
+    flight: Record, start: float, stop: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
+) -> tuple[int, float, float]:
+    """Evaluate the arc of the last flight of `advance`; the samples passed, last z, w."""
+    while filled < len(tau) and tau[filled] < stop:
+        h = max(tau[filled] - start, 0.0)
+        turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
+        z, w = state(flight, h, flight.cosine1, flight.sine1)
+        rotation[filled], velocity[filled] = flight.sign * z, flight.sign * w
         filled += 1
-    return filled
+    turn(flight, flight.phase + flight.omega * flight.length, flight.cosine1, flight.sine1)
+    z, w = state(flight, flight.length, flight.cosine1, flight.sine1)
+    return filled, z, w
 
 
 @kernel
@@ -63,6 +78,7 @@ def rock_and_sample(
     eta: float,
     alpha: float,
     flight: Record,
+    farthest: float,
     tau: Vector,
     rotation: Vector,
     velocity: Vector,
@@ -74,6 +90,8 @@ def rock_and_sample(
     ----------
     slenderness, omega, eta, alpha, flight
         As for `rock.rock`.
+    farthest : float
+        |theta|/alpha at which the history of a block that is known to overturn may stop [-].
     tau : float array (samples,)
         Times from the pulse's start [-], ascending; `rotation` and `velocity` (samples,) are zero on entry.
     landings : float array
@@ -85,6 +103,7 @@ def rock_and_sample(
         Impacts written down.
     """
     begin(slenderness, omega, alpha, flight)
+    pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
     filled, written, going = 0, 0, flight.count > 0
     while going:
         flight.length = math.nan
@@ -92,17 +111,27 @@ def rock_and_sample(
         if math.isnan(flight.length):
             break  # at rest for good
         start = (flight.phase - flight.end_phase[0]) / omega
-        if going and written < len(landings):
-            landings[written] = start + flight.length
-            written += 1
-        if filled < len(tau):
-            # `advance` has prepared the next flight: its angles must not stand in for this one's
-            turn(flight, flight.phase, flight.cosine0, flight.sine0)
-            if alpha == 0.0 and flight.spread == 0.0:
-                filled = sample_arc(flight, start, tau, filled, rotation, velocity)
-            else:
-                filled = sample_steps(flight, start, tau, filled, rotation, velocity)
+        stop = start + flight.length
+        if going:
+            stop = (flight.next_phase - flight.end_phase[0]) / omega  # where the next flight says that it starts
+            if written < len(landings):
+                landings[written] = stop
+                written += 1
+        elif stop < pulse_end:  # known to overturn before the pulse ends: its last flight goes on
+            flight.length, stop = pulse_end - start, pulse_end
+        while filled < len(tau) and tau[filled] < start:
+            filled += 1  # at rest
+        # `advance` has prepared the next flight: its angles must not stand in for this one's
+        turn(flight, flight.phase, flight.cosine0, flight.sine0)
+        if alpha == 0.0 and flight.spread == 0.0:
+            filled, z, w = sample_arc(flight, start, stop, tau, filled, rotation, velocity)
+        else:
+            reach = math.inf if going else farthest
+            filled, z, w = sample_steps(flight, start, stop, reach, tau, filled, rotation, velocity)
+        if going:
             turn(flight, flight.next_phase, flight.cosine0, flight.sine0)
+        else:
+            flight.end_z, flight.end_w = z, w
     return written
 
 
@@ -154,7 +183,7 @@ def rock_freely(
         impact = impact_in_step(flight, h, False, grounded)
         if impact >= 0.0:
             h = impact
-        filled = sample_step(flight, time, h, tau, filled, rotation, velocity)
+        filled = sample_step(flight, time, time + h, tau, filled, rotation, velocity)
         time += h
         z, w = evaluate(flight.z, ORDER, h), evaluate(flight.rate_of_z, ORDER - 1, h)
         grounded = impact >= 0.0
