@@ -1,0 +1,102 @@
+"""Far ends of the control space, where the answer is known: impulses, slow pulses, strong ones, and the onset."""
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking import PULSE_NAMES, Outcome, closed_form, get_pulse
+
+SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
+
+
+def velocity_given(name: str, slenderness: float) -> float:
+    """Integral of a f - 1 over the cap of a half sine or a rectangle of unit frequency [-]."""
+    uplift = np.arcsin(slenderness) if name == "half_sine" else 0.0
+    gained = (1 + np.cos(uplift)) / slenderness if name == "half_sine" else np.pi / slenderness
+    return gained - (np.pi - uplift)
+
+
+@pytest.mark.parametrize("name", ["half_sine", "rectangular"])
+def test_an_impulse_gives_a_velocity_and_free_rocking_the_rest(name):
+    omega, slenderness = 1e4, np.array([1e-2, 1e-3, 5e-4])
+    speed = velocity_given(name, slenderness) / omega
+    found = rocking.peak_response(name, slenderness=slenderness, frequency_ratio=omega, restitution=0.9)
+    error = found.peak_rotation / closed_form.peak_of_velocity(speed) - 1
+    assert (np.abs(error) < 1.3 * np.pi / omega / speed).all()  # the distance moved during the pulse
+    assert (found.outcome == Outcome.SAFE).all()
+    # overturns when the velocity reaches 1, (3.8), up to the distance moved during the pulse, of the order of 1/omega
+    threshold = rocking.critical_amplitude(name, frequency_ratio=omega, restitution=0.9, highest_amplitude=1e5)
+    assert velocity_given(name, 1 / threshold.amplitude[0]) / omega == pytest.approx(1.0, rel=3e-4)
+
+
+@pytest.mark.parametrize("name", ["sine", "cosine", "c1", "ricker", "mavroeidis_papageorgiou"])
+def test_impulses_without_net_velocity_hardly_move_the_block(name):
+    for omega in (1e2, 1e3, 1e4):
+        found = rocking.peak_response(name, slenderness=0.5, frequency_ratio=omega, restitution=0.9)
+        assert found.outcome == Outcome.SAFE
+        assert 0 < found.peak_rotation < 100 / omega**2
+
+
+@pytest.mark.parametrize("name", SIGNED)
+@pytest.mark.parametrize("alpha", [None, 0.3])
+def test_a_slow_pulse_overturns_whatever_it_lifts(name, alpha):
+    slenderness = [1e-4, 0.01, 0.5, 0.9]
+    slow = {"frequency_ratio": 1e-4, "restitution": 0.9, "alpha": alpha}
+    assert rocking.peak_response(name, slenderness=slenderness, **slow).overturned.all()
+
+
+@pytest.mark.parametrize("name", ["sine", "half_sine", "rectangular", "cosine"])
+def test_threshold_of_slow_pulses_tends_to_one(name):
+    amplitude = [
+        rocking.critical_amplitude(name, frequency_ratio=omega, restitution=0.5, highest_amplitude=3.0).amplitude[0]
+        for omega in (0.3, 0.1, 0.03, 0.01)
+    ]
+    assert (np.diff(amplitude) <= 1e-9).all()
+    assert amplitude[-1] == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("alpha", [None, 1e-8, 0.4, 1.5])
+@pytest.mark.parametrize("name", SIGNED)
+def test_strong_and_extreme_pulses_have_an_answer(name, alpha):
+    slenderness = np.array([1e-4, 1e-3, 0.1, 0.9, 1 - 1e-9, 1 - 1e-12, np.nextafter(1.0, 0.0)])[:, None]
+    omega = np.array([1e-4, 1e-2, 1.0, 1e2, 1e4])
+    for eta in (0.0, 1e-3, 0.9):
+        found = rocking.peak_response(
+            name, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha
+        )
+        np.testing.assert_array_equal(np.isnan(found.peak_rotation), found.overturned)
+        standing = found.peak_rotation[~found.overturned]
+        assert ((standing >= 0) & (standing < np.inf)).all()
+        assert (found.outcome[:-1] != Outcome.NO_UPLIFT).all()  # one ulp below 1 f itself is rounded
+
+
+@pytest.mark.parametrize("name", [name for name in PULSE_NAMES if name != "rectangular"])
+def test_peaks_vanish_at_the_onset_of_rocking(name):
+    gap = 10.0 ** np.arange(-2, -13, -1)
+    found = rocking.peak_response(name, slenderness=1 - gap, frequency_ratio=3.0, restitution=0.5)
+    assert (np.diff(found.peak_rotation) < 0).all()
+    assert found.peak_rotation[-1] < 1e-9
+    # at the cap's half-width ~ sqrt(2 gap) the pull is of the order of the gap: rotation like gap x (cap/omega)^2
+    if abs(float(get_pulse(name).shape(get_pulse(name).start))) < 1:
+        order = np.diff(np.log(found.peak_rotation[2:])) / np.log(0.1)
+        assert np.median(order) == pytest.approx(2.0, abs=0.1)
+
+
+def test_response_is_continuous_in_each_group_inside_a_mode():
+    rng = np.random.default_rng(11)
+    n = 400
+    for name in PULSE_NAMES:
+        question = {
+            "slenderness": rng.uniform(0.2, 0.95, n),
+            "frequency_ratio": np.exp(rng.uniform(0, 2.5, n)),
+            "restitution": rng.uniform(0.3, 0.95, n),
+        }
+        here = rocking.peak_response(name, **question)
+        for group, value in question.items():
+            moved = rocking.peak_response(name, **{**question, group: value * (1 + 1e-9)})
+            same = (here.peak_mode == moved.peak_mode) & (here.outcome == moved.outcome) & ~here.overturned
+            same &= here.peak_rotation < 0.9
+            gap = np.abs(moved.peak_rotation[same] - here.peak_rotation[same])
+            assert np.median(gap) < 1e-8
+            assert np.quantile(gap, 0.95) < 1e-6
+            assert gap.max() < 1e-3  # beside a threshold a peak grows like a square root
