@@ -1,0 +1,101 @@
+"""The solver against the closed forms of sections 3 and 4, where those are exact."""
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking import PULSE_NAMES, Outcome, closed_form, get_pulse
+
+SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
+
+
+@pytest.fixture(scope="module")
+def sine_cells():
+    rng = np.random.default_rng(12)
+    n = 4000
+    slenderness, omega = rng.uniform(0.05, 0.98, n), np.exp(rng.uniform(-0.5, 2.5, n))
+    eta = rng.uniform(0.3, 1.0, n)
+    found = rocking.peak_response("sine", slenderness=slenderness, frequency_ratio=omega, restitution=eta)
+    return 1 / slenderness, omega, eta, found
+
+
+def test_uplift_of_the_sine(sine_cells):
+    a, omega, _, found = sine_cells
+    np.testing.assert_allclose(found.uplift_time, np.arcsin(1 / a) / omega, rtol=2e-15, atol=5e-16)  # (3.3)
+
+
+def test_first_impact_within_the_pulse(sine_cells):
+    a, omega, _, found = sine_cells
+    during = np.isfinite(found.first_impact_time)
+    assert during.sum() > 500
+    early = closed_form.limit_margin(a, omega) < 0  # (3.31)
+    clear = np.abs(closed_form.limit_margin(a, omega)) > 1e-9
+    np.testing.assert_array_equal(during[clear], early[clear])
+    h = closed_form.case_1_1_impact_time(a, omega)[during]
+    np.testing.assert_allclose(found.first_impact_time[during], h, rtol=1e-10)
+    v = closed_form.case_1_1_impact_velocity(a, omega)[during]
+    np.testing.assert_allclose(found.first_impact_velocity[during], v, rtol=1e-8)
+
+
+def test_peak_above_the_limit_curve(sine_cells):
+    a, omega, eta, found = sine_cells
+    late = (closed_form.limit_margin(a, omega) > 1e-9) & (found.outcome == Outcome.SAFE)
+    after = late & (found.peak_mode == 3)  # in free rocking after the first impact
+    assert after.sum() > 80
+    np.testing.assert_allclose(
+        found.peak_rotation[after], closed_form.case_1_2_peak(a, omega, eta)[after], rtol=1e-9
+    )  # (4.13)
+    before = late & (found.peak_mode <= 1)
+    closed = np.nan_to_num(closed_form.case_1_2_peak(a, omega, eta)[before])
+    assert (found.peak_rotation[before] >= closed * (1 - 1e-12)).all()
+
+
+def test_fates_of_the_sine(sine_cells):
+    a, omega, eta, found = sine_cells
+    closed = closed_form.overturning_amplitudes(omega, eta)
+    falls = (a >= closed.direct) | ((a > closed.falls_from) & (a < closed.safe_again))
+    islands = (a < 1 / 0.89) & (omega < 1.2)  # overturning after three impacts and more, which they miss
+    np.testing.assert_array_equal(found.overturned[~islands], falls[~islands])
+    directly = found.outcome == Outcome.OVERTURNED_DIRECTLY
+    np.testing.assert_array_equal(directly, a >= closed.direct)
+
+
+@pytest.mark.parametrize("name", SIGNED)
+def test_overturning_without_a_further_impact_for_every_pulse(name):
+    pulse = get_pulse(name)
+    rng = np.random.default_rng(13)
+    n = 120
+    a, omega = 1 / rng.uniform(0.05, 0.95, n), np.exp(rng.uniform(-0.5, 2.5, n))
+    found = rocking.peak_response(pulse, slenderness=1 / a, frequency_ratio=omega, restitution=0.85)
+    compared = 0
+    for i in range(n):
+        margin = closed_form.margin_without_impact(pulse, a[i], omega[i])
+        if found.outcome[i] == Outcome.OVERTURNED_DIRECTLY:
+            assert margin > -1e-9
+        elif np.isnan(found.first_impact_time[i]):  # no impact during the pulse, and it stands or falls after one
+            compared += 1
+            assert margin < 1e-9
+        elif found.impacts[i] == 1:
+            compared += 1
+            phase = pulse.start + omega[i] * (found.uplift_time[i] + found.first_impact_time[i])
+            after = closed_form.margin_after_impact(pulse, a[i], omega[i], 0.85, phase, found.first_impact_velocity[i])
+            assert (after > -1e-9) or not found.overturned[i]
+    assert compared > 0
+
+
+@pytest.mark.slow
+def test_a_million_random_cells_have_an_answer():
+    rng = np.random.default_rng(14)
+    n = 1_000_000 // len(PULSE_NAMES) + 1
+    for name in PULSE_NAMES:
+        slenderness = np.minimum(np.exp(rng.uniform(np.log(1e-3), 0.0, n)), 1 - 1e-9)
+        slenderness[: n // 10] = 1 - np.exp(rng.uniform(np.log(1e-9), np.log(0.1), n // 10))
+        omega = np.exp(rng.uniform(np.log(0.05), np.log(50.0), n))
+        found = rocking.peak_response(
+            name, slenderness=slenderness, frequency_ratio=omega, restitution=rng.uniform(0, 1, n)
+        )
+        np.testing.assert_array_equal(np.isnan(found.peak_rotation), found.overturned)
+        standing = found.peak_rotation[~found.overturned]
+        assert ((standing >= 0) & (standing < np.inf)).all()
+        assert (found.outcome != Outcome.NO_UPLIFT).all()
+        assert np.isfinite(found.uplift_time).all()
