@@ -65,7 +65,9 @@ def test_version_is_stated_once() -> None:
     assert rocking.__version__ == VERSION
     stated = re.compile(rf"(?<![\d.]){re.escape(VERSION)}(?![\d.])")
     ours = ("rocking/", "api/", "workflow/", "docs/", "README.md", "CITATION.cff", "Makefile", "Snakefile")
-    places = [name for name, text in TEXTS.items() if name.startswith(ours) and stated.search(text)]
+    # Recorded answers of the service name the version that gave them; they state nothing.
+    prose = {name: text.replace(f'"version":"{VERSION}"', "") for name, text in TEXTS.items() if name.startswith(ours)}
+    places = [name for name, text in prose.items() if stated.search(text)]
     assert not places, "the version stands in pyproject.toml; read it from there"
 
 
