@@ -63,7 +63,7 @@ def locate(flight: Record, order: int, falling: bool, lo: float, hi: float, gues
     """
     h = guess
     reach = RADIUS / flight.fastest
-    for _ in range(200):
+    for attempt in range(200):
         if h <= reach:  # the series at the start holds, where q is known without cancellation
             expand(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
             centre, delta = 0.0, h
@@ -106,7 +106,9 @@ def locate(flight: Record, order: int, falling: bool, lo: float, hi: float, gues
         if hi - lo <= 4e-16 * hi:
             return h, z, w
         follow = centre + delta
-        h = follow if lo < follow < hi and abs(delta) <= 8.0 * reach else 0.5 * (lo + hi)
+        # where the growing exponential rules, local steps have length 1: on long arcs they alternate with halving
+        local = lo < follow < hi and abs(delta) <= 8.0 * reach and (attempt < 8 or attempt % 2 == 0)
+        h = follow if local else 0.5 * (lo + hi)
     return h, z, w
 
 
