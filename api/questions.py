@@ -18,6 +18,7 @@ PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
 SMALLEST_SLENDERNESS = 1e-9
 FREQUENCY_RATIOS = (1e-6, 1e6)
 SMALLEST_ALPHA_DEG = 1e-6
+LARGEST_ALPHA_DEG = 89.9
 
 PulseName = Annotated[
     str,
@@ -152,8 +153,8 @@ def alpha_of(alpha_deg: float | None) -> float | None:
     Raises
     ------
     InvalidArgumentError
-        If it is neither 0 nor in [1e-6, 90) degrees.
+        If it is neither 0 nor in [1e-6, 89.9] degrees.
     """
     if not alpha_deg:
         return None
-    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, 90.0, closed="left", unit="deg")))
+    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, LARGEST_ALPHA_DEG, unit="deg")))

@@ -19,6 +19,16 @@ CHUNK = 4096
 """Cells handed to one thread at a time: about a millisecond of work, fine enough to balance the threads."""
 
 
+SMALLEST_SLENDERNESS = 1e-12
+"""Smallest 1/a answered [-]: an acceleration of 10^12 g tan(alpha)."""
+
+FREQUENCY_RATIOS = (1e-9, 1e9)
+"""Frequency ratios answered [-]."""
+
+ALPHAS = (1e-12, 1.57)
+"""Slenderness angles of (2.2) answered [rad]; 0 is the slender limit. At pi/2 tan(alpha) leaves all measure."""
+
+
 def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
     """The pulse itself, or the one of that name."""
     return get_pulse(pulse) if isinstance(pulse, str) else pulse
@@ -29,11 +39,13 @@ def checked_groups(
 ) -> list[NDArray[np.float64]]:
     """The groups, checked and broadcast against each other; alpha = None is the slender limit, 0."""
     groups = (
-        in_range("slenderness", slenderness, 0.0, math.inf, closed="neither"),
-        in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"),
+        in_range("slenderness", slenderness, SMALLEST_SLENDERNESS, math.inf),
+        in_range("frequency_ratio", frequency_ratio, *FREQUENCY_RATIOS),
         in_range("restitution", restitution, 0.0, 1.0),
-        in_range("alpha", 0.0 if alpha is None else alpha, 0.0, math.pi / 2, closed="left", unit="rad"),
+        in_range("alpha", 0.0 if alpha is None else alpha, 0.0, ALPHAS[1], unit="rad"),
     )
+    angles = groups[3]
+    in_range("alpha", angles[angles > 0.0], *ALPHAS, unit="rad")
     try:
         return list(np.broadcast_arrays(*groups))
     except ValueError:
@@ -59,13 +71,13 @@ def peak_response(
     pulse : str or AbstractPulse
         A name of `PULSE_NAMES`, with a leading minus for the opposite sign, or a pulse.
     slenderness : array_like
-        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], > 0; from 1 on the block never uplifts.
+        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], from 1e-12; from 1 on the block never uplifts.
     frequency_ratio : array_like
-        omega = omega_g/p [-], > 0.
+        omega = omega_g/p [-], [1e-9, 1e9].
     restitution : array_like
         Coefficient of restitution eta [-], [0, 1].
     alpha : array_like, optional
-        Slenderness angle [rad], [0, pi/2); None and 0 are the slender limit (3.1), else (2.2) is solved.
+        Slenderness angle [rad], [1e-12, 1.57] for (2.2); None and 0 are the slender limit (3.1).
     threads : int, optional
         Threads for large arrays, >= 1; all cores by default.
 
@@ -79,6 +91,8 @@ def peak_response(
     InvalidArgumentError
         Naming the argument that is out of range, not finite, or of a shape that does not broadcast.
     """
+    if threads is not None:
+        in_range("threads", threads, 1, math.inf)
     made = as_pulse(pulse)
     groups = checked_groups(slenderness, frequency_ratio, restitution, alpha)
     shape = groups[0].shape
@@ -94,7 +108,7 @@ def peak_response(
         rock_many(*(cell[part] for cell in cells), prepared(made).copy(), *(field[part] for field in fields))
 
     starts = range(0, size, CHUNK)
-    workers = min(threads or os.cpu_count() or 1, len(starts))
+    workers = min(int(threads) if threads else os.cpu_count() or 1, len(starts))
     if workers <= 1:
         for start in starts:
             fill(start)
