@@ -67,4 +67,7 @@ INSTALL := .venv/bin/python -m pip install --quiet --require-hashes --no-build-i
 # The project itself, as an editable install: the lock holds its build tool, so nothing is fetched.
 .venv/project: .venv/environment.lock pyproject.toml
 	@.venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@echo 'Compiling the kernels (once, half a minute) ...'
+	@.venv/bin/rocking response --pulse sine --slenderness 0.5 --frequency-ratio 3 --restitution 0.9 >/dev/null
+	@.venv/bin/rocking history --pulse sine --slenderness 0.5 --frequency-ratio 3 --restitution 0.9 --csv >/dev/null
 	@touch $@
