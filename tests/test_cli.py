@@ -125,7 +125,7 @@ def test_boundary_in_three_forms():
         (["response", *GROUPS[:-1], "1.5"], "--restitution", "[0, 1]"),
         (["response", *GROUPS[:-1], "bouncy"], "--restitution", "housner for a block"),
         (["response", "--pulse", "sinus", *GROUPS[2:]], "--pulse", "one of sine"),
-        (["response", *GROUPS[:3], "nan", *GROUPS[4:]], "--slenderness", "(0, inf)"),
+        (["response", *GROUPS[:3], "nan", *GROUPS[4:]], "--slenderness", "[1e-12, inf)"),
         (["response", *GROUPS[:4], "--restitution", "0.85"], "--frequency-ratio", "a number"),
         (["response", *GROUPS, "--alpha", "20"], "--alpha", "20 deg"),
         (["response", *GROUPS, "--alpha", "95 deg"], "--alpha", "[0, 1.5"),
