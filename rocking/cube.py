@@ -85,7 +85,7 @@ _GLOBAL = {
     "institution": "The rocking developers",
     "creator_name": "The rocking developers",
     "creator_type": "group",
-    "license": "BSD-3-Clause",
+    "license": "CC-BY-4.0",
     "references": "Dimitrakopoulos and DeJong (2012), https://doi.org/10.1098/rspa.2012.0026",
     "keywords": "rocking block, overturning, response spectrum, self-similarity, earthquake engineering",
     "standard_name_vocabulary": "CF Standard Name Table v93",
