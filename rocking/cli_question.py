@@ -12,7 +12,6 @@ import typer
 from rocking.block import Block
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.groups import GroupSet, Problem, groups_of
-from rocking.units import si_value
 
 
 @dataclass(frozen=True)
@@ -37,6 +36,12 @@ def refusals() -> Iterator[None]:
         raise typer.BadParameter(
             f"{error.value!r} is not allowed; allowed: {error.allowed}", param_hint=option
         ) from None
+
+
+def _si_value(parameter: str, text: str, unit: str) -> float:
+    from rocking.units import si_value  # questions in groups do without units and their library
+
+    return si_value(parameter, text, unit)
 
 
 def read(
@@ -68,7 +73,7 @@ def read(
         for name in ("slenderness", "frequency_ratio"):
             if groups[name] is None:
                 raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
-        angle = None if alpha is None else si_value("alpha", alpha, "rad")
+        angle = None if alpha is None else _si_value("alpha", alpha, "rad")
         return Question(pulse, slenderness or 0.0, frequency_ratio or 0.0, _eta(restitution), angle or None)
     for name, value in groups.items():
         if value is not None:
@@ -93,7 +98,7 @@ def window(low: float, high: float) -> tuple[float, float]:
 def _positive(name: str, text: str | None, unit: str) -> float:
     if text is None:
         raise InvalidArgumentError(name, None, "required with the other dimensional options")
-    return float(in_range(name, si_value(name, text, unit), 0.0, math.inf, closed="neither", unit=unit))
+    return float(in_range(name, _si_value(name, text, unit), 0.0, math.inf, closed="neither", unit=unit))
 
 
 def _eta(text: str) -> float:

@@ -17,7 +17,6 @@ from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from rocking.errors import in_range, one_of
 
@@ -126,6 +125,8 @@ def c2() -> SinusoidalPulse:
 
 
 def _type_c(cycles: int) -> SinusoidalPulse:
+    from scipy.optimize import brentq  # takes longer to load than the rest of the package: only these pulses pay
+
     span = (2 * cycles + 1) * math.pi
 
     def end_displacement(x: float) -> float:
@@ -186,6 +187,7 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
 
 def _stationary_phases(terms: tuple[tuple[float, float, float], ...], start: float, end: float) -> tuple[float, ...]:
     """All simple zeros of f' inside the window: bracketed on a grid of 256 points a cycle, then Brent."""
+    from scipy.optimize import brentq  # see `_type_c`
 
     def slope(phi: float) -> float:
         return -math.fsum(c * w * math.sin(w * phi + d) for c, w, d in terms)

@@ -95,6 +95,17 @@ def test_package_import_is_lazy() -> None:
     assert answer.stdout.strip() == "False"
 
 
+def test_a_sine_in_groups_pays_for_the_solver_alone() -> None:
+    program = (
+        "import sys\nfrom typer.testing import CliRunner\nfrom rocking.cli import app\n"
+        "question = 'response --pulse sine --slenderness 0.4 --frequency-ratio 5 --restitution 0.85'\n"
+        "assert CliRunner().invoke(app, question.split()).exit_code == 0\n"
+        "print(*sorted({'scipy.optimize', 'pint', 'xarray', 'netCDF4', 'matplotlib'} & set(sys.modules)))"
+    )
+    answer = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert answer.stdout.split() == []
+
+
 def headings(text: str) -> set[str]:
     """Anchors of a Markdown page as GitHub makes them."""
     titles = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
