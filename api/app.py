@@ -90,4 +90,4 @@ def _describe_bodies(app: FastAPI) -> None:
                 schemas[model.__name__] = model.model_json_schema()
         return generate()
 
-    app.openapi = described  # type: ignore[method-assign]
+    app.openapi = described  # type: ignore[method-assign]  # FastAPI's documented way to extend the description

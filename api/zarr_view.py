@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
+from typing import Any
 
 from zarr.storage import MemoryStore
 
@@ -48,7 +49,7 @@ class ZarrViews:
 
     def _make(self, name: str) -> dict[str, bytes]:
         dataset = self._catalogue.dataset(name).drop_encoding()  # netCDF's compression is not zarr's
-        content: dict[str, object] = {}
+        content: dict[str, Any] = {}  # zarr's buffers
         # zarr format 2: every client reads it with consolidated metadata, which format 3 has not yet agreed upon
-        dataset.to_zarr(MemoryStore(content), zarr_format=2, consolidated=True)  # type: ignore[arg-type]
-        return {key: value.to_bytes() for key, value in content.items()}  # type: ignore[attr-defined]
+        dataset.to_zarr(MemoryStore(content), zarr_format=2, consolidated=True)
+        return {key: value.to_bytes() for key, value in content.items()}

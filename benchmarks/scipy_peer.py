@@ -71,7 +71,7 @@ def _flight(a: float, omega: float, side: int, tau: float, end: float, v: float,
 
 
 def _event(function: Callable[[float, Any], float], *, terminal: bool, direction: float = -1.0) -> Any:
-    function.terminal, function.direction = terminal, direction  # type: ignore[attr-defined]
+    function.terminal, function.direction = terminal, direction  # type: ignore[attr-defined]  # SciPy reads them there
     return function
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+import numpy as np
 import typer
 
 from rocking.block import Block
@@ -85,7 +86,7 @@ def read(
     problem = Problem(block.alpha, block.frequency_parameter, a_g, 2.0 * math.pi / period)
     found = groups_of(problem, GroupSet.RIGID)  # (5.3)
     eta = _housner(block) if restitution == "housner" else _eta(restitution)
-    s, omega = float(found.slenderness), float(found.frequency_ratio)  # type: ignore[arg-type]
+    s, omega = float(np.asarray(found.slenderness)), float(np.asarray(found.frequency_ratio))
     return Question(pulse, s, omega, eta, block.alpha, block)
 
 

@@ -13,9 +13,10 @@ from rocking.chatter import settles
 from rocking.compilation import Record, Vector, kernel
 from rocking.cuts import cut
 from rocking.free_rocking import free_fate
+from rocking.scratch import FALLEN, IMPACT
 from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_flight, turn
-from rocking.taylor_flight import FALLEN, IMPACT, fly_steps
+from rocking.taylor_flight import fly_steps
 
 IMPACT_LIMIT = 20_000
 """Impacts after which a block that neither rests nor overturns is declared at rest, and flagged as chattering."""

@@ -22,6 +22,9 @@ COEFFICIENTS = 17
 ORDER = 20
 """Degree of the Taylor steps."""
 
+IMPACT, PULSE_END, FALLEN = 0, 1, 2
+"""What ends a flight; it has fallen when nothing can bring it back, known before the pulse ends."""
+
 POLYNOMIAL = 4
 """Coefficients of a wavelet's polynomial."""
 

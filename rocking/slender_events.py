@@ -6,6 +6,7 @@ import math
 
 from rocking.compilation import Record, kernel
 from rocking.free_rocking import free_fate
+from rocking.scratch import IMPACT, PULSE_END
 from rocking.slender_arcs import RADIUS, acceleration, expand, pull, rotation, velocity
 from rocking.slender_flight import hermite_root, locate, state
 
@@ -63,9 +64,10 @@ def run_peak(
 def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start to its impact or to the end of the pulse.
 
-    Returns what ended it (0: impact, 1: pulse), time and velocity w there (after z at the end of the pulse), and the
-    largest z on the way; the latter only if the block is not overturned for good. Beyond z + w = `limit` = 1 + a no
-    ground acceleration of this pulse brings the block back, since (z + w)' = (z + w) - q and q <= limit.
+    Returns what ended it (`IMPACT`; `PULSE_END` also where the fate is known earlier), time and velocity w there,
+    z at the end of the pulse, and the largest z on the way, the latter only if the block is not overturned for good.
+    Beyond z + w = `limit` = 1 + a no ground acceleration of this pulse brings the block back, since
+    (z + w)' = (z + w) - q and q <= limit.
     """
     start, omega = flight.phase, flight.omega
     z_left, w_left, h_left = 0.0, flight.w0, 0.0
@@ -92,12 +94,12 @@ def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
                 if z_hi <= 0.0:
                     guess = lo + hermite_root(z_left, w_left, z_hi, w_hi, hi - lo)
                     h, _, w = locate(flight, 0, True, lo, hi, guess)
-                    return 0, h, w, 0.0, largest
+                    return IMPACT, h, w, 0.0, largest
         else:
             if z_right > 0.0 and (
                 z_right + w_right >= limit or (right == count and free_fate(z_right, w_right, eta, 0.0)[0] > 0)
             ):
-                return 1, h_right, w_right, z_right, largest
+                return PULSE_END, h_right, w_right, z_right, largest
             if not known:
                 z_left, w_left = state(flight, h_left, flight.cut_cosine[left], flight.cut_sine[left])
             top, h_peak, z_peak = run_peak(flight, left, right, h_left, z_left, w_left, z_right, w_right)
@@ -105,9 +107,9 @@ def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
             if z_right <= 0.0:
                 guess = h_peak + hermite_root(z_peak, 0.0, z_right, w_right, h_right - h_peak)
                 h, _, w = locate(flight, 0, True, h_peak, h_right, guess)
-                return 0, h, w, 0.0, largest
+                return IMPACT, h, w, 0.0, largest
         left, h_left, z_left, w_left, known = right, h_right, z_right, w_right, True
-    return 1, h_left, w_left, z_left, largest
+    return PULSE_END, h_left, w_left, z_left, largest
 
 
 @kernel

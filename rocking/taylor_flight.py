@@ -11,11 +11,8 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, kernel
-from rocking.scratch import ORDER
+from rocking.scratch import FALLEN, IMPACT, ORDER, PULSE_END
 from rocking.taylor_step import evaluate, expand_motion, expand_pulse, first_crossing, polish, step_size
-
-IMPACT, PULSE_END, FALLEN = 0, 1, 2
-"""What ends a flight."""
 
 
 @kernel

@@ -43,7 +43,7 @@ class Table:
             response = rocking.peak_response(str(pulse), **inputs)
             for name, values in vars(response).items():
                 fields.setdefault(name, np.empty(len(rows), values.dtype))[rows] = values
-        return rocking.Response(**fields)  # type: ignore[arg-type]
+        return rocking.Response(**fields)  # type: ignore[arg-type]  # the fields by name, each of its own dtype
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,10 @@ import rocking
 from rocking import Outcome
 from rocking.chatter import settles
 from rocking.pulses import PULSE_NAMES
+from rocking.scratch import IMPACT
 from rocking.slender_events import fly
 from rocking.slender_flight import start_flight, turn
-from rocking.taylor_flight import IMPACT, fly_steps
+from rocking.taylor_flight import fly_steps
 from tests.kernels import cell
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))

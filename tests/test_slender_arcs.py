@@ -6,10 +6,11 @@ import pytest
 
 import rocking
 from rocking.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
+from rocking.scratch import IMPACT
 from rocking.slender_arcs import LARGEST_EXPONENT, RADIUS, arc, expand, hyperbolic, rotation, velocity
 from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_flight, state, turn
-from rocking.taylor_flight import IMPACT, fly_steps
+from rocking.taylor_flight import fly_steps
 from tests.kernels import first_flight
 
 SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(get_pulse(name), SinusoidalPulse))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
@@ -97,8 +98,8 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
         method=question.method,
         tolerance=question.tolerance,
         alpha_deg=math.degrees(block.alpha),
-        slenderness=float(groups.slenderness),  # type: ignore[arg-type]
-        frequency_ratio=float(groups.frequency_ratio),  # type: ignore[arg-type]
+        slenderness=float(np.asarray(groups.slenderness)),
+        frequency_ratio=float(np.asarray(groups.frequency_ratio)),
         restitution=eta,
     )
     points = {name: getattr(asked, name) for name in ("slenderness", "frequency_ratio", "restitution")}

@@ -6,6 +6,7 @@ which works in the groups (3.6). So figures 5 and 6 show self-similarity and do 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -91,12 +92,12 @@ class Shaken:
         return [state[1], p * p * (state[0] - pull)]  # (3.2)
 
 
-def _impact(sign: float, start: float):  # type: ignore[no-untyped-def]
+def _impact(sign: float, start: float) -> Callable[[float, Array, float], float]:
     """theta = 0, approached from the side of `sign`; the start of the arc does not count."""
 
     def event(time: float, state: Array, _: float) -> float:
         return state[0] if time > start else sign
 
-    event.terminal = True  # type: ignore[attr-defined]
+    event.terminal = True  # type: ignore[attr-defined]  # SciPy reads it there
     event.direction = -sign  # type: ignore[attr-defined]
     return event

@@ -16,10 +16,8 @@ from rocking.cube import MODEL_RESULT
 WIDTH = 6.7
 """Width of a figure in print [in]."""
 
-BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, VERMILION, PURPLE = (
-    "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7",
-)  # fmt: skip
-"""Colours of Okabe and Ito (2008)."""
+BLACK, BLUE, VERMILION = "#000000", "#0072B2", "#D55E00"
+"""Colours of Okabe and Ito (2008), distinct to colour-blind readers."""
 
 GREY = "#6B6B6B"
 
