@@ -14,6 +14,8 @@ import yaml
 from rocking.cube import read_spectrum
 from tests.workflow_fixtures import PROJECT, SMOKE, snakemake
 
+GRID = yaml.safe_load(SMOKE.read_text())["grid"]
+
 
 def digests(folder: Path) -> dict[str, str]:
     return {
@@ -123,6 +125,10 @@ def test_unknown_key_is_refused_by_name(place: tuple[str, ...], key: str, tmp_pa
         ({"restitution": [0.85, 0.905]}, "two decimals"),
         ({"restitution": [0.85]}, "figure-04 asks for restitution 0.90"),
         ({"pulses": ["cosine"]}, "needs the pulse sine"),
+        ({"grid": GRID | {"alpha_deg": [20]}}, "need the slender limit"),
+        ({"grid": GRID | {"alpha_deg": [20, 0]}}, "has to ascend"),
+        ({"grid": GRID | {"alpha_deg": [0, 90]}}, "90 is greater than or equal to the maximum of 90"),
+        ({"grid": GRID | {"slenderness": {"low": 0.05, "high": 0.95, "points": 74}}}, "is not a node"),
         ({"pulses": ["sine", "triangle"]}, "'triangle' is not one of"),
     ],
 )

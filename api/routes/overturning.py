@@ -14,6 +14,7 @@ from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_re
 from api.questions import OverturningQuestion, alpha_of
 from api.service import Service, ServiceDep
 from rocking.boundary import overturning_boundary
+from rocking.boundary_curves import curves_at
 from rocking.errors import DatasetError, in_range
 from rocking.lookup_files import UnknownDatasetError
 from rocking.pulses import get_pulse
@@ -67,11 +68,10 @@ def _read(service: Service, question: OverturningQuestion) -> tuple[xr.Dataset |
         version = catalogue.product(name).sha256
     except (UnknownDatasetError, DatasetError):
         return None, None  # /health tells of a damaged one
-    wanted = np.isclose(stored["alpha"].values, alpha_of(question.alpha_deg) or 0.0, rtol=0.0, atol=1e-12)
-    if float(stored["restitution"]) != question.restitution or not wanted.any():
+    found = curves_at(stored, alpha_of(question.alpha_deg) or 0.0)
+    if float(stored["restitution"]) != question.restitution or not found.sizes["curve"]:
         return None, None
-    points = np.repeat(wanted, stored["row_size"].values)
-    return stored.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points)), version
+    return found, version
 
 
 def _names(curves: xr.Dataset) -> NDArray[np.str_]:

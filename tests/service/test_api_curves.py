@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from rocking.boundary import overturning_boundary
+from rocking.boundary_curves import join_curves
+from rocking.cube import read_dataset, write_dataset
 from rocking.history import time_history
 from rocking.solve import peak_response
 from tests.service.conftest import assert_problem, client_of
@@ -63,6 +66,25 @@ def test_overturning_reads_the_curves_of_the_workflow(client, results):
         np.concatenate([curve["slenderness"] for curve in answer["curves"]]), stored["slenderness"]
     )
     assert {curve["outcome"] for curve in answer["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
+
+
+def test_overturning_finds_the_curves_of_the_angle_asked_for(own_results):
+    path = own_results / "overturning" / "sine" / "eta-0.85.nc"
+    slender = read_dataset(path)
+    alpha = np.radians(20)
+    rigid = overturning_boundary("sine", restitution=0.85, alpha=alpha, nodes=41).drop_attrs(deep=False)
+    rigid["alpha"] = "curve", np.full(rigid.sizes["curve"], alpha)
+    rigid = rigid.assign_coords({name: slender[name] for name in ("pulse", "restitution")})
+    write_dataset(join_curves([slender, rigid]), path)
+    with client_of(own_results) as client:
+        for angle, stored in ((None, slender), (0, slender), (20, rigid)):
+            asked = ROUTES["/v1/overturning"] | ({} if angle is None else {"alpha_deg": angle})
+            answer = client.get("/v1/overturning", params=asked).json()
+            assert answer["source"] == "dataset"
+            found = [s for curve in answer["curves"] for s in curve["slenderness"]]
+            assert found == stored["slenderness"].values.tolist()
+        asked["alpha_deg"] = 10
+        assert client.get("/v1/overturning", params=asked).json()["source"] == "solver"
 
 
 @pytest.mark.parametrize("changes", [{"restitution": 0.5}, {"pulse": "half_sine"}])

@@ -9,13 +9,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
+from numpy.typing import NDArray
 
+from rocking.boundary import fate_code
+from rocking.boundary_curves import curves_at
 from rocking.closed_form import overturning_amplitudes
 from rocking.cube import read_dataset, read_spectrum
 from rocking.response import Outcome
 from rocking.solve import peak_response
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
+LAYERS_FROM = 0.85
+"""1/a from which regions of different numbers of impacts lie close together [-]."""
+
 PRODUCTS = json.loads((RESULTS / "manifest.json").read_text(encoding="utf-8"))["products"]
 
 
@@ -31,15 +38,16 @@ def test_product_is_the_one_listed(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", listed("spectra/"))
-def test_cube_answers_as_the_solver(name: str) -> None:
-    cube = read_spectrum(RESULTS / name).sel(alpha=0.0)
-    rows, columns = (np.linspace(0, n - 1, 12).astype(int) for n in cube.peak_rotation.shape)
+def test_cube_answers_as_the_solver_at_each_angle(name: str) -> None:
+    cube = read_spectrum(RESULTS / name)
+    rows, columns = (np.linspace(0, n - 1, 12).astype(int) for n in cube.peak_rotation.shape[1:])
     part = cube.isel(slenderness=rows, frequency_ratio=columns)
     solved = peak_response(
         cube.pulse.attrs["pulse_name"],
         slenderness=part.slenderness.values[:, None],
         frequency_ratio=part.frequency_ratio.values,
         restitution=float(cube.restitution),
+        alpha=part.alpha.values[:, None, None],
     )
     # 1e-6: chatter magnifies the rounding by which two processors differ
     np.testing.assert_allclose(part.peak_rotation, solved.peak_rotation, rtol=1e-6)
@@ -56,10 +64,48 @@ def test_cube_is_consistent(name: str) -> None:
     assert np.isfinite(cube.interpolation_error.values).any()
 
 
+@pytest.mark.parametrize("name", listed("overturning/"))
+def test_fate_changes_across_each_boundary_as_its_file_states(name: str) -> None:
+    stored = read_dataset(RESULTS / name)
+    assert stored.row_size.sum() == stored.sizes["point"]
+    for alpha in np.unique(stored.alpha):
+        curves = curves_at(stored, alpha)
+        # towards 1/a = 1, after many impacts, regions lie in layers thinner than the larger of the two steps
+        assert np.all(_as_stated(curves, 1e-6)[curves.slenderness.values < LAYERS_FROM])
+        assert _as_stated(curves, 1e-10).mean() > 0.99
+
+
+def _as_stated(curves: xr.Dataset, step: float) -> NDArray[np.bool_]:
+    """At each point, whether a step off the curve to either side meets the two fates that the file states.
+
+    A point lies on a line of the grid along which its fate changes, so the step in 1/a or the one in log omega does.
+    """
+    stated = np.sort(np.repeat([_codes(curves, ""), _codes(curves, "neighbour_")], curves.row_size, axis=1), axis=0)
+    sides = step * np.array([[1.0], [-1.0]])
+    met = [
+        fate_code(
+            peak_response(
+                curves.pulse.attrs["pulse_name"],
+                slenderness=curves.slenderness.values + in_slenderness,
+                frequency_ratio=curves.frequency_ratio.values * np.exp(in_log_omega),
+                restitution=float(curves.restitution),
+                alpha=float(curves.alpha[0]),
+            )
+        )
+        for in_slenderness, in_log_omega in ((sides, 0 * sides), (0 * sides, sides))
+    ]
+    return np.any([np.all(np.sort(fates, axis=0) == stated, axis=0) for fates in met], axis=0)
+
+
+def _codes(curves: xr.Dataset, side: str) -> NDArray[np.int64]:
+    """The fate that a file states on one side of each curve, in the words of `fate_code`."""
+    outcome, impacts = curves[f"{side}outcome"].values, curves[f"{side}impacts"].values.astype(np.int64)
+    return np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, 4 * impacts + outcome, 0)
+
+
 @pytest.mark.parametrize("name", listed("overturning/sine/"))
 def test_traced_boundaries_agree_with_the_closed_forms(name: str) -> None:
-    curves = read_dataset(RESULTS / name)
-    assert curves.row_size.sum() == curves.sizes["point"]
+    curves = curves_at(read_dataset(RESULTS / name), 0.0)
     assert np.nanmax(np.abs(curves.closed_form_difference)) < 1e-9
     # a point halfway between the two branches overturns, so the closed forms are not vacuous
     middle = overturning_amplitudes(3.0, float(curves.restitution))

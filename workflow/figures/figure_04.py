@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rocking.boundary_curves import curves_at
 from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
 from rocking.cube import read_dataset
 from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
@@ -75,7 +76,7 @@ def _tips(eta: np.ndarray) -> np.ndarray:
 
 def _islands(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Amplitudes, frequency ratios and impacts of the points on curves that the closed forms miss."""
-    curves = read_dataset(path)
+    curves = curves_at(read_dataset(path), 0.0)
     rows = curves.row_size.values
     on_island = np.repeat(curves.island.values == 1, rows)
     impacts = np.repeat(curves.impacts.values, rows)

@@ -22,20 +22,50 @@ wildcard_constraints:
     eta=r"[01]\.[0-9]{2}",
 
 
+# The pulses of the figures that are drawn from data sets.
+DATA_OF_FIGURES = {
+    "figure-04": ["sine"],
+    "figure-08": ["sine", "cosine"],
+    "figure-scale-law": ["sine"],
+}
+
+
+def chosen(figure):
+    """All values of a figure, the paper's and ours."""
+    values = config["figures"][figure]
+    return {**values.get("paper", {}), **values.get("ours", {})}
+
+
+def restitutions(figure):
+    """Its restitutions as a list, also where it has only one."""
+    eta = chosen(figure)["restitution"]
+    return eta if isinstance(eta, list) else [eta]
+
+
 def check_configuration():
     """Refuse what the schema cannot see: names of files that would clash, figures of data that nobody makes."""
     for eta, name in zip(config["restitution"], ETAS):
         if float(name) != eta:
             raise WorkflowError(f"restitution {eta}: two decimals at most, they name the files")
-    needed = {"figure-04": ["sine"], "figure-08": ["sine", "cosine"], "figure-scale-law": ["sine"]}
-    for figure, pulses in needed.items():
+    angles, rows = config["grid"]["alpha_deg"], config["grid"]["slenderness"]
+    if 0 not in angles:
+        raise WorkflowError(f"alpha_deg {angles}: figures and claims need the slender limit, 0")
+    if angles != sorted(angles):
+        raise WorkflowError(f"alpha_deg {angles}: an axis of the cubes, which has to ascend")
+    for figure, pulses in DATA_OF_FIGURES.items():
         for pulse in pulses:
             if pulse not in PULSES:
                 raise WorkflowError(f"{figure} needs the pulse {pulse}, which is not among the pulses {PULSES}")
-        values = config["figures"][figure]
-        for eta in {**values.get("paper", {}), **values["ours"]}["restitution"]:
+        for eta in restitutions(figure):
             if f"{eta:.2f}" not in ETAS:
                 raise WorkflowError(f"{figure} asks for restitution {eta:.2f}, which is not among {ETAS}")
+        angle = chosen(figure).get("alpha_deg", 0)
+        if angle not in angles:
+            raise WorkflowError(f"{figure} asks for alpha_deg {angle}, which is not among {angles}")
+        for slenderness in chosen(figure).get("slenderness", []):
+            node = (slenderness - rows["low"]) / (rows["high"] - rows["low"]) * (rows["points"] - 1)
+            if abs(node - round(node)) > 1e-6 or not 0 <= round(node) < rows["points"]:
+                raise WorkflowError(f"{figure} asks for slenderness {slenderness}, which is not a node of {rows}")
 
 
 check_configuration()

@@ -7,7 +7,11 @@ SPECTRUM_PROVENANCE = provenance(
     SPECTRUM_SETTINGS,
     [path for pulse in PULSES for path in spectrum_files(pulse, ETAS)],
 )
-OVERTURNING_SETTINGS = {"boundary": config["boundary"], "restitution": config["restitution"]}
+OVERTURNING_SETTINGS = {
+    "boundary": config["boundary"],
+    "alpha_deg": config["grid"]["alpha_deg"],
+    "restitution": config["restitution"],
+}
 OVERTURNING_PROVENANCE = provenance(
     "overturning",
     ["scripts/overturning.py"],

@@ -3,11 +3,9 @@ from itertools import chain
 
 _figures = config["figures"]
 FIGURE_INPUTS = {
-    "figure-04": {"boundaries": overturning_files("sine", _figures["figure-04"]["ours"]["restitution"])},
-    "figure-08": {
-        pulse: spectrum_files(pulse, _figures["figure-08"]["paper"]["restitution"]) for pulse in ("sine", "cosine")
-    },
-    "figure-scale-law": {"cubes": spectrum_files("sine", _figures["figure-scale-law"]["ours"]["restitution"])},
+    "figure-04": {"boundaries": overturning_files("sine", restitutions("figure-04"))},
+    "figure-08": {pulse: spectrum_files(pulse, restitutions("figure-08")) for pulse in ("sine", "cosine")},
+    "figure-scale-law": {"cubes": spectrum_files("sine", restitutions("figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
 

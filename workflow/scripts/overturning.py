@@ -1,5 +1,6 @@
-"""Traces the overturning boundaries of one pulse; for the sine, beside the closed forms with their difference."""
+"""Traces the overturning boundaries of one pulse at all slenderness angles, for the sine beside the closed forms."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from rocking.boundary import RESOLUTION, overturning_boundary
+from rocking.boundary_curves import join_curves
 from rocking.closed_form import overturning_amplitudes
-from rocking.cube import MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
+from rocking.cube import AXES, MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
 from rocking.response import Outcome
 from workflow.scripts.job import run
 
@@ -18,34 +20,39 @@ def main(
     *,
     pulse: str,
     restitution: Sequence[float],
+    alpha_deg: Sequence[float],
     boundary: Mapping[str, Any],
     boundaries: Sequence[Path],
     provenance: Mapping[str, str],
 ) -> None:
-    """Trace one set of curves per restitution [-] inside the configured window and write it to its path."""
+    """Trace one file of curves per restitution [-], at all angles [deg], inside the configured window."""
     limits = {name: (boundary[name]["low"], boundary[name]["high"]) for name in ("slenderness", "frequency_ratio")}
+    nodes = {angle: boundary["nodes_rigid"] if angle else boundary["nodes"] for angle in alpha_deg}
     for eta, path in zip(restitution, boundaries, strict=True):
-        curves = curves_of(pulse, eta, nodes=boundary["nodes"], **limits)
+        parts = [curves_of(pulse, eta, angle, nodes=nodes[angle], **limits) for angle in alpha_deg]
+        curves = described(join_curves(parts), pulse, eta)
         write_dataset(describe(curves, **provenance), path)
         print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
-def curves_of(pulse: str, restitution: float, **window: Any) -> xr.Dataset:
-    """The boundary curves with our attributes: contiguous ragged polylines, `row_size` points each."""
-    traced = overturning_boundary(pulse, restitution=restitution, **window)
+def curves_of(pulse: str, restitution: float, alpha_deg: float, **window: Any) -> xr.Dataset:
+    """The boundary curves at one slenderness angle: contiguous ragged polylines, `row_size` points each."""
+    alpha = math.radians(alpha_deg)
+    traced = overturning_boundary(pulse, restitution=restitution, alpha=alpha or None, **window)
     if pulse == "sine":
-        traced = traced.assign(_closed_forms(traced, restitution))
+        traced = traced.assign(_closed_forms(traced, restitution, slender=alpha == 0.0))
+    return traced.assign(alpha=("curve", np.full(traced.sizes["curve"], alpha))).drop_attrs(deep=False)
+
+
+def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
+    """The curves of all angles with our attributes."""
     for name, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
-        traced[name].attrs |= VARIABLES["outcome"][1] | {"long_name": f"fate on the {side} side"}
-    traced["alpha"] = xr.Variable(
-        "curve",
-        np.zeros(traced.sizes["curve"]),
-        {"units": "rad", "long_name": "slenderness angle of the block, 0 for the slender limit"},
-    )
-    for variable in traced.data_vars.values():
+        curves[name].attrs |= VARIABLES["outcome"][1] | {"long_name": f"fate on the {side} side"}
+    curves["alpha"].attrs |= AXES["alpha"]
+    for variable in curves.data_vars.values():
         variable.attrs = MODEL_RESULT | variable.attrs
     return describe(
-        traced.drop_attrs(deep=False).assign_coords(scalar_coordinates(pulse, restitution)),
+        curves.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
         f"overturn from blocks which survive, each point bisected with the solver to {RESOLUTION:g}.",
@@ -54,8 +61,11 @@ def curves_of(pulse: str, restitution: float, **window: Any) -> xr.Dataset:
     )
 
 
-def _closed_forms(traced: xr.Dataset, restitution: float) -> dict[str, xr.Variable]:
-    """Slenderness by (3.10), (3.18), (3.20) with (3.21) at the frequency ratio of each traced point of that mode."""
+def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> dict[str, xr.Variable]:
+    """Slenderness by (3.10), (3.18), (3.20) with (3.21) at the frequency ratio of each traced point of that mode.
+
+    They hold for slender blocks under the sine; for any other block they are missing.
+    """
     rows = traced.row_size.values
     outcome, impacts = (np.repeat(traced[name].values, rows) for name in ("outcome", "impacts"))
     s, omega = traced.slenderness.values, traced.frequency_ratio.values
@@ -66,13 +76,14 @@ def _closed_forms(traced: xr.Dataset, restitution: float) -> dict[str, xr.Variab
     expected = np.where(
         outcome == Outcome.OVERTURNED_DIRECTLY, 1 / closed.direct, np.where(impacts == 1, nearer, np.nan)
     )
+    expected = expected if slender else np.full(s.size, np.nan)
     island = np.where(traced.impacts.values > 1, 1, 0).astype(np.int8)
     return {
         "closed_form_slenderness": xr.Variable(
             "point",
             expected,
             {**MODEL_RESULT, "long_name": "slenderness of the boundary in closed form", "equation": "3.10, 3.18, 3.20",
-             "comment": "missing for overturning after three or more impacts, which has no closed form"},
+             "comment": "missing for overturning after three or more impacts, and for alpha > 0: no closed form"},
         ),
         "closed_form_difference": xr.Variable(
             "point", s - expected, {**MODEL_RESULT, "long_name": "traced minus closed form slenderness"}
@@ -80,7 +91,7 @@ def _closed_forms(traced: xr.Dataset, restitution: float) -> dict[str, xr.Variab
         "island": xr.Variable(
             "curve",
             island,
-            {"units": "1", "long_name": "overturning after three or more impacts, which the closed forms miss",
+            {"units": "1", "long_name": "overturning after three or more impacts, which no closed form knows",
              "flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"},
         ),
     }  # fmt: skip

@@ -1,5 +1,6 @@
 """Makes the spectrum cubes of one pulse, one file for each coefficient of restitution."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ def main(
         # rounded so that a step of 0.0025 gives 0.9 and not 0.9000000000000001
         "slenderness": np.round(np.linspace(rows["low"], rows["high"], rows["points"]), 12),
         "frequency_ratio": np.geomspace(columns["low"], columns["high"], columns["points"]),
-        "alpha": grid["alpha"],
+        "alpha": [math.radians(angle) for angle in grid["alpha_deg"]],
     }
     for eta, path in zip(restitution, cubes, strict=True):
         cube = spectrum(pulse, restitution=eta, **axes)
