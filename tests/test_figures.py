@@ -7,11 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 
-from rocking.cube import read_dataset
+from rocking.boundary_curves import join_curves
+from rocking.closed_form import overturning_amplitudes
+from rocking.cube import read_dataset, write_dataset
 from tests.workflow_fixtures import PROJECT, SMOKE
+from workflow.figures import figure_10
+from workflow.figures.boundary_lines import Lines, lines_of
 from workflow.scripts.figure import main
+from workflow.scripts.overturning import curves_of, described
 
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
@@ -77,6 +83,51 @@ def test_closed_form_of_figure_8_is_exact_on_its_main_branch(smoke_results: Path
     # and is not where the first impact falls inside the pulse
     below = data.sel(slenderness=0.60, method="nearest").where(data.frequency_ratio > 6, drop=True)
     assert np.nanmin(np.abs(below.closed_form.values / below.spectrum[0].values - 1)) > 0.05
+
+
+def along_frequency(lines: Lines, omega: np.ndarray) -> np.ndarray:
+    """Largest amplitude of the lines at each frequency ratio: the curve of overturning without impact."""
+    joined = [~np.isnan(lines.amplitude[:-1] + lines.amplitude[1:])]
+    x, y = (np.stack([v[:-1][*joined], v[1:][*joined]]) for v in (lines.frequency_ratio, lines.amplitude))
+    inside = (x.min(axis=0)[:, None] <= omega) & (omega <= x.max(axis=0)[:, None])
+    slope = (y[1] - y[0]) / np.where(x[1] == x[0], np.inf, x[1] - x[0])
+    return np.where(inside, y[0][:, None] + slope[:, None] * (omega - x[0][:, None]), -np.inf).max(axis=0)
+
+
+@pytest.fixture(scope="module")
+def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
+    """Figure 10 at more angles than the smallest configuration has."""
+    files = {}
+    for pulse in ("sine", "cosine"):
+        window = {"nodes": 61, "slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
+        parts = [curves_of(pulse, 0.85, angle, **window) for angle in (0, 5, 10, 20)]
+        files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
+        write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
+    return figure_10.data(**files, restitution=0.85)
+
+
+@pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])
+def test_boundaries_of_figure_10_tend_to_the_slender_limit(overturning_at_angles: xr.Dataset, pulse: int) -> None:
+    data = overturning_at_angles
+    omega = np.linspace(1.5, 2.4, 10)
+    slender, *others = (
+        along_frequency(lines_of(data, pulse, alpha), omega) for alpha in np.radians([0.0, 5.0, 10.0, 20.0])
+    )
+    distance = [np.abs(other / slender - 1).max() for other in others]
+    assert distance[0] < distance[1] < distance[2] < 0.05
+    assert distance[0] < 0.2 * distance[2]  # as alpha squared, and so by 16
+
+
+def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-10.nc")
+    np.testing.assert_allclose(data.alpha, np.radians([0, 20]), rtol=1e-15)
+    lines = lines_of(data, 0, 0.0)
+    known = np.isfinite(lines.amplitude) & (lines.frequency_ratio > 1.5)
+    a, omega = lines.amplitude[known], lines.frequency_ratio[known]
+    closed = overturning_amplitudes(omega, 0.85)
+    nearest = np.nanmin(np.abs(np.stack([closed.falls_from, closed.safe_again, closed.direct]) / a - 1), axis=0)
+    assert nearest.size > 100
+    assert nearest.max() < 1e-9
 
 
 def test_islands_of_figure_4_lie_where_expected(smoke_results: Path) -> None:

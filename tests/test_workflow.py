@@ -33,7 +33,7 @@ def copy_of_run(smoke_run: Path, tmp_path: Path) -> Path:
 
 def test_every_promised_product_is_made_and_listed(smoke_results: Path) -> None:
     manifest = json.loads((smoke_results / "manifest.json").read_text())
-    figures = [*(f"figure-0{k}" for k in range(1, 9)), "figure-S1", "figure-scale-law", "table-1"]
+    figures = [*(f"figure-0{k}" for k in range(1, 9)), "figure-10", "figure-S1", "figure-scale-law", "table-1"]
     expected = {f"figures/{name}.{kind}" for name in figures for kind in ("svg", "png", "nc")}
     expected |= {"claims.json", "claims.md"}
     for pulse in ("sine", "cosine"):
