@@ -10,11 +10,12 @@ import pytest
 import xarray as xr
 import yaml
 
+from rocking.block import Block
 from rocking.boundary_curves import join_curves
 from rocking.closed_form import overturning_amplitudes
 from rocking.cube import read_dataset, write_dataset
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_10
+from workflow.figures import figure_09, figure_10
 from workflow.figures.boundary_lines import Lines, lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
@@ -83,6 +84,48 @@ def test_closed_form_of_figure_8_is_exact_on_its_main_branch(smoke_results: Path
     # and is not where the first impact falls inside the pulse
     below = data.sel(slenderness=0.60, method="nearest").where(data.frequency_ratio > 6, drop=True)
     assert np.nanmin(np.abs(below.closed_form.values / below.spectrum[0].values - 1)) > 0.05
+
+
+def test_integration_with_dimensions_falls_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-09.nc")
+    above = data.threshold_overturns_above.values
+    assert set(above) == {0, 1}
+    np.testing.assert_array_equal(data.threshold_falls_above, above)
+    np.testing.assert_array_equal(data.threshold_falls_below, 1 - above)
+    assert set(zip(data.threshold_pulse.values, data.threshold_block.values, strict=True)) == {
+        (i, j) for i in range(2) for j in range(2)
+    }
+
+
+@pytest.mark.parametrize("pulse", ["sine", "cosine"])
+def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
+    small, large = (Block.from_slenderness_angle(np.radians(20), R) for R in (0.5, 1.0))
+    period = 1.1
+    one = list(figure_09.thresholds(pulse, small, period, 0.85))
+    other = list(figure_09.thresholds(pulse, large, period * np.sqrt(2), 0.85))  # p goes with 1/sqrt(R)
+    assert len(one) == len(other) >= 3
+    for a, b in zip(one, other, strict=True):
+        assert a["frequency_ratio"] == pytest.approx(b["frequency_ratio"], rel=1e-14)
+        assert a["amplitude"] == pytest.approx(b["amplitude"], rel=1e-11)
+        assert a["acceleration"] == pytest.approx(a["amplitude"] * small.uplift_acceleration, rel=1e-14)
+    # and do not with dimensions: at one period the thresholds of the two blocks differ
+    same_period = next(iter(figure_09.thresholds(pulse, large, period, 0.85)))
+    assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
+
+
+def test_upper_safe_region_of_figure_9_lies_above_the_loop(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-09.nc")
+    for k in range(2):
+        found = data.isel(threshold=(data.threshold_pulse == k).values)
+        omega, a = found.threshold_frequency_ratio.values, found.threshold_amplitude.values
+        safe_again = found.threshold_overturns_above.values == 0
+        column = np.abs(data.frequency_ratio.values[:, None] - omega).argmin(axis=0)
+        # halfway between standing again and falling without impact, the next threshold
+        between = np.sqrt(a[:-1] * a[1:])[safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)]
+        at = column[:-1][safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)]
+        row = np.abs(1 / data.slenderness.values[:, None] - between).argmin(axis=0)
+        assert between.size > 0
+        assert np.all(data.brought_back.values[k, row, at] == 1)
 
 
 def along_frequency(lines: Lines, omega: np.ndarray) -> np.ndarray:

@@ -33,7 +33,7 @@ def copy_of_run(smoke_run: Path, tmp_path: Path) -> Path:
 
 def test_every_promised_product_is_made_and_listed(smoke_results: Path) -> None:
     manifest = json.loads((smoke_results / "manifest.json").read_text())
-    figures = [*(f"figure-0{k}" for k in range(1, 9)), "figure-10", "figure-S1", "figure-scale-law", "table-1"]
+    figures = [*(f"figure-0{k}" for k in range(1, 10)), "figure-10", "figure-S1", "figure-scale-law", "table-1"]
     expected = {f"figures/{name}.{kind}" for name in figures for kind in ("svg", "png", "nc")}
     expected |= {"claims.json", "claims.md"}
     for pulse in ("sine", "cosine"):
@@ -94,7 +94,7 @@ def test_a_changed_module_reruns_what_depends_on_it_and_nothing_else(smoke_run: 
         "rocking/orientation.py": {"table_1", "claims"},
         "rocking/scale_law.py": {"figure_scale_law", "claims"},
         "workflow/figures/figure_07.py": {"figure_07"},
-        "workflow/scripts/spectra.py": {"spectra", "figure_08", "figure_scale_law", "claims"},
+        "workflow/scripts/spectra.py": {"spectra", "figure_08", "figure_09", "figure_scale_law", "claims"},
     }.items():
         before = (project / module).read_text()
         (project / module).write_text(before + "\n# a change\n")
@@ -125,6 +125,7 @@ def test_unknown_key_is_refused_by_name(place: tuple[str, ...], key: str, tmp_pa
         ({"restitution": [0.85, 0.905]}, "two decimals"),
         ({"restitution": [0.85]}, "figure-04 asks for restitution 0.90"),
         ({"pulses": ["cosine"]}, "needs the pulse sine"),
+        ({"grid": GRID | {"alpha_deg": [0, 10]}}, "figure-09 asks for alpha_deg 20"),
         ({"grid": GRID | {"alpha_deg": [20]}}, "need the slender limit"),
         ({"grid": GRID | {"alpha_deg": [20, 0]}}, "has to ascend"),
         ({"grid": GRID | {"alpha_deg": [0, 90]}}, "90 is greater than or equal to the maximum of 90"),

@@ -1,13 +1,15 @@
 """A block of given size and shape under a pulse of given strength and length, integrated in metres and seconds.
 
-Equation (3.2) with its dimensions, step by step with SciPy's DOP853: slow, and independent of the solver of `rocking`,
-which works in the groups (3.6). So figures 5 and 6 show self-similarity and do not assume it.
+Equation (3.2), or (2.2) for a block that is not slender, with its dimensions, step by step with SciPy's DOP853: slow,
+and independent of the solver of `rocking`, which works in the groups (3.6). So figures 5, 6 and 9 show self-similarity
+and do not assume it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,25 +24,35 @@ Array = NDArray[np.float64]
 AT_REST = 1e-9
 """Angular velocity in units of p alpha below which free rocking counts as over [-]."""
 
+LONGEST = 60.0
+"""Time p t after the pulse by which a block that falls has fallen, however slowly it leaves its unstable rest [-]."""
+
 
 @dataclass(frozen=True)
 class Shaken:
-    """A block and its pulse; `history` integrates."""
+    """A block and its pulse; `history` and `falls` integrate."""
 
     block: Block
     pulse: str
     peak_acceleration: float  # a_g [m/s2]
     pulse_period: float  # T_p [s]
     restitution: float
+    rigid: bool = False  # (2.2), else its small-angle form (3.2)
 
     @classmethod
     def with_groups(
         cls, pulse: str, block: Block, slenderness: float, frequency_ratio: float, restitution: float
     ) -> Shaken:
-        """The pulse that gives this block the groups 1/a = g alpha/a_g and omega = omega_g/p, (4.11)."""
+        """The pulse that gives this slender block the groups 1/a = g alpha/a_g and omega = omega_g/p, (4.11)."""
         acceleration = STANDARD_GRAVITY * block.alpha / slenderness
         period = 2 * np.pi / (frequency_ratio * block.frequency_parameter)
         return cls(block, pulse, acceleration, period, restitution)
+
+    @property
+    def pulse_end(self) -> float:
+        """Duration of the pulse [s]."""
+        shape = get_pulse(self.pulse)
+        return (shape.end - shape.start) / (2 * np.pi) * self.pulse_period
 
     def ground_acceleration(self, time: Array | float) -> Array:
         """a_g f(omega_g t) [m/s2]; time [s] since the start of the pulse."""
@@ -50,33 +62,51 @@ class Shaken:
 
     def history(self, time: Array) -> tuple[Array, Array]:
         """Rotation theta [rad] and angular velocity [rad/s] at ascending times [s]."""
-        shape = get_pulse(self.pulse)
-        pulse_end = (shape.end - shape.start) / (2 * np.pi) * self.pulse_period
-        start = self._uplift(pulse_end)
         theta, velocity = np.zeros(time.size), np.zeros(time.size)
-        state, sign = np.zeros(2), -float(np.sign(self.ground_acceleration(start)))
-        while start < time[-1]:
-            # the ground acceleration may jump at the end of the pulse, so that no step may run across it
-            stop = pulse_end if start < pulse_end < time[-1] else time[-1]
-            arc = solve_ivp(
-                self._rate, (start, stop), state, args=(sign,), method="DOP853", rtol=1e-11, atol=1e-14,
-                max_step=self.pulse_period / 50, events=_impact(sign, start), dense_output=True,
-            )  # fmt: skip
-            inside = (time >= start) & (time <= arc.t[-1])
+        for arc in self._arcs(time[-1], dense_output=True):
+            inside = (time >= arc.t[0]) & (time <= arc.t[-1])
             if inside.any():
                 theta[inside], velocity[inside] = arc.sol(time[inside])
-            start, state = arc.t[-1], arc.y[:, -1].copy()
-            if arc.status == 1:  # an impact: theta = 0, (2.3)
-                state[0], sign = 0.0, -sign
-                state[1] *= self.restitution
-                if start >= pulse_end and abs(state[1]) < AT_REST * self.block.frequency_parameter * self.block.alpha:
-                    break  # the impacts of free rocking accumulate, and it rests
-            start = np.nextafter(start, np.inf)
         return theta, velocity
 
-    def _uplift(self, pulse_end: float) -> float:
-        needed = STANDARD_GRAVITY * self.block.alpha  # small angles: g alpha, (3.3)
-        grid = np.linspace(0.0, pulse_end, 2001)
+    def falls(self) -> bool:
+        """Whether a rigid block reaches |theta| = pi/2; it stands once it swung freely from one impact to the next."""
+        free = 0
+        for arc in self._arcs(self.pulse_end + LONGEST / self.block.frequency_parameter):
+            if abs(arc.y[0, -1]) > 0.5 * np.pi - 1e-6:
+                return True
+            free += arc.t[0] >= self.pulse_end
+            if free > 1 and arc.status == 1:
+                return False
+        return False
+
+    def _arcs(self, until: float, **options: Any) -> Iterator[Any]:
+        """The motion from uplift on in smooth pieces: to an impact, to the end of the pulse, to the ground."""
+        start, at_rest = self._uplift(), AT_REST * self.block.frequency_parameter * self.block.alpha
+        state, sign = np.zeros(2), -float(np.sign(self.ground_acceleration(start)))
+        while start < until:
+            # the ground acceleration may jump at the end of the pulse, so that no step may run across it
+            stop = self.pulse_end if start < self.pulse_end < until else until
+            events = [_impact(sign, start), *([_fallen] if self.rigid else [])]
+            arc = solve_ivp(
+                self._rate, (start, stop), state, args=(sign,), method="DOP853", rtol=1e-11, atol=1e-14,
+                max_step=self.pulse_period / 50, events=events, **options,
+            )  # fmt: skip
+            yield arc
+            start, state = arc.t[-1], arc.y[:, -1].copy()
+            if arc.t_events[0].size:  # an impact: theta = 0, (2.3)
+                state[0], sign = 0.0, -sign
+                state[1] *= self.restitution
+                if start >= self.pulse_end and abs(state[1]) < at_rest:
+                    return  # the impacts of free rocking accumulate, and it rests
+            elif arc.status == 1:
+                return  # on the ground
+            start = np.nextafter(start, np.inf)
+
+    def _uplift(self) -> float:
+        # g tan(alpha), (2.1); small angles: g alpha, (3.3)
+        needed = self.block.uplift_acceleration if self.rigid else STANDARD_GRAVITY * self.block.alpha
+        grid = np.linspace(0.0, self.pulse_end, 2001)
         excess = np.abs(self.ground_acceleration(grid)) - needed
         first = int(np.argmax(excess >= 0))
         if first == 0:
@@ -88,8 +118,11 @@ class Shaken:
 
     def _rate(self, time: float, state: Array, sign: float) -> list[float]:
         p = self.block.frequency_parameter
-        pull = sign * self.block.alpha + float(self.ground_acceleration(time)) / STANDARD_GRAVITY
-        return [state[1], p * p * (state[0] - pull)]  # (3.2)
+        lean = sign * self.block.alpha - state[0]
+        pull = float(self.ground_acceleration(time)) / STANDARD_GRAVITY
+        if self.rigid:
+            return [state[1], -p * p * (np.sin(lean) + pull * np.cos(lean))]  # (2.2)
+        return [state[1], -p * p * (lean + pull)]  # (3.2)
 
 
 def _impact(sign: float, start: float) -> Callable[[float, Array, float], float]:
@@ -101,3 +134,11 @@ def _impact(sign: float, start: float) -> Callable[[float, Array, float], float]
     event.terminal = True  # type: ignore[attr-defined]  # SciPy reads it there
     event.direction = -sign  # type: ignore[attr-defined]
     return event
+
+
+def _fallen(_time: float, state: Array, _sign: float) -> float:
+    """|theta| = pi/2: the block lies on its side."""
+    return float(np.abs(state[0])) - 0.5 * np.pi
+
+
+_fallen.terminal = True  # type: ignore[attr-defined]  # SciPy reads it there

@@ -26,6 +26,7 @@ wildcard_constraints:
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
     "figure-08": ["sine", "cosine"],
+    "figure-09": ["sine", "cosine"],
     "figure-10": ["sine", "cosine"],
     "figure-scale-law": ["sine"],
 }

@@ -1,0 +1,216 @@
+"""Figure 9: overturning of two geometrically similar blocks, two curves with dimensions and one in groups."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rocking.block import STANDARD_GRAVITY, Block
+from rocking.boundary import critical_amplitude
+from rocking.cube import read_spectrum
+from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
+from rocking.response import Outcome
+from workflow.figures.boundary_lines import line_variables, lines_of
+from workflow.figures.dimensional import Shaken
+from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+
+HIGHEST = 12.0
+"""Largest amplitude a shown [-], as in figure 4."""
+
+WIDEST = {"sine": 7.2, "cosine": 4.5}
+"""Largest frequency ratio shown, beyond the tip of the loop [-]."""
+
+STEP = 1e-6
+"""Relative step off a threshold at which the block is integrated with its dimensions [-]."""
+
+COLOURS = (BLUE, VERMILION)
+
+
+def data(
+    *,
+    cubes: Sequence[Path],
+    boundaries: Sequence[Path],
+    alpha_deg: float,
+    half_diagonal: Sequence[float],
+    restitution: float,
+    pulse_period: Sequence[float],
+) -> xr.Dataset:
+    """The traced boundary, thresholds of each block in SI units with their proof, and where blocks come back.
+
+    Parameters
+    ----------
+    cubes, boundaries : sequences of paths
+        Spectrum cubes and overturning boundaries of this restitution, one of each for each pulse.
+    alpha_deg : float
+        Slenderness angle [deg] of all blocks.
+    half_diagonal : sequence
+        R [m] of each block.
+    restitution : float
+        eta [-].
+    pulse_period : sequence
+        T_p [s] at which thresholds are found and checked.
+    """
+    alpha = float(np.radians(alpha_deg))
+    opened = [read_spectrum(path).sel(alpha=alpha, method="nearest", tolerance=1e-9) for path in cubes]
+    pulses = [cube.pulse.attrs["pulse_name"] for cube in opened]
+    blocks = [Block.from_slenderness_angle(alpha, R) for R in half_diagonal]
+    rows = [
+        {"pulse": i, "block": j, "period": period, **row}
+        for i, pulse in enumerate(pulses)
+        for j, block in enumerate(blocks)
+        for period in pulse_period
+        for row in thresholds(pulse, block, period, restitution)
+    ]
+    back = [(cube.exceeded_alpha.values == 1) & (cube.outcome.values == Outcome.SAFE) for cube in opened]
+    names = {
+        "pulse": ("index of the pulse", "1"),
+        "block": ("index of the block", "1"),
+        "period": ("period T_p of the pulse", "s"),
+        "acceleration": ("threshold a_g", "m s-2"),
+        "frequency_ratio": ("frequency ratio omega_g/p of the threshold", "1"),
+        "amplitude": ("amplitude a_g/(g tan alpha) of the threshold", "1"),
+        "overturns_above": ("whether the block falls just above, by the groups", "1"),
+        "falls_below": ("whether it falls just below, integrated with dimensions", "1"),
+        "falls_above": ("whether it falls just above, integrated with dimensions", "1"),
+    }
+    return xr.Dataset(
+        {
+            **line_variables(boundaries, [alpha]),
+            **{
+                f"threshold_{name}": plotted("threshold", [row[name] for row in rows], text, units=units)
+                for name, (text, units) in names.items()
+            },
+            "brought_back": plotted(
+                ("pulse", "slenderness", "frequency_ratio"),
+                np.array(back, dtype=np.int8),
+                "whether the block passes alpha and stands",
+            ),
+            "frequency_parameter": plotted(
+                "block", [block.frequency_parameter for block in blocks], "frequency parameter p", units="rad s-1"
+            ),
+        },
+        coords={
+            "slenderness": opened[0].slenderness.variable,
+            "frequency_ratio": opened[0].frequency_ratio.variable,
+            "half_diagonal": plotted("block", half_diagonal, "half diagonal R", units="m"),
+        },
+        attrs={
+            "title": "Overturning of two geometrically similar blocks of different size",
+            "summary": "Thresholds in SI units, each integrated with its dimensions by (2.2) a relative "
+            f"{STEP:g} below and above; and in the groups of (5.3).",
+            "pulse_names": " ".join(pulses),
+            "alpha": alpha,
+            "restitution": restitution,
+            "step": STEP,
+        },
+    )
+
+
+def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float) -> Iterator[dict[str, Any]]:
+    """Peak accelerations at which the fate of a block changes, by its groups, and its fate beside them without.
+
+    Parameters
+    ----------
+    pulse : str
+    block : Block
+    pulse_period : float
+        T_p [s].
+    restitution : float
+        eta [-].
+    """
+    p, frequency = block.frequency_parameter, 2 * np.pi / pulse_period
+    groups = groups_of(Problem(block.alpha, p, block.uplift_acceleration, frequency), GroupSet.RIGID)  # (5.3)
+    found = critical_amplitude(
+        pulse,
+        frequency_ratio=float(groups.frequency_ratio),
+        restitution=restitution,
+        alpha=block.alpha,
+        highest_amplitude=HIGHEST,
+    )
+    at_threshold = Groups(groups.frequency_ratio, 1 / found.amplitude, groups.cos_alpha)
+    problem = problem_of_block(at_threshold, GroupSet.RIGID, alpha=block.alpha, frequency_parameter=p)
+    for acceleration, amplitude, above in zip(
+        np.atleast_1d(problem.peak_acceleration), found.amplitude, found.overturns_above, strict=True
+    ):
+        below, beyond = (
+            Shaken(block, pulse, acceleration * (1 + step), pulse_period, restitution, rigid=True).falls()
+            for step in (-STEP, STEP)
+        )
+        yield {
+            "acceleration": float(acceleration),
+            "frequency_ratio": float(groups.frequency_ratio),
+            "amplitude": float(amplitude),
+            "overturns_above": int(above),
+            "falls_below": int(below),
+            "falls_above": int(beyond),
+        }
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Above: acceleration against frequency, a curve for each block; below: the groups. One column for each pulse."""
+    figure = Figure(figsize=(WIDTH, 6.0))
+    axes = figure.subplots(2, 2, sharey="row")
+    uplift = np.tan(data.attrs["alpha"])  # in units of g
+    p = data.frequency_parameter.values
+    for k, (top, bottom, pulse) in enumerate(zip(*axes, data.attrs["pulse_names"].split(), strict=True)):
+        lines = lines_of(data, k, data.attrs["alpha"])
+        style = {"linewidth": 1.0, "marker": "o", "markersize": 1.0, "markeredgewidth": 0}
+        for colour, one in zip(COLOURS, p, strict=True):
+            top.plot(lines.frequency_ratio * one / (2 * np.pi), lines.amplitude * uplift, color=colour, **style)
+        bottom.plot(lines.frequency_ratio, lines.amplitude, color=BLACK, **style)
+        _brought_back(bottom, data, k)
+        _markers(top, bottom, data, k)
+        top.set_title(f"{pulse} pulse")
+        top.set_xlabel(r"pulse frequency $1/T_p$ [Hz]")
+        bottom.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
+        bottom.set_xlim(0.2, WIDEST[pulse])
+        top.set_xlim(0.2 * p.min() / (2 * np.pi), WIDEST[pulse] * p.max() / (2 * np.pi))
+    for (ax, _), scale in zip(axes, (uplift, 1.0), strict=True):
+        ax.set_yscale("log")
+        ax.set_ylim(scale, HIGHEST * scale)
+    axes[0, 0].set_yticks([0.4, 0.6, 1, 2, 3, 4], labels=["0.4", "0.6", "1", "2", "3", "4"])
+    axes[1, 0].set_yticks([1, 2, 3, 4, 6, 8, 12], labels=["1", "2", "3", "4", "6", "8", "12"])
+    for ax in axes.ravel():
+        ax.minorticks_off()
+    axes[0, 0].set_ylabel(r"peak ground acceleration $a_g$ [$g$]")
+    axes[1, 0].set_ylabel(r"amplitude $a=a_g/(g\tan\alpha)$ [-]")
+    _legend(figure, axes[0, 0], data)
+    panel_letters(axes.ravel())
+    return figure
+
+
+def _brought_back(ax: Axes, data: xr.Dataset, pulse: int) -> None:
+    """Shade where the block passes alpha and stands."""
+    omega, a = data.frequency_ratio.values, 1 / data.slenderness.values
+    shaded = np.where(data.brought_back[pulse] == 1, 1.0, np.nan)
+    ax.pcolormesh(omega, a, shaded, cmap="Greys", vmin=0, vmax=4, shading="nearest", rasterized=True, zorder=0)
+
+
+def _markers(top: Axes, bottom: Axes, data: xr.Dataset, pulse: int) -> None:
+    """Half-filled on the side on which the block with dimensions falls; a cross if it is not on one side alone."""
+    found = data.isel(threshold=data.threshold_pulse.values == pulse)
+    for k in range(found.sizes["threshold"]):
+        one = found.isel(threshold=k)
+        below, above = bool(one.threshold_falls_below), bool(one.threshold_falls_above)
+        style = {"color": COLOURS[int(one.threshold_block)], "markersize": 5, "markeredgewidth": 0.7, "zorder": 4}
+        style |= {"marker": "x"} if below == above else {
+            "marker": "o", "fillstyle": "top" if above else "bottom", "markerfacecoloralt": "white"
+        }  # fmt: skip
+        top.plot(1 / one.threshold_period, one.threshold_acceleration / STANDARD_GRAVITY, **style)
+        bottom.plot(one.threshold_frequency_ratio, one.threshold_amplitude, **style)
+
+
+def _legend(figure: Figure, ax: Axes, data: xr.Dataset) -> None:
+    for colour, R in zip(COLOURS, data.half_diagonal.values, strict=True):
+        ax.plot([], [], color=colour, label=rf"$R={R:g}$ m")
+    marker = {"color": GREY, "linestyle": "", "marker": "o", "markersize": 5, "markerfacecoloralt": "white"}
+    ax.plot([], [], fillstyle="top", label="integrated with dimensions: falls above", **marker)
+    ax.plot([], [], fillstyle="bottom", label="falls below", **marker)
+    ax.fill_between([], [], color="#D9D9D9", label=r"passes $\alpha$ and stands")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)
