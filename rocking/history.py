@@ -6,21 +6,14 @@ import numpy as np
 import xarray as xr
 
 from rocking.errors import in_range
+from rocking.history_contact import with_contact
+from rocking.history_motion import Motion, overturned
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
-from rocking.rock import IMPACT_LIMIT
-from rocking.sampling import rock_and_sample, rock_freely
-from rocking.scratch import prepared
 from rocking.solve import as_pulse, checked_groups
 
 FREE_ROCKING = 8.0
 """Free rocking shown by default after the pulse [tau]."""
-
-FREE_IMPACTS = 10_000
-"""Most impacts of free rocking that are followed."""
-
-FALLEN = 4.0
-"""|theta|/alpha at which the default history of an overturning block ends [-]."""
 
 
 def time_history(
@@ -32,6 +25,7 @@ def time_history(
     alpha: float | None = None,
     duration: float | None = None,
     samples: int = 400,
+    contact: bool = False,
 ) -> xr.Dataset:
     """Rotation and angular velocity of one block against time, exact at every sample.
 
@@ -44,13 +38,16 @@ def time_history(
         |theta|/alpha = 4 or |theta| = pi/2.
     samples : int
         Uniform samples, 2 to 1,000,000; uplift, impacts and the end of the pulse are added to them.
+    contact : bool
+        Whether to add the reactions of the ground and the friction that they need (docs/contact.md).
 
     Returns
     -------
     xarray.Dataset
         tau(tau): time p t from the start of the pulse [-]; rotation(tau): theta/alpha [-]; angular_velocity(tau):
         theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(tau): a f [-];
-        impact_time(impact) [-]. Attributes: the question, outcome, overturned, peak_rotation, impacts.
+        impact_time(impact) [-]. Attributes: the question, outcome, overturned, peak_rotation, impacts. With
+        `contact`, what `history_contact.with_contact` adds.
 
     Raises
     ------
@@ -65,44 +62,24 @@ def time_history(
     end = (made.end - made.start) / omega
     horizon = end + FREE_ROCKING if duration is None else float(duration)
 
-    farthest = min(FALLEN, 0.5 * np.pi / angle) if angle > 0 else FALLEN  # it lies on the ground at pi/2
-
-    # once for the events, then again with the events among the samples
-    answer, nothing = prepared(made).copy(), np.empty(0)
-    forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
-    forced = forced[: rock_and_sample(s, omega, eta, angle, answer, farthest, nothing, nothing, nothing, forced)]
-    free = free[: rock_freely(answer, eta, end, horizon, farthest, nothing, nothing, nothing, free)]
-    landings = np.concatenate([forced, free])
-
+    motion = Motion(made, s, omega, eta, angle, horizon)
+    answer, landings = motion.events()  # they are among the samples
     events = [0.0, end, float(np.nan_to_num(answer["uplift_time"]))]
     tau = np.concatenate([np.linspace(0.0, horizon, int(samples)), landings, events])
     tau = np.unique(tau[tau <= horizon])
-    rotation, velocity = np.zeros(tau.size), np.zeros(tau.size)
-    answer = prepared(made).copy()
-    rock_and_sample(s, omega, eta, angle, answer, farthest, tau, rotation, velocity, nothing)
-    # a step fills the samples before its end: the last one has to lie inside
-    beyond = horizon * (1 + 1e-12)
-    rock_freely(answer, eta, end, beyond, farthest, tau, rotation, velocity, np.empty(FREE_IMPACTS))
-    outcome = Outcome(int(answer["outcome"]))
-    if outcome >= Outcome.OVERTURNED_DIRECTLY:
-        fallen = np.flatnonzero(np.abs(rotation) > farthest)
-        last = int(fallen[0]) + 1 if fallen.size else int(np.flatnonzero(rotation).max(initial=0)) + 1
-        tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
-
-    return xr.Dataset(
+    rotation, velocity = motion.sample(tau)
+    last = motion.followed(tau, rotation, answer)
+    tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
+    history = xr.Dataset(
         {
             "rotation": ("tau", rotation, {"long_name": "rotation theta/alpha (3.4)", "units": "1"}),
             "angular_velocity": ("tau", velocity, {"long_name": "velocity theta'/(p alpha) (3.4)", "units": "1"}),
             "ground_acceleration": (
                 "tau",
-                made.acceleration(made.start + omega * tau) / s,
+                motion.ground_acceleration(tau),
                 {"long_name": "ground acceleration a f = u/(g tan alpha) (3.2)", "units": "1"},
             ),
-            "impact_time": (
-                "impact",
-                landings[landings <= horizon],
-                {"long_name": "time of impact p t", "units": "1"},
-            ),
+            "impact_time": ("impact", landings, {"long_name": "time of impact p t", "units": "1"}),
         },
         coords={"tau": ("tau", tau, {"long_name": "time p t from the start of the pulse (3.6)", "units": "1"})},
         attrs={
@@ -111,10 +88,11 @@ def time_history(
             "frequency_ratio": omega,
             "restitution": eta,
             "alpha": angle,
-            "outcome": outcome.name,
-            "overturned": int(outcome >= Outcome.OVERTURNED_DIRECTLY),
+            "outcome": Outcome(int(answer["outcome"])).name,
+            "overturned": int(overturned(answer)),
             "peak_rotation": float(answer["peak"]),
             "impacts": int(answer["impacts"]),
             "pulse_end": end,
         },
     )
+    return with_contact(history, motion, landings) if contact else history

@@ -15,12 +15,12 @@ FLOORS = (
     ("errors", "compilation", "provenance", "version"),
     ("block", "pulses", "orientation", "response"),
     ("scratch",),
-    ("free_rocking", "cuts", "groups", "cube", "interpolation", "scale_law"),
+    ("free_rocking", "contact", "cuts", "groups", "cube", "interpolation", "scale_law"),
     ("chatter",),
     ("slender*", "taylor*", "closed_form*"),
     ("rock",),
     ("solve*", "sampling"),
-    ("sweep*", "boundary*", "history", "bounded_response"),
+    ("sweep*", "boundary*", "history*", "bounded_response"),
     ("lookup*",),
     ("units",),
     ("cli*",),
@@ -28,7 +28,7 @@ FLOORS = (
 FRONT_DOORS = ("rocking.cli", "api", "workflow", "tests", "benchmarks")
 # What the service may use: it asks for answers and opens no solver.
 OF_THE_SERVICE = (
-    *("lookup*", "cube", "boundary*", "history", "bounded_response", "solve*"),
+    *("lookup*", "cube", "boundary*", "history*", "bounded_response", "solve*"),
     *("errors", "block", "pulses", "response", "groups", "provenance"),
 )
 

@@ -1,0 +1,102 @@
+"""The motion of one block as a function of time: sampled wherever it is asked for, by the solver's own flights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.compilation import Record
+from rocking.pulses import AbstractPulse
+from rocking.response import Outcome
+from rocking.rock import IMPACT_LIMIT
+from rocking.sampling import rock_and_sample, rock_freely
+from rocking.scratch import prepared
+
+Floats = NDArray[np.float64]
+
+FREE_IMPACTS = 10_000
+"""Most impacts of free rocking that are followed."""
+
+FALLEN = 4.0
+"""|theta|/alpha from which an overturning block is no longer followed [-]; it lies on the ground at pi/2."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One block under one pulse, from the start of the pulse to a horizon.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+    slenderness, frequency_ratio, restitution, alpha : float
+        1/a, omega, eta [-] as checked by `solve.checked_groups`; alpha [rad], 0 for the slender limit.
+    horizon : float
+        tau at which to stop [-].
+    """
+
+    pulse: AbstractPulse
+    slenderness: float
+    frequency_ratio: float
+    restitution: float
+    alpha: float
+    horizon: float
+
+    @property
+    def pulse_end(self) -> float:
+        """tau at which the pulse ends [-]."""
+        return (self.pulse.end - self.pulse.start) / self.frequency_ratio
+
+    @property
+    def farthest(self) -> float:
+        """|theta|/alpha up to which a block that overturns is followed [-]."""
+        return min(FALLEN, 0.5 * np.pi / self.alpha) if self.alpha > 0.0 else FALLEN
+
+    def events(self) -> tuple[Record, Floats]:
+        """The solver's record with the answer, and the times of the impacts [tau]."""
+        nothing = np.empty(0)
+        forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
+        answer, written = self._force(nothing, nothing, nothing, forced)
+        then = self._free(answer, self.horizon, nothing, nothing, nothing, free)
+        landings = np.concatenate([forced[:written], free[:then]])
+        return answer, landings[landings <= self.horizon]
+
+    def sample(self, tau: Floats) -> tuple[Floats, Floats]:
+        """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero once it has fallen."""
+        rotation, velocity, nothing = np.zeros(tau.size), np.zeros(tau.size), np.empty(0)
+        answer, _ = self._force(tau, rotation, velocity, nothing)
+        # a step fills the samples before its end: the last one has to lie inside
+        self._free(answer, self.horizon * (1 + 1e-12), tau, rotation, velocity, np.empty(FREE_IMPACTS))
+        return rotation, velocity
+
+    def followed(self, tau: Floats, rotation: Floats, answer: Record) -> int:
+        """How many of the samples `rotation` at `tau` show it before it has fallen, the first beyond `farthest` too."""
+        if not overturned(answer):
+            return tau.size
+        beyond = np.flatnonzero(np.abs(rotation) > self.farthest)
+        if beyond.size:
+            return int(beyond[0]) + 1
+        shown = (rotation != 0.0) | (tau <= answer["uplift_time"])
+        return int(np.flatnonzero(shown).max(initial=0)) + 1
+
+    def ground_acceleration(self, tau: Floats) -> Floats:
+        """Acceleration of the ground over g tan(alpha), a f [-] (3.2)."""
+        return self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau) / self.slenderness
+
+    def _force(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
+        answer = prepared(self.pulse).copy()
+        groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
+        return answer, rock_and_sample(*groups, answer, self.farthest, tau, rotation, velocity, landings)
+
+    def _free(
+        self, answer: Record, stop: float, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats
+    ) -> int:
+        return rock_freely(
+            answer, self.restitution, self.pulse_end, stop, self.farthest, tau, rotation, velocity, landings
+        )
+
+
+def overturned(answer: Record) -> bool:
+    """Whether the block of this record falls in the end."""
+    return bool(answer["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
