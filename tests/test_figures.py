@@ -13,9 +13,10 @@ import yaml
 from rocking.block import Block
 from rocking.boundary_curves import join_curves
 from rocking.closed_form import overturning_amplitudes
-from rocking.cube import read_dataset, write_dataset
+from rocking.cube import read_dataset, read_spectrum, write_dataset
+from rocking.solve import peak_response
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_09, figure_10
+from workflow.figures import figure_09, figure_10, similar_histories
 from workflow.figures.boundary_lines import Lines, lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
@@ -171,6 +172,54 @@ def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> No
     nearest = np.nanmin(np.abs(np.stack([closed.falls_from, closed.safe_again, closed.direct]) / a - 1), axis=0)
     assert nearest.size > 100
     assert nearest.max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["figure-11", "figure-12"])
+def test_blocks_are_more_alike_in_the_groups_of_6_1(name: str, smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / f"figures/{name}.nc")
+    assert np.isfinite(data.rotation).all()
+    slender, rigid = (
+        np.ptp(data.rotation.values[:, k], axis=1).max(axis=-1) / np.abs(data.slender_rotation.values).max(axis=-1)
+        for k in range(2)
+    )
+    assert np.all(rigid < 0.06)
+    assert np.all(slender > 4 * rigid)
+    np.testing.assert_allclose(data.spread, np.stack([slender, rigid], axis=1))
+    # and in those groups they are like the slender block
+    of_slender = np.abs(data.rotation.values[:, 1] - data.slender_rotation.values[:, None])
+    assert np.all(of_slender.max(axis=(1, 2)) < 0.06 * np.abs(data.slender_rotation.values).max(axis=1))
+
+
+def test_blocks_of_figure_11_share_the_groups_that_they_should() -> None:
+    pulse, s, omega, eta, alpha = "cosine", 0.6, 4.0, 0.9, np.radians(20)
+    data = similar_histories.data(
+        pulses=[pulse], restitution=eta, alpha_deg=[20], slenderness=s, frequency_ratio=omega, duration=5.0
+    )
+    block = {"frequency_ratio": omega, "restitution": eta, "alpha": alpha}
+    by_alpha = peak_response(pulse, slenderness=s * np.tan(alpha) / alpha, **block).peak_rotation
+    by_tangent = peak_response(pulse, slenderness=s, **block).peak_rotation
+    # theta = alpha times the peak; a_g/g = alpha/s and tan(alpha)/s
+    expected = [by_alpha * s, by_tangent * alpha * s / np.sin(alpha)]
+    np.testing.assert_allclose(np.abs(data.rotation.values[0, :, 0]).max(axis=-1), expected, rtol=1e-4)
+
+
+def test_spectra_of_figure_13_are_rows_of_the_cubes_in_their_groups(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-13.nc")
+    for k, pulse in enumerate(("sine", "cosine")):
+        cube = read_spectrum(smoke_results / f"spectra/{pulse}/eta-0.85.nc")
+        row = cube.peak_rotation.sel(slenderness=0.6, method="nearest", tolerance=1e-9)
+        row = row.sel(frequency_ratio=data.frequency_ratio)
+        np.testing.assert_array_equal(data.alpha, cube.alpha)
+        for alpha in data.alpha.values:
+            theta = alpha * row.sel(alpha=alpha)
+            in_groups = theta * 0.6 / np.tan(alpha) / np.cos(alpha) if alpha else 0.6 * row.sel(alpha=alpha)
+            np.testing.assert_allclose(data.spectrum[k].sel(alpha=alpha, slenderness=0.6), in_groups, rtol=1e-12)
+        # the two angles agree away from overturning, and the first curve does end
+        slender, rigid = data.spectrum[k].sel(slenderness=0.6).values
+        small = slender < 0.3
+        assert small.sum() > 20
+        np.testing.assert_allclose(rigid[small], slender[small], rtol=0.05)
+        assert np.isnan(slender).any()
 
 
 def test_islands_of_figure_4_lie_where_expected(smoke_results: Path) -> None:

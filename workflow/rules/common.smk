@@ -28,6 +28,7 @@ DATA_OF_FIGURES = {
     "figure-08": ["sine", "cosine"],
     "figure-09": ["sine", "cosine"],
     "figure-10": ["sine", "cosine"],
+    "figure-13": ["sine", "cosine"],
     "figure-scale-law": ["sine"],
 }
 

@@ -10,6 +10,7 @@ FIGURE_INPUTS = {
         for kind, files in {"cubes": spectrum_files, "boundaries": overturning_files}.items()
     },
     "figure-10": {pulse: overturning_files(pulse, restitutions("figure-10"))[0] for pulse in ("sine", "cosine")},
+    "figure-13": {pulse: spectrum_files(pulse, restitutions("figure-13"))[0] for pulse in ("sine", "cosine")},
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions("figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
