@@ -88,6 +88,23 @@ class OverturningAnswer(BaseModel):
     version: str = VERSION
 
 
+class ContactAnswer(BaseModel):
+    """What the ground has to supply through a motion; of a block that overturns, until it passes alpha for good."""
+
+    horizontal_reaction: list[float] = Field(description="H/(m g) at the pivot [-]; 0 in the slender limit")
+    normal_reaction: list[float] = Field(description="N/(m g) [-]; 0 and below: the block lifts off")
+    friction_demand: list[float | None] = Field(description="|H|/N [-]; null where N <= 0; 0 in the slender limit")
+    friction_demand_over_slope: list[float | None] = Field(description="|H|/(N tan alpha) [-]; null where N <= 0")
+    largest_friction_demand: float | None = Field(description="also between the samples [-]; null if it lifts off")
+    largest_friction_demand_over_slope: float | None
+    smallest_normal_reaction: float
+    impulse_ratio: float | None = Field(
+        description="horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
+    )
+    lifts_off: bool
+    warnings: str = Field(description="where pure rocking is in doubt, in words")
+
+
 class HistoryAnswer(BaseModel):
     """A motion."""
 
@@ -101,6 +118,7 @@ class HistoryAnswer(BaseModel):
     angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
     ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
     impact_time: list[float] = Field(description="tau of the impacts [-]")
+    contact: ContactAnswer | None = Field(None, description="null unless asked for")
     source: str = "solver"
     version: str = VERSION
 
@@ -173,18 +191,19 @@ def response_answer(question: ResponseQuestion, found: BoundedResponse, versions
         note = "the fate changes within the rounding of the question: there is no bound"
     return ResponseAnswer(
         query=question,
-        peak_rotation=_finite(float(found.peak_rotation)),
+        peak_rotation=finite(float(found.peak_rotation)),
         overturned=bool(found.overturned),
         outcome=outcome.name,
         meaning=outcome.sentence,
         impacts=int(found.impacts),
         exceeded_alpha=bool(found.exceeded_alpha),
-        error_bound=_finite(bound),
+        error_bound=finite(bound),
         note=note,
         source=str(found.source),
         data_version=versions[0] if versions else None,
     )
 
 
-def _finite(value: float) -> float | None:
+def finite(value: float) -> float | None:
+    """The number, None where there is none."""
     return value if math.isfinite(value) else None

@@ -131,6 +131,7 @@ class HistoryQuestion(Question):
         json_schema_extra={"exclusiveMinimum": 0},
     )
     samples: int = Field(400, description="uniform samples [-]; the events are added", json_schema_extra={"minimum": 2})
+    contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
     format: Format = None
 
 

@@ -77,6 +77,9 @@ def history(
     pulse_period: PulsePeriod = None,
     duration: Annotated[float | None, typer.Option(help="Length in tau = p t.")] = None,
     samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.")] = 400,
+    contact: Annotated[
+        bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.")
+    ] = False,
     json: Json = False,
     csv: Csv = False,
 ) -> None:
@@ -88,7 +91,7 @@ def history(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        cli_answers.history(question, duration, samples, cli_answers.form(json=json, csv=csv))
+        cli_answers.history(question, duration, samples, contact, cli_answers.form(json=json, csv=csv))
 
 
 @app.command()

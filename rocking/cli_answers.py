@@ -49,9 +49,10 @@ def response(question: Question, form: Form) -> None:
         _print_text(answer)
 
 
-def history(question: Question, duration: float | None, samples: int, form: Form) -> None:
-    """Print the motion of one block."""
+def history(question: Question, duration: float | None, samples: int, contact: bool, form: Form) -> None:
+    """Print the motion of one block, with `contact` also what the ground has to supply."""
     from rocking.history import time_history
+    from rocking.history_contact import ATTRIBUTES, COLUMNS
 
     motion = time_history(
         question.pulse,
@@ -61,9 +62,10 @@ def history(question: Question, duration: float | None, samples: int, form: Form
         alpha=question.alpha,
         duration=duration,
         samples=samples,
+        contact=contact,
     )
-    names = ("tau", "rotation", "angular_velocity", "ground_acceleration")
-    columns = {name: motion[name].values.tolist() for name in names}
+    names = ["tau", "rotation", "angular_velocity", "ground_acceleration", *(COLUMNS if contact else ())]
+    columns = {name: [_number(value) for value in motion[name].values.tolist()] for name in names}
     if form == "csv":
         _print_csv(columns)
         return
@@ -73,6 +75,9 @@ def history(question: Question, duration: float | None, samples: int, form: Form
         "peak_rotation": _number(float(motion.attrs["peak_rotation"])),
         "impact_time": motion["impact_time"].values.tolist(),
     }
+    if contact:
+        about |= {name: _number(float(motion.attrs[name])) for name in ATTRIBUTES}
+        about |= {"lifts_off": bool(motion.attrs["lifts_off"]), "warnings": motion.attrs["warnings"] or None}
     if form == "json":
         _print_json(about | columns)
     else:

@@ -7,13 +7,9 @@ import xarray as xr
 
 from rocking.errors import in_range
 from rocking.history_contact import with_contact
-from rocking.history_motion import Motion, overturned
+from rocking.history_motion import motion_of, overturned
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
-from rocking.solve import as_pulse, checked_groups
-
-FREE_ROCKING = 8.0
-"""Free rocking shown by default after the pulse [tau]."""
 
 
 def time_history(
@@ -55,18 +51,12 @@ def time_history(
         For an argument out of range.
     """
     in_range("samples", samples, 2, 1_000_000)
-    if duration is not None:
-        in_range("duration", duration, 0.0, np.inf, closed="neither")
-    made = as_pulse(pulse)
-    s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
-    end = (made.end - made.start) / omega
-    horizon = end + FREE_ROCKING if duration is None else float(duration)
-
-    motion = Motion(made, s, omega, eta, angle, horizon)
+    groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
+    motion = motion_of(pulse, **groups, alpha=alpha, duration=duration)
     answer, landings = motion.events()  # they are among the samples
-    events = [0.0, end, float(np.nan_to_num(answer["uplift_time"]))]
-    tau = np.concatenate([np.linspace(0.0, horizon, int(samples)), landings, events])
-    tau = np.unique(tau[tau <= horizon])
+    events = [0.0, motion.pulse_end, float(np.nan_to_num(answer["uplift_time"]))]
+    tau = np.concatenate([np.linspace(0.0, motion.horizon, int(samples)), landings, events])
+    tau = np.unique(tau[tau <= motion.horizon])
     rotation, velocity = motion.sample(tau)
     last = motion.followed(tau, rotation, answer)
     tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
@@ -83,16 +73,16 @@ def time_history(
         },
         coords={"tau": ("tau", tau, {"long_name": "time p t from the start of the pulse (3.6)", "units": "1"})},
         attrs={
-            "pulse": made.name,
-            "slenderness": s,
-            "frequency_ratio": omega,
-            "restitution": eta,
-            "alpha": angle,
+            "pulse": motion.pulse.name,
+            "slenderness": motion.slenderness,
+            "frequency_ratio": motion.frequency_ratio,
+            "restitution": motion.restitution,
+            "alpha": motion.alpha,
             "outcome": Outcome(int(answer["outcome"])).name,
             "overturned": int(overturned(answer)),
             "peak_rotation": float(answer["peak"]),
             "impacts": int(answer["impacts"]),
-            "pulse_end": end,
+            "pulse_end": motion.pulse_end,
         },
     )
     return with_contact(history, motion, landings) if contact else history

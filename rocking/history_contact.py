@@ -27,6 +27,22 @@ BESIDE = 1e-12
 PRACTICAL_FRICTION = 0.7
 """Friction that a dry contact can be trusted with [-]: of rough concrete on concrete in EN 1992-1-1, 6.2.5."""
 
+COLUMNS = {
+    "horizontal_reaction": "horizontal reaction H/(m g) of the ground at the pivot",
+    "normal_reaction": "normal reaction N/(m g) of the ground at the pivot",
+    "friction_demand": "friction demand |H|/N",
+    "friction_demand_over_slope": "friction demand |H|/(N tan alpha)",
+}
+"""Variables that the contact adds to a time history, with their meaning."""
+
+ATTRIBUTES = (
+    "largest_friction_demand",
+    "largest_friction_demand_over_slope",
+    "smallest_normal_reaction",
+    "impulse_ratio",
+)
+"""Numbers about the whole motion that it adds, beside `lifts_off` and `warnings`."""
+
 
 @dataclass(frozen=True)
 class Extremes:
@@ -34,31 +50,34 @@ class Extremes:
 
     Attributes
     ----------
-    friction_demand : float [-]
+    largest_friction_demand : float [-]
         Largest |H|/N; infinite where it lifts off, 0 in the slender limit.
-    friction_demand_over_slope : float [-]
+    largest_friction_demand_over_slope : float [-]
         The same over tan(alpha), 1 or more for every block that rocks.
     friction_time : float [-]
         tau of it.
-    normal_reaction : float [-]
+    smallest_normal_reaction : float [-]
         Smallest N/(m g).
     normal_time : float [-]
         tau of it.
     impulse_ratio : float [-]
         Horizontal over vertical impulse at its impacts; 0 if there are none.
+    chatters : bool
+        Whether impacts accumulate to rest while the pulse acts.
     """
 
-    friction_demand: float
-    friction_demand_over_slope: float
+    largest_friction_demand: float
+    largest_friction_demand_over_slope: float
     friction_time: float
-    normal_reaction: float
+    smallest_normal_reaction: float
     normal_time: float
     impulse_ratio: float
+    chatters: bool
 
     @property
     def lifts_off(self) -> bool:
         """Whether pure rocking would need a ground that pulls: the block leaves it instead."""
-        return self.normal_reaction <= 0.0
+        return self.smallest_normal_reaction <= 0.0
 
     @property
     def warnings(self) -> list[str]:
@@ -66,18 +85,23 @@ class Extremes:
         said = []
         if self.lifts_off:
             said.append(
-                f"the block lifts off: pure rocking would need a normal reaction of {self.normal_reaction:.3g} m g at "
-                f"tau = {self.normal_time:.4g}, and has no meaning from where it reaches 0"
+                f"the block lifts off: pure rocking would need a normal reaction {self.smallest_normal_reaction:.3g} "
+                f"of its weight at tau = {self.normal_time:.4g}, and has no meaning from where that reaches 0"
             )
-        elif self.friction_demand > PRACTICAL_FRICTION:
+        elif self.largest_friction_demand > PRACTICAL_FRICTION:
             said.append(
-                f"the block may slide: pure rocking needs a friction coefficient of {self.friction_demand:.3g} at "
-                f"tau = {self.friction_time:.4g}, more than {PRACTICAL_FRICTION} (rough concrete)"
+                f"the block may slide: pure rocking needs a friction coefficient of {self.largest_friction_demand:.3g} "
+                f"at tau = {self.friction_time:.4g}, more than {PRACTICAL_FRICTION} (rough concrete)"
             )
         if PRACTICAL_FRICTION < self.impulse_ratio < math.inf:
             said.append(
                 f"the block may slide at an impact: its horizontal impulse is {self.impulse_ratio:.3g} of the vertical "
                 f"one, more than a friction coefficient of {PRACTICAL_FRICTION} (rough concrete)"
+            )
+        if self.chatters:
+            said.append(
+                "impacts accumulate to rest while the pulse acts: the motion hangs on the restitution of ever smaller "
+                "ones"
             )
         return said
 
@@ -99,20 +123,15 @@ def with_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Da
     most = extremes_of(motion)
     slope = math.tan(motion.alpha)
     demand = found.friction_demand
-    columns = {
-        "horizontal_reaction": (slope * found.horizontal, "horizontal reaction H/(m g) of the ground at the pivot"),
-        "normal_reaction": (found.normal, "normal reaction N/(m g) of the ground at the pivot"),
-        "friction_demand": (slope * demand if slope > 0.0 else np.zeros_like(demand), "friction demand |H|/N"),
-        "friction_demand_over_slope": (demand, "friction demand |H|/(N tan alpha)"),
-    }
-    added = {name: ("tau", column, {"long_name": text, "units": "1"}) for name, (column, text) in columns.items()}
-    return history.assign(added).assign_attrs(
-        largest_friction_demand=most.friction_demand,
-        largest_friction_demand_over_slope=most.friction_demand_over_slope,
-        smallest_normal_reaction=most.normal_reaction,
-        lifts_off=int(most.lifts_off),
-        impulse_ratio=most.impulse_ratio,
-        warnings="; ".join(most.warnings),
+    columns = (slope * found.horizontal, found.normal, slope * demand if slope > 0.0 else np.zeros_like(demand), demand)
+    return history.assign(
+        {
+            name: ("tau", column, {"long_name": meaning, "units": "1"})
+            for (name, meaning), column in zip(COLUMNS.items(), columns, strict=True)
+        }
+    ).assign_attrs(
+        {name: getattr(most, name) for name in ATTRIBUTES}
+        | {"lifts_off": int(most.lifts_off), "warnings": "; ".join(most.warnings)}
     )
 
 
@@ -155,12 +174,13 @@ def extremes_of(motion: Motion) -> Extremes:
         time, demand = _largest(lambda at: measured(at).friction_demand, tau)
     slope = math.tan(motion.alpha)
     return Extremes(
-        friction_demand=slope * demand if slope > 0.0 else 0.0,
-        friction_demand_over_slope=demand,
+        largest_friction_demand=slope * demand if slope > 0.0 else 0.0,
+        largest_friction_demand_over_slope=demand,
         friction_time=time,
-        normal_reaction=-lowest,
+        smallest_normal_reaction=-lowest,
         normal_time=normal_time,
         impulse_ratio=impulse_ratio(motion.restitution, motion.alpha) if landings.size else 0.0,
+        chatters=bool(answer["chatter"]),
     )
 
 

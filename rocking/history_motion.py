@@ -8,13 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.compilation import Record
+from rocking.errors import in_range
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
 from rocking.rock import IMPACT_LIMIT
 from rocking.sampling import rock_and_sample, rock_freely
 from rocking.scratch import prepared
+from rocking.solve import as_pulse, checked_groups
 
 Floats = NDArray[np.float64]
+
+FREE_ROCKING = 8.0
+"""Free rocking followed by default after the pulse [tau]."""
 
 FREE_IMPACTS = 10_000
 """Most impacts of free rocking that are followed."""
@@ -31,7 +36,7 @@ class Motion:
     ----------
     pulse : AbstractPulse
     slenderness, frequency_ratio, restitution, alpha : float
-        1/a, omega, eta [-] as checked by `solve.checked_groups`; alpha [rad], 0 for the slender limit.
+        1/a, omega, eta [-]; alpha [rad], 0 for the slender limit; checked by `motion_of`.
     horizon : float
         tau at which to stop [-].
     """
@@ -92,9 +97,28 @@ class Motion:
     def _free(
         self, answer: Record, stop: float, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats
     ) -> int:
-        return rock_freely(
+        written = rock_freely(
             answer, self.restitution, self.pulse_end, stop, self.farthest, tau, rotation, velocity, landings
         )
+        return int(written)
+
+
+def motion_of(
+    pulse: str | AbstractPulse,
+    *,
+    slenderness: float,
+    frequency_ratio: float,
+    restitution: float,
+    alpha: float | None = None,
+    duration: float | None = None,
+) -> Motion:
+    """The motion that answers a question; arguments and errors as for `history.time_history`."""
+    if duration is not None:
+        in_range("duration", duration, 0.0, np.inf, closed="neither")
+    made = as_pulse(pulse)
+    s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
+    horizon = (made.end - made.start) / omega + FREE_ROCKING if duration is None else float(duration)
+    return Motion(made, s, omega, eta, angle, horizon)
 
 
 def overturned(answer: Record) -> bool:

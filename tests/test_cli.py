@@ -98,6 +98,38 @@ def test_history_of_a_given_length_with_units():
     assert answer["tau"][-1] == 2.0
 
 
+def test_history_with_the_reactions_of_the_ground():
+    asked = ["history", *UNITS, "--samples", "20", "--contact"]
+    block = Block(0.2, 0.8)
+    truth = time_history(
+        "sine",
+        slenderness=block.uplift_acceleration / 4.0,
+        frequency_ratio=4 * math.pi / block.frequency_parameter,
+        restitution=block.housner_restitution,
+        alpha=block.alpha,
+        samples=20,
+        contact=True,
+    )
+    answer = json.loads(run(*asked, "--json"))
+    assert answer["normal_reaction"] == pytest.approx(truth["normal_reaction"].values, rel=1e-9)
+    assert answer["largest_friction_demand"] == pytest.approx(truth.largest_friction_demand, rel=1e-9)
+    assert (answer["lifts_off"], answer["warnings"]) == (False, None)
+    assert [float(row["friction_demand"]) for row in read_csv(run(*asked, "--csv"))] == answer["friction_demand"]
+    assert f"{answer['largest_friction_demand']:.9g}" in run(*asked)
+    assert "friction_demand" not in run(*asked[:-1])
+
+
+def test_a_block_that_lifts_off_says_so_and_has_no_friction_demand():
+    asked = [*GROUPS[:3], "0.2", "--frequency-ratio", "12", "--restitution", "0.85", "--alpha", "45 deg", "--contact"]
+    answer = json.loads(run("history", *asked, "--json"))
+    assert answer["lifts_off"]
+    assert answer["largest_friction_demand"] is None
+    assert None in answer["friction_demand"]
+    assert "lifts off" in answer["warnings"]
+    assert any(row["friction_demand"] == "" for row in read_csv(run("history", *asked, "--csv")))
+    assert "the block lifts off" in run("history", *asked)
+
+
 def test_spectrum_in_three_forms():
     arguments = ["--pulse", "cosine", "--slenderness", "0.6", "--restitution", "0.9", "--points", "7"]
     truth = peak_response("cosine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 7), restitution=0.9)

@@ -9,7 +9,7 @@ import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from api.answers import ResponseAnswer, response_answer
+from api.answers import ResponseAnswer, finite, response_answer
 from api.questions import Method, PulseName, Question, ResponseQuestion, Tolerance
 from api.routes.response import ask
 from api.service import Service, ServiceDep
@@ -17,6 +17,8 @@ from rocking.block import STANDARD_GRAVITY, Block
 from rocking.boundary import critical_amplitude
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.groups import GroupSet, Problem, groups_of
+from rocking.history_contact import extremes_of
+from rocking.history_motion import motion_of
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"])
 
@@ -28,6 +30,9 @@ BORDER = {
     "gravity": (1e-3, 1e3, "m/s2"),
 }
 """What the service takes, far outside of all practice, so that no number leaves the range of doubles."""
+
+MARGIN = 0.05
+"""Relative distance of a change of fate that is worth a warning [-]: ground motions are not known better."""
 
 
 def _quantity(name: str, text: str, **more: Any) -> Any:
@@ -77,11 +82,20 @@ class BlockAnswer(BaseModel):
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"
     )
+    friction_demand: float | None = Field(
+        description="the same through the whole motion, impacts excluded; if it overturns, until it passes alpha for "
+        "good [-]; null: it lifts off"
+    )
+    friction_at_impact: float = Field(
+        description="ratio of the horizontal to the vertical impulse at its impacts, 0 without impacts [-]"
+    )
+    smallest_normal_reaction: float = Field(description="over its weight, for as long [-]; 0 and below: it lifts off")
+    warnings: list[str] = Field(description="where the answer, one about pure rocking, is in doubt")
 
 
 @router.get("/response", summary="A block in SI units")
 async def get_block(question: Annotated[BlockQuestion, Query()], service: ServiceDep) -> BlockAnswer:
-    """Fate, rotation in degrees, displacement in metres, and the amplitudes at which the fate changes, by (2.2)."""
+    """Fate, rotation in degrees, displacement in metres, amplitudes at which the fate changes, friction, by (2.2)."""
     return await service.off_loop(lambda: _block(service, question))
 
 
@@ -112,6 +126,7 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
         for a, above in zip(changes.amplitude, changes.overturns_above, strict=True)
     ]
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
+    contact = extremes_of(motion_of(question.pulse, **points, alpha=block.alpha))
     return BlockAnswer(
         query=question,
         response=found,
@@ -127,7 +142,26 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
         thresholds=thresholds,
         largest_safe_acceleration=thresholds[0].peak_acceleration if thresholds else None,
         friction_at_uplift=block.half_width / block.half_height,
+        friction_demand=finite(contact.largest_friction_demand),
+        friction_at_impact=contact.impulse_ratio,
+        smallest_normal_reaction=contact.smallest_normal_reaction,
+        warnings=[*contact.warnings, *_more_warnings(block, question.peak_acceleration, thresholds)],
     )
+
+
+def _more_warnings(block: Block, peak_acceleration: float, thresholds: list[Threshold]) -> list[str]:
+    """Doubts about the question itself."""
+    said = []
+    if block.half_width > block.half_height:
+        said.append("the block is wider than high: it would rather slide or bounce than rock")
+    near = [t.peak_acceleration for t in thresholds if abs(t.peak_acceleration / peak_acceleration - 1.0) < MARGIN]
+    if near:
+        said.append(
+            f"the fate changes within {100 * MARGIN:g} % of this peak acceleration: at "
+            + ", ".join(f"{a:.4g}" for a in near)
+            + " m/s2"
+        )
+    return said
 
 
 def _restitution(block: Block, asked: str | float) -> float:

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from rocking.block import Block
+from rocking.history import time_history
 from rocking.solve import peak_response
 from tests.service.conftest import assert_problem
 
@@ -59,6 +60,45 @@ def test_a_weak_pulse_moves_nothing(client):
     assert answer["response"]["outcome"] == "NO_UPLIFT"
     assert answer["peak_rotation_deg"] == 0.0
     assert answer["restitution"] == 0.9
+
+
+def test_friction_through_the_motion(client):
+    answer = ask(client).json()
+    block = Block(0.2, 0.8)
+    motion = time_history(
+        "sine",
+        slenderness=block.uplift_acceleration / 4.0,
+        frequency_ratio=2 * math.pi / 0.5 / block.frequency_parameter,
+        restitution=block.housner_restitution,
+        alpha=block.alpha,
+        contact=True,
+    )
+    assert answer["friction_at_uplift"] == pytest.approx(0.25)
+    assert answer["friction_demand"] == pytest.approx(motion.largest_friction_demand, rel=1e-9)
+    assert answer["friction_demand"] > answer["friction_at_uplift"]
+    assert answer["friction_at_impact"] == pytest.approx(motion.impulse_ratio, rel=1e-9)
+    assert answer["smallest_normal_reaction"] == pytest.approx(motion.smallest_normal_reaction, rel=1e-9)
+    assert answer["warnings"] == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "words", "overturned"),
+    [
+        ({"peak_acceleration": 40.0, "pulse_period": 0.1, "restitution": 0.9}, "may slide: pure", False),
+        ({"peak_acceleration": 30.0}, "may slide: pure", True),
+        ({"peak_acceleration": 3.0, "restitution": 0.5}, "slide at an impact", False),
+        ({"half_width": 0.8, "peak_acceleration": 60.0, "pulse_period": 0.1, "restitution": 0.9}, "lifts off", False),
+        ({"half_width": 0.81, "peak_acceleration": 5.0, "restitution": 0.5}, "wider than high", False),
+        ({"peak_acceleration": 4.6}, "changes within 5 % of this peak acceleration: at 4.7", False),
+        ({"peak_acceleration": 4.8}, "changes within 5 % of this peak acceleration: at 4.7", True),
+        ({"peak_acceleration": 2.6, "restitution": 0.5}, "impacts accumulate", False),
+    ],
+)
+def test_doubts_are_told(client, changes, words, overturned):
+    answer = ask(client, **changes).json()
+    assert answer["overturned"] is overturned
+    assert any(words in warning for warning in answer["warnings"])
+    assert (answer["friction_demand"] is None) is (words == "lifts off")
 
 
 @pytest.mark.parametrize(

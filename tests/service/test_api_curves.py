@@ -137,6 +137,36 @@ def test_history_as_csv_and_netcdf(client):
     assert [float(row["rotation"]) for row in rows] == stored["rotation"].values.tolist()
 
 
+def test_history_with_the_reactions_of_the_ground(client):
+    asked = BLOCK | {"alpha_deg": 20, "samples": 50, "contact": "true"}
+    answer = client.get("/v1/history", params=asked).json()
+    truth = time_history(**BLOCK, alpha=np.radians(20), samples=50, contact=True)
+    for name in ("horizontal_reaction", "normal_reaction", "friction_demand", "friction_demand_over_slope"):
+        assert answer["contact"][name] == truth[name].values.tolist()
+    assert answer["contact"]["largest_friction_demand"] == truth.largest_friction_demand
+    assert (answer["contact"]["lifts_off"], answer["contact"]["warnings"]) == (False, "")
+    rows = read_csv(client.get("/v1/history", params=asked | {"format": "csv"}))
+    assert [float(row["friction_demand"]) for row in rows] == answer["contact"]["friction_demand"]
+    stored = read_netcdf(client.get("/v1/history", params=asked | {"format": "nc"}))
+    np.testing.assert_array_equal(stored["normal_reaction"], truth["normal_reaction"])
+    assert client.get("/v1/history", params=BLOCK).json()["contact"] is None
+
+
+def test_history_of_a_block_that_lifts_off_has_no_friction_demand_there(client):
+    stocky = BLOCK | {"slenderness": 0.2, "frequency_ratio": 12, "alpha_deg": 45, "contact": "true"}
+    contact = client.get("/v1/history", params=stocky).json()["contact"]
+    assert contact["lifts_off"]
+    assert contact["largest_friction_demand"] is None
+    pressed = [normal > 0 for normal in contact["normal_reaction"]]
+    assert [demand is not None for demand in contact["friction_demand"]] == pressed
+    assert not all(pressed)
+    rows = read_csv(client.get("/v1/history", params=stocky | {"format": "csv"}))
+    assert [row["friction_demand"] != "" for row in rows] == pressed
+    slender = client.get("/v1/history", params=BLOCK | {"contact": "true"}).json()["contact"]
+    assert slender["impulse_ratio"] is None
+    assert slender["largest_friction_demand"] == 0
+
+
 @pytest.mark.parametrize(
     ("route", "changes", "status", "parameter"),
     [
@@ -159,6 +189,7 @@ def test_history_as_csv_and_netcdf(client):
         ("/v1/history", {"duration": "inf"}, 422, "duration"),
         ("/v1/history", {"samples": 1}, 422, "samples"),
         ("/v1/history", {"samples": 10**9}, 413, "samples"),
+        ("/v1/history", {"contact": "perhaps"}, 422, "contact"),
         ("/v1/history", {"colour": "red"}, 422, "colour"),
     ],
 )
