@@ -1,8 +1,7 @@
-"""The slender block under a sine as a careful script with scipy would do it: DOP853, terminal impact events, energy.
+"""The block under a sine as a careful script with scipy would do it: `solve_ivp` with terminal impact events.
 
-Written for a fair comparison: z = |theta|/alpha so that the event has one direction, the first step inside the expected
-flight so that no impact is skipped, no integration at rest, at growing exponentials or after the pulse, and chatter cut
-at a small velocity.
+Written for a fair comparison: the event of z = |theta|/alpha has one direction, the first step lies inside the expected
+flight so that no impact is skipped, and the right-hand sides are as lean as Python allows.
 """
 
 from __future__ import annotations
@@ -13,74 +12,62 @@ from typing import Any
 
 from scipy.integrate import solve_ivp
 
-SMALLEST_VELOCITY = 1e-8
-"""A block that strikes slower than this while |u| < 1 is taken to rest [-]."""
+from benchmarks.one_sine import Block, beyond_return, first_step, rock
 
 
-def peak_rotation(slenderness: float, frequency_ratio: float, restitution: float, rtol: float = 1e-9) -> float:
-    """Largest |theta|/alpha under one full sine (3.2); nan if the block overturns."""
-    a, omega, eta = 1.0 / slenderness, frequency_ratio, restitution
-    if a <= 1.0:
-        return 0.0
-    end = 2.0 * math.pi / omega
-    first = math.asin(1.0 / a)
-    starts = [first / omega, (math.pi + first) / omega]  # |a sin| reaches 1, rising
-    tau, v, side, peak = starts[0], 0.0, -1, 0.0
-    while True:
-        flight = _flight(a, omega, side, tau, end, v, rtol)
-        peak = max(peak, flight["peak"])
-        if flight["overturned"]:
-            return math.nan
-        if flight["tau"] >= end:
-            return _free_rocking(flight["z"], flight["v"], eta, peak)
-        tau, v, side = flight["tau"], -eta * flight["v"], -side
-        if v < SMALLEST_VELOCITY and abs(a * math.sin(omega * tau)) < 1.0:
-            starts = [start for start in starts if start > tau]
-            if not starts:
-                return peak
-            tau, v = starts[0], 0.0
-            side = -1 if math.sin(omega * tau) > 0.0 else 1
+def peak_rotation(
+    slenderness: float,
+    frequency_ratio: float,
+    restitution: float,
+    rtol: float = 1e-9,
+    *,
+    alpha: float = 0.0,
+    method: str = "DOP853",
+) -> float:
+    """Largest |theta|/alpha under one full sine (3.2), slender for alpha = 0 [rad]; nan if the block overturns."""
+    return float(rock.py_func(_flight, (method, rtol), slenderness, frequency_ratio, restitution, alpha))
 
 
-def _flight(a: float, omega: float, side: int, tau: float, end: float, v: float, rtol: float) -> dict[str, Any]:
-    """From z = 0, z' = v at tau to the next impact, the pulse's end, or a growth that nothing can stop."""
-
-    def motion(t: float, y: Any) -> tuple[float, float]:
-        return y[1], y[0] - 1.0 - side * a * math.sin(omega * t)  # (3.1) for z = side theta/alpha
-
+def _flight(
+    setting: tuple[Any, float], block: Block, side: float, tau: float, v: float
+) -> tuple[float, float, float, float, bool]:
+    """One flight, see `one_sine`."""
+    method, rtol = setting
     impact = _event(lambda _t, y: y[0], terminal=True)
     top = _event(lambda _t, y: y[1], terminal=False)
-    lost = _event(lambda _t, y: y[0] + y[1] - 1.0 - a, terminal=True, direction=1.0)
-    pull = 1.0 + side * a * math.sin(omega * tau)
-    first_step = min(0.05 / max(1.0, omega), 0.5 * v / pull if pull > 0.0 and v > 0.0 else math.inf, end - tau)
-    solution = solve_ivp(
-        motion,
+    lost = _event(lambda _t, y: beyond_return(block, y[0], y[1]), terminal=True, direction=1.0)
+    end = 2.0 * math.pi / block[1]
+    solution: Any = solve_ivp(
+        _motion(block, side),
         (tau, end),
         (0.0, v),
-        method="DOP853",
+        method=method,
         rtol=rtol,
         atol=1e-3 * rtol,
         events=(impact, top, lost),
-        first_step=first_step,
+        first_step=first_step(block, side, tau, 0.0, v),
     )
-    z, v = solution.y[0, -1], solution.y[1, -1]
+    z, v = solution.y[:, -1]
     tops = solution.y_events[1]
-    peak = max(z, tops[:, 0].max() if len(tops) else 0.0)
-    overturned = len(solution.t_events[2]) > 0
-    return {"tau": solution.t[-1], "z": z, "v": v, "peak": peak, "overturned": overturned}
+    highest = max(z, tops[:, 0].max() if len(tops) else 0.0)
+    return solution.t[-1], z, v, highest, len(solution.t_events[2]) > 0
+
+
+def _motion(block: Block, side: float) -> Callable[[float, Any], tuple[float, float]]:
+    """Right-hand side in z, z'."""
+    a, omega, alpha, lean = block
+    sin, cos = math.sin, math.cos
+    if alpha == 0.0:
+        return lambda t, y: (y[1], y[0] - 1.0 - side * a * sin(omega * t))  # (3.1)
+    push = side * a * lean
+
+    def rigid(t: float, y: Any) -> tuple[float, float]:  # (2.2)
+        angle = alpha * (1.0 - y[0])
+        return y[1], -sin(angle) / alpha - push * sin(omega * t) * cos(angle)
+
+    return rigid
 
 
 def _event(function: Callable[[float, Any], float], *, terminal: bool, direction: float = -1.0) -> Any:
     function.terminal, function.direction = terminal, direction  # type: ignore[attr-defined]  # SciPy reads them there
     return function
-
-
-def _free_rocking(z: float, v: float, eta: float, peak: float) -> float:
-    """After the pulse, by energy: depth^2 = (1 - z)^2 - z'^2 is conserved."""
-    if z + v > 1.0:
-        return math.nan
-    depth2 = (1.0 - z) ** 2 - v * v
-    if v > 0.0:
-        peak = max(peak, 1.0 - math.sqrt(depth2))
-    energy = eta * eta * (1.0 - depth2)
-    return math.nan if energy > 1.0 else max(peak, 1.0 - math.sqrt(1.0 - energy))

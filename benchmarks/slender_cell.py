@@ -9,23 +9,20 @@ multi-precision integration of tests/tools.
 from __future__ import annotations
 
 import argparse
-import json
 import math
-import platform
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 import rocking
+from benchmarks.measure import accuracy, in_rounds, save, spread, versions
 from benchmarks.scipy_peer import peak_rotation
 from tests.tools.exact_response import working_precision
 from tests.tools.multiprecision import integrate
@@ -74,28 +71,6 @@ def truth(slenderness: NDArray[np.float64], frequency_ratio: NDArray[np.float64]
     return np.array(peaks)
 
 
-def microseconds(task: Callable[[], Any], cells: int) -> tuple[float, float]:
-    """Processor and wall-clock time per cell [us]."""
-    processor, wall = time.process_time(), time.perf_counter()
-    task()
-    return 1e6 * (time.process_time() - processor) / cells, 1e6 * (time.perf_counter() - wall) / cells
-
-
-def spread(values: list[float]) -> dict[str, float]:
-    """Median, smallest and largest."""
-    return {"median": float(np.median(values)), "smallest": min(values), "largest": max(values)}
-
-
-def accuracy(found: NDArray[np.float64], exact: NDArray[np.float64]) -> dict[str, float | int]:
-    """Wrong fates; relative error of the peak where both stand."""
-    error = np.abs(found / exact - 1.0)
-    return {
-        "wrong_fates": int(np.sum(np.isnan(found) != np.isnan(exact))),
-        "median_error": float(np.nanmedian(error)),
-        "largest_error": float(np.nanmax(error)),
-    }
-
-
 def first_calls() -> dict[str, dict[str, float]]:
     """Seconds to import, to the first and second answer, in a new process: fresh copy of the package, then cached."""
     with tempfile.TemporaryDirectory() as folder:
@@ -119,39 +94,30 @@ def measure(count: int, sample: int, rounds: int, seed: int) -> dict[str, Any]:
     some_slenderness, some_frequency_ratio = slenderness.ravel()[chosen], frequency_ratio.ravel()[chosen]
     copies = max(1, 100_000 // sample)
     many_slenderness, many_frequency_ratio = np.tile(some_slenderness, copies), np.tile(some_frequency_ratio, copies)
-    ours(some_slenderness, some_frequency_ratio)
+    ours(some_slenderness, some_frequency_ratio)  # the first calls compile
+    peer(some_slenderness[:1], some_frequency_ratio[:1])
     tasks: dict[str, tuple[Callable[[], Any], int]] = {
         "ours_grid": (lambda: ours(slenderness, frequency_ratio), slenderness.size),
         "ours_sample": (lambda: ours(many_slenderness, many_frequency_ratio), many_slenderness.size),
         "scipy_sample": (lambda: peer(some_slenderness, some_frequency_ratio), sample),
     }
-    processor: dict[str, list[float]] = {name: [] for name in tasks}
-    wall: dict[str, list[float]] = {name: [] for name in tasks}
-    for _ in range(rounds):
-        for name, (task, cells) in tasks.items():
-            one, other = microseconds(task, cells)
-            processor[name].append(one)
-            wall[name].append(other)
-    ratios = [p / o for p, o in zip(processor["scipy_sample"], processor["ours_sample"], strict=True)]
+    times = in_rounds(tasks, rounds)
+    pairs = zip(times["scipy_sample"]["processor"], times["ours_sample"]["processor"], strict=True)
     exact = truth(some_slenderness, some_frequency_ratio)
     found, theirs = ours(some_slenderness, some_frequency_ratio), peer(some_slenderness, some_frequency_ratio)
     return {
         "cells": {"grid": slenderness.size, "sample": sample, "sample_overturned": int(np.isnan(exact).sum())},
         "rounds": rounds,
-        "microseconds_per_cell": {name: spread(values) for name, values in processor.items()},
-        "wall_microseconds_per_cell": {name: spread(values) for name, values in wall.items()},
-        "scipy_over_ours": spread(ratios),
+        "microseconds_per_cell": {name: spread(clocks["processor"]) for name, clocks in times.items()},
+        "wall_microseconds_per_cell": {name: spread(clocks["wall"]) for name, clocks in times.items()},
+        "scipy_over_ours": spread([theirs / ours for theirs, ours in pairs]),
         "accuracy": {
             "ours": accuracy(found, exact),
             "scipy": accuracy(theirs, exact),
             "ours_against_scipy": accuracy(found, theirs),
         },
         "seconds_to_answer": first_calls(),
-        "versions": {
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
-            "python": platform.python_version(),
-        },
+        "versions": versions("numpy", "scipy", "numba"),
     }
 
 
@@ -183,8 +149,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/slender-cell.json"))
     options = parser.parse_args()
     record = measure(options.count, options.sample, options.rounds, options.seed)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(json.dumps(record, indent=1) + "\n")
+    save(record, options.out)
     print(table(record))
     print(f"\nwritten to {options.out}")
 
