@@ -23,6 +23,12 @@ Record = Any
 Vector = NDArray[np.float64]
 """A float64 array; the kernels' docstrings give shapes."""
 
+Lanes = Any
+"""One number for each of several cells, see `lanes`."""
+
+Series = NDArray[np.float64]
+"""Coefficients of power series in tau, one column for each cell: shape (degree + 1, lanes)."""
+
 _PACKAGE = Path(__file__).parent
 
 
@@ -31,7 +37,7 @@ def _cache_folder() -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(_PACKAGE.glob("*.py")):
         text = source.read_bytes()
-        if b"\n@kernel" in text:
+        if b"\n@kernel" in text or b"numba.extending" in text:
             digest.update(text)
     parent = _PACKAGE / "__pycache__"
     if not os.access(parent if parent.exists() else _PACKAGE, os.W_OK):

@@ -13,7 +13,7 @@ from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
 from rocking.rock import IMPACT_LIMIT
 from rocking.sampling import rock_and_sample, rock_freely
-from rocking.scratch import prepared
+from rocking.scratch import prepared, prepared_steps
 from rocking.solve import as_pulse, checked_groups
 
 Floats = NDArray[np.float64]
@@ -63,7 +63,7 @@ class Motion:
         nothing = np.empty(0)
         forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
         answer, written = self._force(nothing, nothing, nothing, forced)
-        then = self._free(answer, self.horizon, nothing, nothing, nothing, free)
+        then = self._free(answer, nothing, nothing, nothing, free)
         landings = np.concatenate([forced[:written], free[:then]])
         return answer, landings[landings <= self.horizon]
 
@@ -71,8 +71,7 @@ class Motion:
         """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero once it has fallen."""
         rotation, velocity, nothing = np.zeros(tau.size), np.zeros(tau.size), np.empty(0)
         answer, _ = self._force(tau, rotation, velocity, nothing)
-        # a step fills the samples before its end: the last one has to lie inside
-        self._free(answer, self.horizon * (1 + 1e-12), tau, rotation, velocity, np.empty(FREE_IMPACTS))
+        self._free(answer, tau, rotation, velocity, np.empty(FREE_IMPACTS))
         return rotation, velocity
 
     def followed(self, tau: Floats, rotation: Floats, answer: Record) -> int:
@@ -92,13 +91,13 @@ class Motion:
     def _force(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
         answer = prepared(self.pulse).copy()
         groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
-        return answer, rock_and_sample(*groups, answer, self.farthest, tau, rotation, velocity, landings)
+        steps = prepared_steps(answer)
+        return answer, rock_and_sample(*groups, answer, steps, self.farthest, tau, rotation, velocity, landings)
 
-    def _free(
-        self, answer: Record, stop: float, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats
-    ) -> int:
+    def _free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
+        steps = prepared_steps(answer)
         written = rock_freely(
-            answer, self.restitution, self.pulse_end, stop, self.farthest, tau, rotation, velocity, landings
+            answer, steps, self.restitution, self.pulse_end, stop, self.farthest, tau, rotation, velocity, landings
         )
         return int(written)
 

@@ -2,7 +2,8 @@
 
 Between events the motion is one exact arc where there is one, that is for the slender block (3.1) under sinusoids
 (`slender_events`), and a chain of Taylor steps elsewhere (`taylor_flight`), with restitution (2.3) at impact. The cuts
-of the pulse (`cuts`) prove for every stretch whether it holds an impact; `free_rocking` decides after the pulse.
+of the pulse (`cuts`) prove for every stretch whether it holds an impact; `free_rocking` decides after the pulse. The
+first flight does not depend on the restitution: it is kept, and continued for each.
 """
 
 from __future__ import annotations
@@ -10,12 +11,12 @@ from __future__ import annotations
 import math
 
 from rocking.chatter import settles
-from rocking.compilation import Record, Vector, kernel
+from rocking.compilation import Record, kernel
 from rocking.cuts import cut
 from rocking.free_rocking import free_fate
 from rocking.scratch import FALLEN, IMPACT
 from rocking.slender_events import fly, hop
-from rocking.slender_flight import start_flight, turn
+from rocking.slender_flight import start_arc, turn
 from rocking.taylor_flight import fly_steps
 
 IMPACT_LIMIT = 20_000
@@ -28,6 +29,8 @@ NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 @kernel
 def begin(slenderness: float, omega: float, alpha: float, flight: Record) -> None:
     """Set up a cell: the empty answer, the cuts, rest before the first of them."""
+    flight.known = 0
+    flight.by_arcs = int(alpha == 0.0 and flight.spread == 0.0)
     flight.outcome, flight.peak, flight.mode = NO_UPLIFT, 0.0, -1
     flight.impacts, flight.chatter = 0, 0
     flight.uplift_time, flight.first_time, flight.first_velocity = math.nan, math.nan, math.nan
@@ -92,7 +95,8 @@ def land(flight: Record, w: float, eta: float) -> None:
     flight.next_phase, flight.next_w, flight.next_sign = phase, -eta * w, -flight.sign  # (2.3)
     while flight.interval < flight.count - 1 and phase >= flight.cut_phase[flight.interval + 1]:
         flight.interval += 1
-    turn(flight, phase, flight.cosine0, flight.sine0)
+    if flight.by_arcs == 1:
+        turn(flight, phase, flight.cosine0, flight.sine0)
     flight.at_rest = 0
     if flight.cut_level[flight.interval] == 0.0:
         if flight.next_w <= 0.0:
@@ -106,21 +110,24 @@ def land(flight: Record, w: float, eta: float) -> None:
 
 
 @kernel
-def advance(flight: Record, eta: float) -> bool:
-    """Follow the next flight to its end; False if there is none, or if it was the last."""
+def take_off(flight: Record) -> bool:
+    """Begin the next flight; False if there is none."""
     if flight.at_rest == 1 and not uplift(flight):
         return False
-    lifted = flight.at_rest == 1 and flight.interval > 0
-    start_flight(flight, flight.next_phase, flight.next_w, flight.next_sign, lifted)
-    ended, z = IMPACT, 0.0
-    if flight.alpha == 0.0 and flight.spread == 0.0:
-        to_cut = (flight.cut_phase[flight.interval + 1] - flight.phase) / flight.omega
-        h, w, top = hop(flight, to_cut, flight.peak)
-        if h < 0.0:
-            ended, h, w, z, top = fly(flight, eta)
-    else:
-        ended, h, w, z, top = fly_steps(flight)
-    flight.length = h
+    flight.lifted = int(flight.at_rest == 1 and flight.interval > 0)
+    flight.phase, flight.w0, flight.sign = flight.next_phase, flight.next_w, flight.next_sign
+    if flight.by_arcs == 1:
+        start_arc(flight)
+    return True
+
+
+@kernel
+def touch_down(flight: Record, eta: float, ended: int, w: float, z: float, top: float) -> bool:
+    """End a flight of `flight.length` with w and z, and `top` on the way; False if it was the last."""
+    if flight.known == 0:
+        flight.known, flight.known_end, flight.known_w, flight.known_z, flight.known_top = 1, ended, w, z, top
+        flight.known_length, flight.known_phase = flight.length, flight.phase
+        flight.known_sign, flight.known_interval = flight.sign, flight.interval
     raise_peak(flight, top, 2 * flight.impacts)
     if ended != IMPACT:
         conclude(flight, z, w, eta, ended == FALLEN)
@@ -130,45 +137,28 @@ def advance(flight: Record, eta: float) -> bool:
 
 
 @kernel
-def rock(slenderness: float, omega: float, eta: float, alpha: float, flight: Record) -> None:
-    """One block from rest to its final fate; the answer is left in `flight`.
-
-    Parameters
-    ----------
-    slenderness, omega, eta, alpha : float
-        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
-    flight
-        The pulse, scratch and answer, laid out as in `scratch.layout`.
-    """
-    begin(slenderness, omega, alpha, flight)
-    while advance(flight, eta):
-        pass
+def first_flight_again(flight: Record, eta: float) -> bool:
+    """End the first flight of the cell anew, for another eta; False if it was the last."""
+    flight.outcome, flight.peak, flight.mode, flight.impacts, flight.chatter = SAFE, 0.0, -1, 0, 0
+    flight.first_time, flight.first_velocity = math.nan, math.nan
+    flight.length, flight.phase, flight.sign = flight.known_length, flight.known_phase, flight.known_sign
+    flight.interval = flight.known_interval
+    return touch_down(flight, eta, flight.known_end, flight.known_w, flight.known_z, flight.known_top)
 
 
 @kernel
-def rock_many(
-    slenderness: Vector,
-    omega: Vector,
-    eta: Vector,
-    alpha: Vector,
-    flight: Record,
-    outcome: Vector,
-    peak: Vector,
-    impacts: Vector,
-    chatter: Vector,
-    uplift_time: Vector,
-    first_time: Vector,
-    first_velocity: Vector,
-    mode: Vector,
-) -> None:
-    """`rock` for each entry of the first four arrays (cells,); fills the last eight (cells,). `flight` as there."""
-    for i in range(len(slenderness)):
-        rock(slenderness[i], omega[i], eta[i], alpha[i], flight)
-        outcome[i] = flight.outcome
-        peak[i] = flight.peak
-        impacts[i] = flight.impacts
-        chatter[i] = flight.chatter
-        uplift_time[i] = flight.uplift_time
-        first_time[i] = flight.first_time
-        first_velocity[i] = flight.first_velocity
-        mode[i] = flight.mode
+def advance(flight: Record, steps: Record, eta: float) -> bool:
+    """Follow the next flight to its end; False if there is none, or if it was the last."""
+    if not take_off(flight):
+        return False
+    if flight.by_arcs == 0:
+        ended, w, z = fly_steps(flight, steps)
+        flight.length, top = flight.elapsed, flight.largest
+        return touch_down(flight, eta, ended, w, z, top)
+    to_cut = (flight.cut_phase[flight.interval + 1] - flight.phase) / flight.omega
+    ended, z = IMPACT, 0.0
+    h, w, top = hop(flight, to_cut, flight.peak)
+    if h < 0.0:
+        ended, h, w, z, top = fly(flight)
+    flight.length = h
+    return touch_down(flight, eta, ended, w, z, top)

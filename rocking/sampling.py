@@ -6,10 +6,10 @@ import math
 
 from rocking.compilation import Record, Vector, kernel
 from rocking.rock import advance, begin
-from rocking.scratch import ORDER
 from rocking.slender_flight import state, turn
-from rocking.taylor_flight import impact_in_step
-from rocking.taylor_step import evaluate, expand_motion, expand_pulse, step_size
+from rocking.taylor_events import evaluate
+from rocking.taylor_flight import impact_in_step, start_steps
+from rocking.taylor_step import set_block, take_step
 
 INVISIBLE = 1e-7
 """Velocity after an impact [-] below which free rocking is shown as rest: a rotation of 5e-15 alpha."""
@@ -17,13 +17,21 @@ INVISIBLE = 1e-7
 
 @kernel
 def sample_step(
-    flight: Record, start: float, stop: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
+    steps: Record,
+    sign: float,
+    start: float,
+    stop: float,
+    tau: Vector,
+    filled: int,
+    rotation: Vector,
+    velocity: Vector,
 ) -> int:
     """Evaluate the Taylor step that began at time `start` at the samples before `stop`; the samples passed."""
+    order = steps.order
     while filled < len(tau) and tau[filled] < stop:
         h = max(tau[filled] - start, 0.0)  # sums of steps round differently
-        rotation[filled] = flight.sign * evaluate(flight.z, ORDER, h)
-        velocity[filled] = flight.sign * evaluate(flight.rate_of_z, ORDER - 1, h)
+        rotation[filled] = sign * evaluate(steps.z, 0, order, h)
+        velocity[filled] = sign * evaluate(steps.rate, 0, order - 1, h)
         filled += 1
     return filled
 
@@ -31,6 +39,7 @@ def sample_step(
 @kernel
 def sample_steps(
     flight: Record,
+    steps: Record,
     start: float,
     stop: float,
     farthest: float,
@@ -40,18 +49,28 @@ def sample_steps(
     velocity: Vector,
 ) -> tuple[int, float, float]:
     """Step through the last flight of `advance` once more, at most to z = `farthest`; the samples passed, last z, w."""
-    phase, z, w, elapsed = flight.phase, 0.0, flight.w0, 0.0
+    set_block(steps, 0, flight.alpha, flight.omega)
+    start_steps(flight, steps, 0)
+    elapsed, z, w = 0.0, 0.0, flight.w0
     while elapsed < flight.length and z < farthest:
-        expand_pulse(flight, phase)
-        expand_motion(flight, z, w)
-        h = min(step_size(flight), flight.length - elapsed)
+        steps.limit[0] = flight.length - elapsed
+        take_step(steps)
+        h = steps.h[0]
         last = elapsed + h >= flight.length
         filled = sample_step(
-            flight, start + elapsed, stop if last else start + (elapsed + h), tau, filled, rotation, velocity
+            steps,
+            flight.sign,
+            start + elapsed,
+            stop if last else start + (elapsed + h),
+            tau,
+            filled,
+            rotation,
+            velocity,
         )
-        z, w = evaluate(flight.z, ORDER, h), evaluate(flight.rate_of_z, ORDER - 1, h)
         elapsed += h
-        phase += flight.omega * h
+        z, w = steps.z1[0], steps.w1[0]
+        steps.z0[0], steps.w0[0], steps.lifted[0] = z, w, 0.0
+        steps.phase[0] += flight.omega * h
     return filled, z, w
 
 
@@ -78,18 +97,23 @@ def rock_and_sample(
     eta: float,
     alpha: float,
     flight: Record,
+    steps: Record,
     farthest: float,
     tau: Vector,
     rotation: Vector,
     velocity: Vector,
     landings: Vector,
 ) -> int:
-    """`rock.rock`, filling `rotation` theta/alpha and `velocity` theta'/(p alpha) at the times `tau` during the pulse.
+    """One block from rest to its final fate, sampled at the times `tau` during the pulse.
+
+    Fills `rotation` theta/alpha and `velocity` theta'/(p alpha).
 
     Parameters
     ----------
-    slenderness, omega, eta, alpha, flight
-        As for `rock.rock`.
+    slenderness, omega, eta, alpha : float
+        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
+    flight, steps
+        The pulse, scratch and answer, as `scratch.prepared` and `scratch.prepared_steps`.
     farthest : float
         |theta|/alpha at which the history of a block that is known to overturn may stop [-].
     tau : float array (samples,)
@@ -107,7 +131,7 @@ def rock_and_sample(
     filled, written, going = 0, 0, flight.count > 0
     while going:
         flight.length = math.nan
-        going = advance(flight, eta)
+        going = advance(flight, steps, eta)
         if math.isnan(flight.length):
             break  # at rest for good
         start = (flight.phase - flight.end_phase[0]) / omega
@@ -123,11 +147,11 @@ def rock_and_sample(
             filled += 1  # at rest
         # `advance` has prepared the next flight: its angles must not stand in for this one's
         turn(flight, flight.phase, flight.cosine0, flight.sine0)
-        if alpha == 0.0 and flight.spread == 0.0:
+        if flight.by_arcs == 1:
             filled, z, w = sample_arc(flight, start, stop, tau, filled, rotation, velocity)
         else:
             reach = math.inf if going else farthest
-            filled, z, w = sample_steps(flight, start, stop, reach, tau, filled, rotation, velocity)
+            filled, z, w = sample_steps(flight, steps, start, stop, reach, tau, filled, rotation, velocity)
         if going:
             turn(flight, flight.next_phase, flight.cosine0, flight.sine0)
         else:
@@ -138,6 +162,7 @@ def rock_and_sample(
 @kernel
 def rock_freely(
     flight: Record,
+    steps: Record,
     eta: float,
     start: float,
     horizon: float,
@@ -151,8 +176,8 @@ def rock_freely(
 
     Parameters
     ----------
-    flight
-        As `rock_and_sample` left it.
+    flight, steps
+        As `rock_and_sample` left them.
     eta : float
         Restitution [-].
     start, horizon : float
@@ -169,30 +194,32 @@ def rock_freely(
     int
         Impacts written down.
     """
-    for n in range(ORDER + 1):
-        flight.f[n] = 0.0
+    set_block(steps, 0, flight.alpha, flight.omega)
+    steps.strength[0], steps.lifted[0], steps.phase[0] = 0.0, 0.0, 0.0
     filled, written = 0, 0
     while filled < len(tau) and tau[filled] < start:
         filled += 1
-    z, w, time = flight.end_z, flight.end_w, start
+    time = start
+    steps.z0[0], steps.w0[0] = flight.end_z, flight.end_w
     flight.sign = flight.end_sign
     grounded = False
-    while flight.sign != 0.0 and time < horizon and z < farthest:
-        expand_motion(flight, z, w)
-        h = min(step_size(flight), horizon - time)
-        impact = impact_in_step(flight, h, False, grounded)
-        if impact >= 0.0:
-            h = impact
-        filled = sample_step(flight, time, time + h, tau, filled, rotation, velocity)
+    while flight.sign != 0.0 and time < horizon and steps.z0[0] < farthest:
+        steps.limit[0] = horizon - time
+        take_step(steps)
+        impact = impact_in_step(steps, 0, False, grounded)
+        h = steps.h[0] if impact < 0.0 else impact
+        filled = sample_step(steps, flight.sign, time, time + h, tau, filled, rotation, velocity)
         time += h
-        z, w = evaluate(flight.z, ORDER, h), evaluate(flight.rate_of_z, ORDER - 1, h)
         grounded = impact >= 0.0
-        if grounded:
-            if written < len(landings):
-                landings[written] = time
-                written += 1
-            z, w = 0.0, -eta * w  # (2.3)
-            flight.sign = -flight.sign
-            if w <= INVISIBLE or written == len(landings):
-                break
+        if not grounded:
+            steps.z0[0], steps.w0[0] = steps.z1[0], steps.w1[0]
+            continue
+        if written < len(landings):
+            landings[written] = time
+            written += 1
+        steps.z0[0] = 0.0
+        steps.w0[0] = -eta * evaluate(steps.rate, 0, steps.order - 1, h)  # (2.3)
+        flight.sign = -flight.sign
+        if steps.w0[0] <= INVISIBLE or written == len(landings):
+            break
     return written

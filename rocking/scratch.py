@@ -1,16 +1,18 @@
-"""The one record on which the kernels work: a pulse, and the state of the cell in hand.
+"""The records on which the kernels work: a pulse with the state of a cell in hand, and the Taylor steps of several.
 
 Plain memory of fixed layout: kernels read and write it without reference counting, and loops over the sinusoids of the
-pulse have a length known when they are compiled. One record is prepared per pulse; each thread works on a copy.
+pulse have a length known when they are compiled. Records are prepared per pulse; each thread works on copies.
 """
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
 
 from rocking.compilation import Record
+from rocking.lanes import BYTES, LANES
 from rocking.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
 
 MOST_PIECES = 84
@@ -19,11 +21,14 @@ MOST_PIECES = 84
 COEFFICIENTS = 17
 """Length of the series of the slender arcs: degree 16 in z."""
 
-ORDER = 20
-"""Degree of the Taylor steps."""
+ORDER = 22
+"""Largest degree of the Taylor steps."""
 
-IMPACT, PULSE_END, FALLEN = 0, 1, 2
-"""What ends a flight; it has fallen when nothing can bring it back, known before the pulse ends."""
+FINEST = 1e-17
+"""Smallest share of the motion during a Taylor step that its last terms may have: far below rounding [-]."""
+
+UNDERWAY, IMPACT, PULSE_END, FALLEN = -1, 0, 1, 2
+"""What ends a flight, if it has; it has fallen when nothing can bring it back, known before the pulse ends."""
 
 POLYNOMIAL = 4
 """Coefficients of a wavelet's polynomial."""
@@ -33,7 +38,6 @@ def layout(terms: int) -> np.dtype[np.void]:
     """Fields of the record for a pulse of that many sinusoids c cos(w phi + d); wavelets have one of amplitude 0."""
     per_term = (terms,)
     ends, cuts = (MOST_PIECES + 1,), (3 * MOST_PIECES + 1,)
-    series = (ORDER + 1,)
     return np.dtype(
         [
             # the pulse
@@ -61,6 +65,9 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("cut_cosine", np.float64, (*cuts, terms)),
             ("cut_sine", np.float64, (*cuts, terms)),
             # where `rock` stands
+            ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
+            ("cell", np.int64),  # its place among the questions, -1: none
+            ("last", np.int64),  # the last of the questions about it that differ in eta alone
             ("count", np.int64),  # intervals between cuts
             ("interval", np.int64),  # the one that holds the start of the next flight
             ("at_rest", np.int64),  # whether that starts with an uplift
@@ -86,13 +93,22 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("sine1", np.float64, per_term),
             ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
             ("scaled", np.float64, per_term),
-            # the Taylor step
-            ("z", np.float64, series),  # coefficients of z,
-            ("rate_of_z", np.float64, series),  # of dz/dtau,
-            ("f", np.float64, series),  # of sgn(theta) a f,
-            ("gauss", np.float64, series),  # of the wavelet's Gaussian,
-            ("s", np.float64, series),  # of sin(alpha (1 - z))/alpha
-            ("c", np.float64, series),  # and of cos(alpha (1 - z))
+            # its Taylor steps
+            ("until", np.int64),  # cut at which they must end next
+            ("pushed", np.int64),  # whether the ground pushes all the way there
+            ("pull_phase", np.float64),  # else, where it begins to pull
+            ("elapsed", np.float64),  # time since the flight's start
+            ("largest", np.float64),  # largest z so far
+            # how the first flight ended, which does not depend on eta
+            ("known", np.int64),  # whether it has
+            ("known_end", np.int64),
+            ("known_w", np.float64),
+            ("known_z", np.float64),
+            ("known_top", np.float64),
+            ("known_length", np.float64),
+            ("known_phase", np.float64),
+            ("known_sign", np.float64),
+            ("known_interval", np.int64),
             # the answer, as in `response.Response`
             ("outcome", np.int64),
             ("peak", np.float64),
@@ -108,6 +124,69 @@ def layout(terms: int) -> np.dtype[np.void]:
         ],
         align=True,
     )
+
+
+def steps_layout(terms: int) -> np.dtype[np.void]:
+    """Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
+    lanes, series = (LANES,), (ORDER + 1, LANES)
+    return np.dtype(
+        [
+            ("z", np.float64, series),  # coefficients of z,
+            ("rate", np.float64, series),  # of dz/dtau,
+            ("f", np.float64, series),  # of F = sgn(theta) a f,
+            ("gauss", np.float64, series),  # of the wavelet's Gaussian,
+            ("s", np.float64, series),  # of sin(alpha (1 - z))/sin(alpha)
+            ("c", np.float64, series),  # and of cos(alpha (1 - z))/cos(alpha)
+            # where the step begins
+            ("phase", np.float64, lanes),
+            ("z0", np.float64, lanes),
+            ("w0", np.float64, lanes),
+            ("lifted", np.float64, lanes),  # 1 where it begins with an uplift through |a f| = 1, else 0
+            ("limit", np.float64, lanes),  # longest step [tau]
+            # the block and the strength of the pulse
+            ("strength", np.float64, lanes),  # sgn(theta) a
+            ("omega", np.float64, lanes),
+            ("slender", np.float64, lanes),  # 1 for the slender limit, else 0
+            ("alpha", np.float64, lanes),  # any number in the slender limit
+            ("sine_alpha", np.float64, lanes),
+            ("cosine_alpha", np.float64, lanes),
+            ("pull", np.float64, lanes),  # sin(alpha)/alpha
+            ("s_rate", np.float64, lanes),  # -alpha/tan(alpha)
+            ("c_rate", np.float64, lanes),  # alpha tan(alpha)
+            # the step
+            ("h", np.float64, lanes),  # its length [tau]
+            ("z1", np.float64, lanes),  # z at its end
+            ("w1", np.float64, lanes),  # w there
+            ("bend", np.float64, lanes),  # bound of |w''| on it
+            # the pulse, as in `layout`
+            ("amplitude", np.float64, (terms,)),
+            ("multiple", np.float64, (terms,)),
+            ("shift", np.float64, (terms,)),
+            ("spread", np.float64),
+            ("polynomial", np.float64, (POLYNOMIAL,)),
+            # what is asked
+            ("order", np.int64),  # degree of the steps, 6 to `ORDER`
+            ("log_precision", np.float64),  # log2 of the share of the motion that the last terms may have
+        ]
+    )
+
+
+ANSWER = np.dtype(
+    [
+        ("outcome", np.int8),
+        ("chatter", np.bool_),
+        ("impacts", np.int32),
+        ("mode", np.int32),
+        ("peak", np.float64),
+        ("uplift_time", np.float64),
+        ("first_time", np.float64),
+        ("first_velocity", np.float64),
+        ("end_z", np.float64),  # state at the end of the pulse
+        ("end_w", np.float64),
+    ],
+    align=True,
+)
+"""What is answered about a cell, as in `response.Response`."""
 
 
 @lru_cache(maxsize=256)
@@ -133,3 +212,28 @@ def prepared(pulse: AbstractPulse) -> Record:
     record["half_turn"][: count - 1] = half_turn * np.pi - shift[0]
     record["upright"][: count - 1] = 1.0 - 2.0 * (half_turn % 2.0)
     return record
+
+
+def prepared_steps(flight: Record, precision: float = FINEST) -> Record:
+    """Taylor steps for the pulse of a record of `prepared`.
+
+    Parameters
+    ----------
+    flight
+        The record.
+    precision : float
+        Share of the motion during a step that the last terms of its series may have [-], from `FINEST` to 1e-4. The
+        degree follows from it: 1 - log(precision)/2 makes the steps longest for the work, Jorba and Zou (2005).
+    """
+    kind = steps_layout(len(flight["amplitude"]))
+    memory = np.zeros(kind.itemsize + BYTES, np.uint8)
+    start = -memory.ctypes.data % BYTES
+    steps: Record = memory[start : start + kind.itemsize].view(kind)[0]
+    for name in ("amplitude", "multiple", "shift", "spread", "polynomial"):
+        steps[name] = flight[name]
+    steps["order"] = min(ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
+    steps["log_precision"] = math.log2(precision)
+    # idle lanes hold a block at rest, so that they meet no infinities
+    for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "pull", "omega"):
+        steps[name] = 1.0
+    return steps

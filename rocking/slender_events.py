@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, kernel
-from rocking.free_rocking import free_fate
 from rocking.scratch import IMPACT, PULSE_END
 from rocking.slender_arcs import RADIUS, acceleration, expand, pull, rotation, velocity
 from rocking.slender_flight import hermite_root, locate, state
@@ -61,11 +60,11 @@ def run_peak(
 
 
 @kernel
-def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
+def fly(flight: Record) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start to its impact or to the end of the pulse.
 
     Returns what ended it (`IMPACT`; `PULSE_END` also where the fate is known earlier), time and velocity w there,
-    z at the end of the pulse, and the largest z on the way, the latter only if the block is not overturned for good.
+    z at the end of the pulse, and the largest z on the way, the latter only if the block can still return.
     Beyond z + w = `limit` = 1 + a no ground acceleration of this pulse brings the block back, since
     (z + w)' = (z + w) - q and q <= limit.
     """
@@ -96,9 +95,7 @@ def fly(flight: Record, eta: float) -> tuple[int, float, float, float, float]:
                     h, _, w = locate(flight, 0, True, lo, hi, guess)
                     return IMPACT, h, w, 0.0, largest
         else:
-            if z_right > 0.0 and (
-                z_right + w_right >= limit or (right == count and free_fate(z_right, w_right, eta, 0.0)[0] > 0)
-            ):
+            if z_right > 0.0 and z_right + w_right >= (1.0 if right == count else limit):  # (3.8) at the end
                 return PULSE_END, h_right, w_right, z_right, largest
             if not known:
                 z_left, w_left = state(flight, h_left, flight.cut_cosine[left], flight.cut_sine[left])

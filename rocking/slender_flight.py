@@ -18,15 +18,11 @@ def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
 
 
 @kernel
-def start_flight(flight: Record, phase: float, w0: float, sign: float, lifted: bool) -> None:
-    """Begin at `phase`, where `cosine0` and `sine0` are set already; q is exactly 0 at uplift through |a f| = 1."""
-    flight.sign = sign
+def start_arc(flight: Record) -> None:
+    """Prepare the flight that begins at `phase`, where `cosine0` and `sine0` are set already."""
     for k in range(len(flight.force)):
-        flight.force[k] = sign * flight.a * flight.amplitude[k]
-    flight.phase = phase
-    flight.w0 = w0
-    flight.lifted = int(lifted)
-    flight.q0 = 0.0 if lifted else pull(flight, flight.cosine0)
+        flight.force[k] = flight.sign * flight.a * flight.amplitude[k]
+    flight.q0 = 0.0 if flight.lifted == 1 else pull(flight, flight.cosine0)  # exactly, at uplift through |a f| = 1
     anchor(flight)
 
 

@@ -1,9 +1,9 @@
-"""One flight by Taylor steps: any pulse, slender or rigid, no impact missed.
+"""One flight by Taylor steps, in one of several lanes: any pulse, slender or rigid, no impact missed.
 
-Steps end at the cuts of the pulse, so that on each of them |a f| stays on one side of 1. At z = 0 the acceleration is
--(sin(alpha)/alpha)(1 + F). Where 1 + F > 0 the block is pulled back and z = 0 can only be crossed downwards, once:
-z < 0 at the end of the step is both necessary and sufficient for an impact. Where 1 + F <= 0 z'' >= 0 holds for all
-z >= 0 up to |theta| = pi/2, so z has at most one minimum and no maximum there.
+At z = 0 the acceleration is -(sin(alpha)/alpha)(1 + F). Where 1 + F > 0 the block is pulled back and z = 0 can only be
+crossed downwards, once: z < 0 at the end of the step is both necessary and sufficient for an impact. Where 1 + F <= 0
+the ground pushes, z'' >= 0 holds for all z >= 0 up to |theta| = pi/2, and z has at most one minimum and no maximum. So
+steps end where the push begins, and where it ends too unless the block rises: then it is safe until it is pulled back.
 """
 
 from __future__ import annotations
@@ -11,76 +11,139 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, kernel
-from rocking.scratch import FALLEN, IMPACT, ORDER, PULSE_END
-from rocking.taylor_step import evaluate, expand_motion, expand_pulse, first_crossing, polish, step_size
+from rocking.scratch import FALLEN, IMPACT, PULSE_END, UNDERWAY
+from rocking.taylor_events import evaluate, first_crossing, polish
+from rocking.taylor_step import set_block, take_step
 
 
 @kernel
-def highest(flight: Record, h: float) -> float:
-    """Largest peak of z on [0, h], or 0."""
-    largest, start = 0.0, 0.0
+def is_pushed(flight: Record, interval: int) -> bool:
+    """Whether 1 + F <= 0 between the cuts `interval` and `interval` + 1."""
+    return flight.cut_level[interval] * flight.sign < 0.0
+
+
+@kernel
+def next_stretch(flight: Record, steps: Record, lane: int) -> None:
+    """Find where the steps of this lane must end next."""
+    until, count = flight.interval, flight.count
+    flight.pull_phase = steps.phase[lane]
+    if steps.w0[lane] >= 0.0:
+        while until < count and is_pushed(flight, until):
+            until += 1
+        if until > flight.interval:
+            flight.pull_phase = flight.cut_phase[until]
+    flight.pushed = int(until == count or is_pushed(flight, until))
+    while until < count and is_pushed(flight, until) == (flight.pushed == 1):
+        until += 1
+    flight.until = until
+    steps.limit[lane] = (flight.cut_phase[until] - steps.phase[lane]) / steps.omega[lane]
+
+
+@kernel
+def start_steps(flight: Record, steps: Record, lane: int) -> None:
+    """Put the start of a flight into a lane."""
+    flight.elapsed, flight.largest = 0.0, 0.0
+    steps.phase[lane], steps.z0[lane], steps.w0[lane] = flight.phase, 0.0, flight.w0
+    steps.lifted[lane] = flight.lifted
+    steps.strength[lane] = flight.sign * flight.a
+    next_stretch(flight, steps, lane)
+
+
+@kernel
+def impact_in_step(steps: Record, lane: int, pushed: bool, grounded: bool) -> float:
+    """Time of the impact within the step, or -1; `grounded` where the flight starts with it."""
+    z, rate, order = steps.z, steps.rate, steps.order
+    h, z1, w0, w1 = steps.h[lane], steps.z1[lane], steps.w0[lane], steps.w1[lane]
+    if not pushed:
+        if z1 > 0.0:
+            return -1.0
+        # z = 0 at the start leaves the zero of a parabola, else that of a falling curve as its end shows it
+        guess = 2.0 * w0 * h / (w0 - w1) if grounded else h - z1 / w1
+        return polish(z, lane, order, 0.0, h, True, grounded, guess)[0]
+    if w0 >= 0.0:
+        return -1.0
+    if z1 <= 0.0:
+        return polish(z, lane, order, 0.0, h, True, False, h - z1 / w1)[0]
+    if w1 > 0.0:
+        bottom = first_crossing(rate, lane, order - 1, 0.0, h, False, steps.bend[lane])
+        if bottom > 0.0 and evaluate(z, lane, order, bottom) <= 0.0:
+            return polish(z, lane, order, 0.0, bottom, True, False, 0.5 * bottom)[0]
+    return -1.0
+
+
+@kernel
+def highest(steps: Record, lane: int, start: float, h: float, z1: float, w1: float, known: float) -> float:
+    """Largest peak of z on [start, h] if it can pass `known`, else 0; z and w are `z1` and `w1` at h."""
+    if start >= h:
+        return 0.0
+    w0, bend = steps.w0[lane], steps.bend[lane]
+    bow = 0.125 * bend * h * h  # w stays this close to its chord
+    if w0 * w1 > 0.0 and min(abs(w0), abs(w1)) > bow:
+        return 0.0
+    fastest = max(abs(w0), abs(w1)) + bow
+    if 0.5 * (steps.z0[lane] + z1 + fastest * h) <= known:
+        return 0.0
+    start = max(start, 0.0)
+    if w0 >= 0.0 > w1:
+        top, slope = polish(steps.rate, lane, steps.order - 1, start, h, True, False, h * w0 / (w0 - w1))
+        if 2.0 * abs(slope) > bend * max(top - start, h - top):  # |w - slope (t - top)| <= bend (t - top)^2/2
+            return evaluate(steps.z, lane, steps.order, top)
+    largest = 0.0
     while start < h:
-        top = first_crossing(flight.rate_of_z, ORDER - 1, start, h, True)
+        top = first_crossing(steps.rate, lane, steps.order - 1, start, h, True, bend)
         if top < 0.0:
             break
-        largest = max(largest, evaluate(flight.z, ORDER, top))
+        largest = max(largest, evaluate(steps.z, lane, steps.order, top))
         start = top + 1e-9 * h
     return largest
 
 
 @kernel
-def impact_in_step(flight: Record, h: float, pushed: bool, grounded: bool) -> float:
-    """Time of the impact within the step, or -1."""
-    z, rate = flight.z, flight.rate_of_z
-    landed = evaluate(z, ORDER, h) <= 0.0
-    if not pushed:
-        return polish(z, ORDER, 0.0, h, True, grounded) if landed else -1.0
-    if rate[0] >= 0.0:
-        return -1.0
-    if landed:
-        return polish(z, ORDER, 0.0, h, True, False)
-    if evaluate(rate, ORDER - 1, h) > 0.0:
-        bottom = first_crossing(rate, ORDER - 1, 0.0, h, False)
-        if bottom > 0.0 and evaluate(z, ORDER, bottom) <= 0.0:
-            return polish(z, ORDER, 0.0, bottom, True, False)
-    return -1.0
-
-
-@kernel
-def fly_steps(flight: Record) -> tuple[int, float, float, float, float]:
-    """Follow one flight from its start to its impact, to the end of the pulse, or to its fall.
+def follow_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, float]:
+    """See what the step just taken in a lane has met, and prepare the next one if the flight goes on.
 
     Returns
     -------
-    what ended it, time since its start, velocity w and rotation z then, largest z on the way
+    what ended the flight, or `UNDERWAY`; velocity w and rotation z then. `flight` has the time since its start and the
+    largest z on the way.
     """
-    phase, z, w, elapsed, largest = flight.phase, 0.0, flight.w0, 0.0, 0.0
-    fallen = 0.5 * math.pi / flight.alpha if flight.alpha > 0.0 else math.inf
-    beyond = math.inf if flight.alpha > 0.0 else 1.0 + flight.a  # see `slender_events.fly`
-    interval, first = flight.interval, True
-    while interval < flight.count:
-        expand_pulse(flight, phase)
-        if first and flight.lifted == 1:
-            flight.f[0] = -1.0  # exactly: |a f| = 1
-        expand_motion(flight, z, w)
-        to_cut = (flight.cut_phase[interval + 1] - phase) / flight.omega
-        h = min(step_size(flight), to_cut)
-        pushed = flight.cut_level[interval] * flight.sign < 0.0
-        impact = impact_in_step(flight, h, pushed, first)
-        if impact >= 0.0:
-            h = impact
-        if not pushed:
-            largest = max(largest, highest(flight, h))
-        elapsed += h
-        z, w = evaluate(flight.z, ORDER, h), evaluate(flight.rate_of_z, ORDER - 1, h)
-        if impact >= 0.0:
-            return IMPACT, elapsed, w, 0.0, largest
-        if z >= fallen or largest >= fallen or z + w >= beyond:
-            return FALLEN, elapsed, w, z, largest
-        if h == to_cut:
-            interval += 1
-            phase = flight.cut_phase[interval]
-        else:
-            phase += flight.omega * h
-        first = False
-    return PULSE_END, elapsed, w, z, largest
+    h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
+    pushed = flight.pushed == 1
+    impact = impact_in_step(steps, lane, pushed, flight.elapsed == 0.0)
+    if impact >= 0.0:
+        h, z, w = impact, 0.0, evaluate(steps.rate, lane, steps.order - 1, impact)
+    if not pushed:
+        known = max(flight.peak, flight.largest)
+        pulled = (flight.pull_phase - steps.phase[lane]) / steps.omega[lane]
+        flight.largest = max(flight.largest, highest(steps, lane, pulled, h, z, w, known))
+    flight.elapsed += h
+    if impact >= 0.0:
+        return IMPACT, w, z
+    if flight.alpha > 0.0:
+        if max(z, flight.largest) >= 0.5 * math.pi / flight.alpha:
+            return FALLEN, w, z
+    elif z + w >= 1.0 + flight.a:  # see `slender_events.fly`
+        return FALLEN, w, z
+    steps.z0[lane], steps.w0[lane], steps.lifted[lane] = z, w, 0.0
+    if h < steps.limit[lane]:
+        steps.phase[lane] += steps.omega[lane] * h
+        steps.limit[lane] = (flight.cut_phase[flight.until] - steps.phase[lane]) / steps.omega[lane]
+        return UNDERWAY, w, z
+    flight.interval = flight.until
+    if flight.interval == flight.count:
+        return PULSE_END, w, z
+    steps.phase[lane] = flight.cut_phase[flight.interval]
+    next_stretch(flight, steps, lane)
+    return UNDERWAY, w, z
+
+
+@kernel
+def fly_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
+    """Follow one flight in the first lane to its end, as `follow_step`."""
+    set_block(steps, 0, flight.alpha, flight.omega)
+    start_steps(flight, steps, 0)
+    ended, w, z = UNDERWAY, 0.0, 0.0
+    while ended == UNDERWAY:
+        take_step(steps)
+        ended, w, z = follow_step(flight, steps, 0)
+    return ended, w, z

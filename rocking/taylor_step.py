@@ -1,185 +1,156 @@
-"""One Taylor step of the rocking block, slender or rigid, under any pulse: coefficients, size, value, zeros.
+"""One Taylor step of `LANES` rocking blocks side by side, slender or rigid, under any pulse.
 
 In the mirror image of a flight, z = |theta|/alpha and w = dz/dtau, (2.2) reads
 
-    z'' = -S - T F C,  S = sin(alpha (1 - z))/alpha,  C = cos(alpha (1 - z)),  T = tan(alpha)/alpha,  F = sgn(theta) a f
+    z'' = -(sin(alpha)/alpha) (S + F C),  S = sin(alpha (1 - z))/sin(alpha),  C = cos(alpha (1 - z))/cos(alpha)
 
-and tends to (3.1) as alpha goes to 0 without a special form. S and C follow from S' = -C z', C' = alpha^2 S z'.
+with F = sgn(theta) a f. S and C follow from S' = -(alpha/tan(alpha)) C z' and C' = alpha tan(alpha) S z'; at z = 0 both
+are 1, so that uplift through F = -1 starts with no acceleration, exactly. As alpha goes to 0 this tends to (3.1), with
+S = 1 - z and C = 1, without a special form.
 """
 
 from __future__ import annotations
 
 import math
 
-from rocking.compilation import Record, Vector, kernel
-from rocking.scratch import ORDER, POLYNOMIAL
-
-PRECISION = 1e-17
-"""Share of the motion during a step that the last terms of the series may have."""
-
-
-@kernel
-def expand_pulse(flight: Record, phase: float) -> None:
-    """Fill `flight.f` with the coefficients of F in powers of tau about `phase`."""
-    f, omega = flight.f, flight.omega
-    strength = flight.sign * flight.a
-    for n in range(ORDER + 1):
-        f[n] = 0.0
-    if flight.spread > 0.0:
-        # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
-        gauss = flight.gauss
-        gauss[0] = math.exp(-phase * phase / flight.spread)
-        gauss[1] = -2.0 / flight.spread * phase * gauss[0]
-        for n in range(1, ORDER):
-            gauss[n + 1] = -2.0 / flight.spread * (phase * gauss[n] + gauss[n - 1]) / (n + 1)
-        p = flight.polynomial
-        shifted = (
-            p[0] + phase * (p[1] + phase * (p[2] + phase * p[3])),
-            p[1] + phase * (2.0 * p[2] + phase * 3.0 * p[3]),
-            p[2] + 3.0 * phase * p[3],
-            p[3],
-        )
-        power = strength
-        for n in range(ORDER + 1):
-            total = 0.0
-            for k in range(min(n + 1, POLYNOMIAL)):
-                total += shifted[k] * gauss[n - k]
-            f[n] = power * total
-            power *= omega
-        return
-    for k in range(len(flight.force)):
-        angle = flight.multiple[k] * phase + flight.shift[k]
-        rate = omega * flight.multiple[k]
-        even, odd = strength * flight.amplitude[k] * math.cos(angle), -strength * flight.amplitude[k] * math.sin(angle)
-        f[0] += even
-        factor = 1.0
-        for n in range(1, ORDER + 1):
-            factor *= rate / n
-            if n % 2 == 1:
-                f[n] += factor * odd
-                odd = -odd
-            else:
-                even = -even
-                f[n] += factor * even
+from rocking.compilation import Record, kernel
+from rocking.lane_sines import sine_and_cosine
+from rocking.lanes import LANES, everywhere, larger, load, magnitude, rough_exp2, rough_log2, smaller, store
+from rocking.scratch import POLYNOMIAL
 
 
 @kernel
-def expand_motion(flight: Record, z0: float, w0: float) -> None:
-    """Fill `flight.z` and `flight.rate_of_z` from z0, w0 and the pulse's coefficients."""
-    z, rate, f = flight.z, flight.rate_of_z, flight.f
-    z[0], z[1], rate[0] = z0, w0, w0
-    alpha = flight.alpha
-    if alpha == 0.0:  # (3.1)
-        z[2] = 0.5 * (z0 - (1.0 + f[0]))
-        rate[1] = 2.0 * z[2]
-        for n in range(1, ORDER - 1):
-            z[n + 2] = (z[n] - f[n]) / ((n + 1.0) * (n + 2.0))
-            rate[n + 1] = (n + 2.0) * z[n + 2]
+def set_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
+    """Put a block of slenderness angle `alpha` [rad] (0: slender) with frequency ratio `omega` into a lane."""
+    steps.omega[lane] = omega
+    steps.slender[lane], steps.alpha[lane] = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
+    # by the same sine as S and C, so that these are exactly 1 at z = 0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0))
+    store(steps.sine_alpha, 0, sines)
+    store(steps.cosine_alpha, 0, cosines)
+    if alpha == 0.0:
+        steps.pull[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
         return
-    s, c = flight.s, flight.c
-    s[0], c[0] = math.sin(alpha * (1.0 - z0)) / alpha, math.cos(alpha * (1.0 - z0))
-    square, lean = alpha * alpha, math.tan(alpha) / alpha
-    for n in range(ORDER - 1):
-        pushed, sine, cosine = 0.0, 0.0, 0.0
+    sine, cosine = steps.sine_alpha[lane], steps.cosine_alpha[lane]
+    steps.pull[lane], steps.s_rate[lane], steps.c_rate[lane] = (
+        sine / alpha,
+        -alpha * cosine / sine,
+        alpha * sine / cosine,
+    )
+
+
+@kernel
+def expand_sinusoids(steps: Record) -> None:
+    """Fill `f` with the coefficients of F in powers of tau about `phase`, for a sum of sinusoids."""
+    f, phase, omega, strength = steps.f, load(steps.phase, 0), load(steps.omega, 0), load(steps.strength, 0)
+    for k in range(len(steps.amplitude)):
+        sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
+        rate = omega * steps.multiple[k]
+        scale, bend = strength * steps.amplitude[k], rate * rate
+        even, odd = scale * cosine, scale * rate * sine * -1.0
+        for n in range(0, steps.order + 1, 2):
+            store(f, n, even if k == 0 else load(f, n) + even)
+            even = even * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+        for n in range(1, steps.order + 1, 2):
+            store(f, n, odd if k == 0 else load(f, n) + odd)
+            odd = odd * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+
+
+@kernel
+def expand_wavelet(steps: Record) -> None:
+    """The same for f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
+    f, gauss, p, order = steps.f, steps.gauss, steps.polynomial, steps.order
+    for lane in range(LANES):
+        gauss[0, lane] = math.exp(-steps.phase[lane] * steps.phase[lane] / steps.spread)
+    phase, omega = load(steps.phase, 0), load(steps.omega, 0)
+    # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
+    fall = -2.0 / steps.spread
+    before, here = everywhere(0.0), load(gauss, 0)
+    for n in range(order + 1):
+        store(gauss, n, here)
+        before, here = here, (phase * here + before) * (fall / (n + 1.0))
+    constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
+    linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
+    square = p[2] + 3.0 * p[3] * phase
+    power = load(steps.strength, 0)
+    for n in range(order + 1):
+        total = constant * load(gauss, n)
+        if n > 0:
+            total += linear * load(gauss, n - 1)
+        if n > 1:
+            total += square * load(gauss, n - 2)
+        if n > 2:
+            total += p[POLYNOMIAL - 1] * load(gauss, n - 3)
+        store(f, n, power * total)
+        power = power * omega
+
+
+@kernel
+def expand_motion(steps: Record) -> None:
+    """Fill `z` and `rate` from z0, w0 and `f`."""
+    z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
+    lifted, slender, z0, w0 = load(steps.lifted, 0), load(steps.slender, 0), load(steps.z0, 0), load(steps.w0, 0)
+    store(f, 0, (1.0 - lifted) * load(f, 0) - lifted)  # at uplift |a f| = 1, exactly
+    store(z, 0, z0)
+    store(z, 1, w0)
+    store(rate, 0, w0)
+    rest = 1.0 - z0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
+    store(s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
+    store(c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
+    pull, s_rate, c_rate = load(steps.pull, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    for n in range(steps.order - 1):
+        pushed, sine, cosine = load(s, n), everywhere(0.0), everywhere(0.0)
         for j in range(n + 1):
-            pushed += f[j] * c[n - j]
-            sine -= c[n - j] * rate[j]
-            cosine += s[n - j] * rate[j]
-        z[n + 2] = -(s[n] + lean * pushed) / ((n + 1.0) * (n + 2.0))  # (2.2)
-        rate[n + 1] = (n + 2.0) * z[n + 2]
-        s[n + 1] = sine / (n + 1.0)
-        c[n + 1] = square * cosine / (n + 1.0)
+            at_j, back = load(rate, j), load(c, n - j)
+            pushed += load(f, j) * back
+            sine += at_j * back
+            cosine += at_j * load(s, n - j)
+        reciprocal = 1.0 / (n + 1.0)
+        bent = pull * pushed * -reciprocal  # (2.2)
+        store(rate, n + 1, bent)
+        store(z, n + 2, bent * (1.0 / (n + 2.0)))
+        store(s, n + 1, s_rate * sine * reciprocal)
+        store(c, n + 1, c_rate * cosine * reciprocal)
 
 
 @kernel
-def step_size(flight: Record) -> float:
-    """Largest step on which the last two terms stay below `PRECISION` of the motion."""
-    z = flight.z
-    size = math.inf
-    for k in (ORDER - 1, ORDER):
-        if z[k] == 0.0:
-            continue
-        last = math.log(abs(z[k]))
-        allowed = 0.0
+def choose_length(steps: Record) -> None:
+    """Set `h`, the largest step on which the last two terms keep to the precision, or `limit` if that is shorter.
+
+    Relative to the largest of the first four terms at the end of the step; all in rough binary logarithms.
+    """
+    z, order = steps.z, steps.order
+    shortest = everywhere(900.0)
+    for k in range(order - 1, order + 1):
+        last = rough_log2(magnitude(load(z, k)))
+        longest = everywhere(-900.0)
         for j in range(4):
-            if z[j] != 0.0:
-                allowed = max(allowed, math.exp((math.log(PRECISION * abs(z[j])) - last) / (k - j)))
-        size = min(size, allowed)
-    return size
+            gap = rough_log2(magnitude(load(z, j))) - last + steps.log_precision
+            longest = larger(longest, gap * (1.0 / (k - j)))
+        shortest = smaller(shortest, longest)
+    store(steps.h, 0, smaller(rough_exp2(shortest), load(steps.limit, 0)))
 
 
 @kernel
-def evaluate(series: Vector, top: int, h: float) -> float:
-    """Value of the series of degree `top` at h."""
-    total = series[top]
-    for i in range(top):
-        total = total * h + series[top - 1 - i]
-    return total
-
-
-@kernel
-def slope(series: Vector, top: int, h: float) -> float:
-    """Derivative of the series of degree `top` at h."""
-    total = top * series[top]
-    for i in range(top - 1):
-        total = total * h + (top - 1 - i) * series[top - 1 - i]
-    return total
-
-
-@kernel
-def polish(series: Vector, top: int, lo: float, hi: float, falling: bool, deflated: bool) -> float:
-    """The zero of a series that falls or rises through it between lo and hi: Newton inside a shrinking bracket.
-
-    `deflated` takes the series divided by h, to leave out its zero at the start of a flight.
-    """
-    h = 0.5 * (lo + hi)
-    for _ in range(100):
-        value, rate = evaluate(series, top, h), slope(series, top, h)
-        if deflated:
-            value /= h
-            rate = (rate - value) / h
-        if (value > 0.0) == falling:
-            lo = h
-        else:
-            hi = h
-        follow = h - value / rate if rate != 0.0 else lo
-        if not lo <= follow <= hi:
-            follow = 0.5 * (lo + hi)
-        if abs(follow - h) <= 4.5e-16 * abs(h):
-            return follow
-        h = follow
-    return h
-
-
-@kernel
-def first_crossing(series: Vector, top: int, lo: float, hi: float, falling: bool) -> float:
-    """The first zero that the series crosses in that direction between lo and hi, or -1: exclusion, then Newton.
-
-    On an interval of length l about m the series has no zero if |v(m)| > |v'(m)| l/2 + M l^2/8 and at most one if
-    |v'(m)| > M l/2, where M bounds |v''| on the whole of [0, hi]; else the interval is halved.
-    """
-    bound = 0.0
-    power = 1.0
-    for n in range(2, top + 1):
-        bound += n * (n - 1.0) * abs(series[n]) * power
-        power *= hi
-    left, size = lo, hi - lo
-    smallest = 1e-9 * size
-    while left < hi:
-        middle, half = left + 0.5 * size, 0.5 * size
-        value, rate = evaluate(series, top, middle), slope(series, top, middle)
-        clear = abs(value) > abs(rate) * half + 0.5 * bound * half * half
-        single = abs(rate) > bound * half
-        if clear or single or size <= smallest:
-            right = left + size
-            if not clear and (rate < 0.0) == falling:
-                at_left, at_right = evaluate(series, top, left), evaluate(series, top, right)
-                if (at_left > 0.0 >= at_right) if falling else (at_left < 0.0 <= at_right):
-                    return polish(series, top, left, right, falling, False)
-            left = right
-            size = min(2.0 * size, hi - left) if hi - left > smallest else hi - left
-            if size <= 0.0:
-                break
-        else:
-            size = half
-    return -1.0
+def take_step(steps: Record) -> None:
+    """Expand about z0, w0 at `phase`; set the step's length, z and w at its end, and the bound of |w''| on it."""
+    if steps.spread > 0.0:
+        expand_wavelet(steps)
+    else:
+        expand_sinusoids(steps)
+    expand_motion(steps)
+    choose_length(steps)
+    z, rate, order = steps.z, steps.rate, steps.order
+    h = load(steps.h, 0)
+    rotation, velocity = load(z, order), load(rate, order - 1)
+    bend = magnitude(velocity) * ((order - 1.0) * (order - 2.0))
+    for i in range(1, order):
+        n = order - 1 - i
+        rotation = rotation * h + load(z, n + 1)
+        velocity = velocity * h + load(rate, n)
+        if n > 1:
+            bend = bend * h + magnitude(load(rate, n)) * (n * (n - 1.0))
+    store(steps.z1, 0, rotation * h + load(z, 0))
+    store(steps.w1, 0, velocity)
+    store(steps.bend, 0, bend)

@@ -2,9 +2,9 @@
 
 from rocking.compilation import Record
 from rocking.pulses import AbstractPulse, get_pulse
-from rocking.rock import begin, uplift
+from rocking.rock import begin, take_off
 from rocking.scratch import prepared
-from rocking.slender_flight import start_flight
+from rocking.slender_flight import turn
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
@@ -17,7 +17,13 @@ def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: fl
 def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
     """The record of a block that has just been lifted."""
     flight = cell(pulse, slenderness, omega, alpha)
-    assert uplift(flight)
-    lifted = bool(flight["interval"] > 0)
-    start_flight(flight, float(flight["next_phase"]), 0.0, float(flight["next_sign"]), lifted)
+    assert take_off(flight)
+    return flight
+
+
+def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
+    """The record, at the start of a flight after an impact at `phase`."""
+    turn(flight, phase, flight["cosine0"], flight["sine0"])
+    flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
+    assert take_off(flight)
     return flight

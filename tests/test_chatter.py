@@ -11,11 +11,10 @@ import rocking
 from rocking import Outcome
 from rocking.chatter import settles
 from rocking.pulses import PULSE_NAMES
-from rocking.scratch import IMPACT
+from rocking.scratch import IMPACT, prepared_steps
 from rocking.slender_events import fly
-from rocking.slender_flight import start_flight, turn
 from rocking.taylor_flight import fly_steps
-from tests.kernels import cell
+from tests.kernels import cell, flight_from
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))
 WANTED = st.tuples(
@@ -33,12 +32,14 @@ WANTED = st.tuples(
 
 def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
     """Impact by impact until next to nothing is left: the phase then, and the highest peak [z]."""
-    highest, first = 0.0, w
+    highest, first, steps = 0.0, w, prepared_steps(flight)
     while w > 1e-7 * first:
-        turn(flight, phase, flight["cosine0"], flight["sine0"])
-        start_flight(flight, phase, w, sign, False)
-        slender = float(flight["alpha"]) == 0.0 and float(flight["spread"]) == 0.0
-        ended, h, landing, _, peak = fly(flight, eta) if slender else fly_steps(flight)
+        flight_from(flight, phase, w, sign)
+        if flight["by_arcs"]:
+            ended, h, landing, _, peak = fly(flight)
+        else:
+            ended, landing, _ = fly_steps(flight, steps)
+            h, peak = float(flight["elapsed"]), float(flight["largest"])
         highest = max(highest, peak)
         if ended != IMPACT:
             return math.inf, highest

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import rocking.compilation
 from rocking.compilation import kernel
-from rocking.rock import rock_many
+from rocking.rock_many import rock_many
 from rocking.slender_arcs import hyperbolic
 
 ROOT = Path(__file__).parents[1]
@@ -60,7 +60,7 @@ def test_division_by_zero_is_arithmetic_and_no_exception():
 def test_a_second_process_finds_the_machine_code():
     script = (
         "import rocking; rocking.peak_response('sine', slenderness=0.4, frequency_ratio=5.0, restitution=0.85);"
-        "from rocking.rock import rock_many; print(sum(rock_many.stats.cache_hits.values()),"
+        "from rocking.rock_many import rock_many; print(sum(rock_many.stats.cache_hits.values()),"
         " sum(rock_many.stats.cache_misses.values()))"
     )
     for _ in range(2):  # the first may compile

@@ -12,13 +12,14 @@ ROOT = Path(__file__).parents[1]
 # From the ground up. A room is one idea, in one module or in several with a common stem; rooms of one floor are
 # independent of each other.
 FLOORS = (
-    ("errors", "compilation", "provenance", "version"),
+    ("errors", "compilation", "provenance", "version", "lanes"),
     ("block", "pulses", "orientation", "response"),
     ("scratch",),
-    ("free_rocking", "contact", "cuts", "groups", "cube", "interpolation", "scale_law"),
+    ("free_rocking", "fate_margin", "lane_sines", "contact", "cuts", "groups", "cube", "interpolation", "scale_law"),
     ("chatter",),
     ("slender*", "taylor*", "closed_form*"),
     ("rock",),
+    ("rock_many",),
     ("solve*", "sampling"),
     ("sweep*", "boundary*", "history*", "bounded_response"),
     ("lookup*",),

@@ -10,31 +10,65 @@ from hypothesis import strategies as st
 
 import rocking
 from rocking.pulses import PULSE_NAMES
-from rocking.scratch import ORDER
-from rocking.taylor_step import evaluate, expand_motion, expand_pulse, first_crossing, polish, slope, step_size
-from tests.kernels import cell
+from rocking.lanes import LANES
+from rocking.scratch import FINEST, ORDER, prepared, prepared_steps
+from rocking.taylor_events import evaluate, first_crossing, polish, value_and_slope
+from rocking.taylor_step import set_block, take_step
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
 
-def step_from(pulse: str, z: float, w: float, phase: float, omega: float, alpha: float, sign: float = -1.0):
-    flight = cell(pulse, 0.4, omega, alpha)
-    flight["sign"] = sign
-    expand_pulse(flight, phase)
-    expand_motion(flight, z, w)
-    return flight
+def step_from(
+    pulse: str,
+    z: float,
+    w: float,
+    phase: float,
+    omega: float,
+    alpha: float,
+    sign: float = -1.0,
+    lane: int = 3,
+    precision: float = FINEST,
+    limit: float = np.inf,
+):
+    steps = prepared_steps(prepared(rocking.get_pulse(pulse)), precision)
+    set_block(steps, lane, alpha, omega)
+    for name, value in {"z0": z, "w0": w, "phase": phase, "strength": sign / 0.4, "limit": limit}.items():
+        steps[name][lane] = value
+    take_step(steps)
+    return steps
+
+
+def rotation(steps, h: float, degree: int = ORDER, lane: int = 3) -> float:
+    return evaluate(steps["z"], lane, degree, h)
+
+
+def velocity(steps, h: float, lane: int = 3) -> float:
+    return evaluate(steps["rate"], lane, ORDER - 1, h)
+
+
+def one_lane(coefficients: np.ndarray) -> np.ndarray:
+    """A series in the second of all lanes."""
+    series = np.full((ORDER + 1, LANES), np.nan)
+    series[:, 1] = coefficients
+    return series
+
+
+def bend_of(coefficients: np.ndarray, h: float) -> float:
+    """Bound of the second derivative on [0, h]."""
+    return float(sum(n * (n - 1) * abs(c) * h ** max(n - 2, 0) for n, c in enumerate(coefficients)))
 
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-7, 0.3, 1.3])
 @pytest.mark.parametrize("name", SIGNED)
 def test_coefficients_satisfy_the_equation_of_motion(name, alpha):
     phase, omega, sign = 0.7, 1.9, -1.0
-    flight = step_from(name, 0.2, 0.3, phase, omega, alpha, sign)
+    steps = step_from(name, 0.2, 0.3, phase, omega, alpha, sign)
     pulse = rocking.get_pulse(name)
     for h in (0.0, 0.02, 0.06):
-        z = evaluate(flight["z"], ORDER, h)
-        assert evaluate(flight["rate_of_z"], ORDER - 1, h) == pytest.approx(slope(flight["z"], ORDER, h), rel=1e-14)
-        bend = slope(flight["rate_of_z"], ORDER - 1, h)
+        z, slope = value_and_slope(steps["z"], 3, ORDER, h)
+        assert z == pytest.approx(rotation(steps, h), rel=1e-14)
+        assert velocity(steps, h) == pytest.approx(slope, rel=1e-14)
+        _, bend = value_and_slope(steps["rate"], 3, ORDER - 1, h)
         force = sign * float(pulse.shape(phase + omega * h)) / 0.4
         if alpha == 0.0:
             true = z - 1 - force  # (3.1)
@@ -48,27 +82,74 @@ def test_coefficients_satisfy_the_equation_of_motion(name, alpha):
 @pytest.mark.parametrize("alpha", [0.0, 0.3])
 @pytest.mark.parametrize("name", ["sine", "ricker", "mavroeidis_papageorgiou"])
 def test_measured_order(name, alpha, degree):
-    steps, orders = np.geomspace(0.1, 0.2, 7), []
+    lengths, orders = np.geomspace(0.1, 0.2, 7), []
     for phase in (0.2, 0.7, 1.3, 2.1, 2.9):  # here or there the first term left out may nearly vanish
-        flight = step_from(name, 0.2, 0.3, phase, 1.9, alpha)
-        error = [abs(evaluate(flight["z"], degree, h) - evaluate(flight["z"], ORDER, h)) for h in steps]
-        orders.append(np.polyfit(np.log(steps), np.log(error), 1)[0])
+        step = step_from(name, 0.2, 0.3, phase, 1.9, alpha)
+        error = [abs(rotation(step, h, degree) - rotation(step, h)) for h in lengths]
+        orders.append(np.polyfit(np.log(lengths), np.log(error), 1)[0])
     assert np.median(orders) == pytest.approx(degree + 1, abs=0.4)
 
 
 @pytest.mark.parametrize("alpha", [0.0, 0.3])
 @pytest.mark.parametrize("name", ["sine", "ricker", "c2"])
 def test_one_step_is_exact_to_rounding(name, alpha):
-    flight = step_from(name, 0.2, 0.3, 0.7, 1.9, alpha)
-    h = float(step_size(flight))
+    steps = step_from(name, 0.2, 0.3, 0.7, 1.9, alpha)
+    h = float(steps["h"][3])
     assert 0.05 < h < 2.0
-    once = evaluate(flight["z"], ORDER, h), evaluate(flight["rate_of_z"], ORDER - 1, h)
+    np.testing.assert_allclose((steps["z1"][3], steps["w1"][3]), (rotation(steps, h), velocity(steps, h)), rtol=1e-14)
     z, w = 0.2, 0.3
     parts = 8
     for i in range(parts):
-        part = step_from(name, z, w, 0.7 + 1.9 * h * i / parts, 1.9, alpha)
-        z, w = evaluate(part["z"], ORDER, h / parts), evaluate(part["rate_of_z"], ORDER - 1, h / parts)
-    np.testing.assert_allclose(once, (z, w), rtol=2e-14)
+        part = step_from(name, z, w, 0.7 + 1.9 * h * i / parts, 1.9, alpha, limit=h / parts)
+        assert part["h"][3] == h / parts
+        z, w = float(part["z1"][3]), float(part["w1"][3])
+    np.testing.assert_allclose((steps["z1"][3], steps["w1"][3]), (z, w), rtol=2e-14)
+
+
+@pytest.mark.parametrize("name", ["sine", "ricker", "c2"])
+def test_the_error_of_a_step_follows_the_precision_asked(name):
+    for precision in (1e-5, 1e-8, 1e-11, 1e-14):
+        coarse = step_from(name, 0.2, 0.3, 0.7, 1.9, 0.3, precision=precision)
+        h = float(coarse["h"][3])
+        z, w, parts = 0.2, 0.3, 16
+        for i in range(parts):
+            part = step_from(name, z, w, 0.7 + 1.9 * h * i / parts, 1.9, 0.3, limit=h / parts)
+            z, w = float(part["z1"][3]), float(part["w1"][3])
+        error = abs(float(coarse["z1"][3]) - z) / z
+        assert 1e-4 * precision < error + 1e-15 < 10 * precision + 1e-15
+        assert int(coarse["order"]) < ORDER
+
+
+def test_lanes_do_not_know_of_each_other():
+    alone = [step_from("c1", 0.2, 0.3, 0.7, 1.9, alpha, lane=lane) for lane, alpha in enumerate((0.0, 0.3, 1e-6))]
+    together = prepared_steps(prepared(rocking.get_pulse("c1")))
+    for lane, one in enumerate(alone):
+        set_block(together, lane, (0.0, 0.3, 1e-6)[lane], 1.9)
+        for name in ("z0", "w0", "phase", "strength", "limit"):
+            together[name][lane] = one[name][lane]
+    take_step(together)
+    for lane, one in enumerate(alone):
+        for name in ("h", "z1", "w1", "bend"):
+            assert together[name][lane] == one[name][lane]
+        np.testing.assert_array_equal(together["z"][:, lane], one["z"][:, lane])
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1e-9, 0.3, 1.5])
+def test_uplift_starts_with_no_acceleration_at_all(alpha):
+    steps = prepared_steps(prepared(rocking.get_pulse("sine")))
+    set_block(steps, 0, alpha, 2.0)
+    steps["lifted"][0], steps["phase"][0], steps["strength"][0], steps["limit"][0] = 1.0, 0.4, -2.5, 1.0
+    take_step(steps)
+    assert steps["z"][2, 0] == 0.0
+    assert steps["z"][3, 0] > 0.0
+
+
+def test_the_bound_of_the_bend_holds_on_the_step():
+    steps = step_from("c2", 0.2, 0.3, 0.7, 1.9, 0.4)
+    h = np.linspace(0, float(steps["h"][3]), 200)
+    second = np.polynomial.polynomial.polyval(h, np.polynomial.polynomial.polyder(steps["rate"][:ORDER, 3], 2))
+    assert np.abs(second).max() <= steps["bend"][3] * (1 + 1e-12)
+    assert steps["bend"][3] < 20 * np.abs(second).max()
 
 
 @given(
@@ -84,7 +165,7 @@ def test_first_crossing_is_the_first_of_all_roots(roots, scale, falling):
     series[: len(roots) + 1] = scale * np.polynomial.polynomial.polyfromroots(roots)
     rising_first = (scale > 0) == (len(roots) % 2 == 1)  # the leftmost root is crossed upwards
     wanted = [r for i, r in enumerate(roots) if 0 < r < 1 and ((i % 2 == 0) == rising_first) != falling]
-    found = first_crossing(series, ORDER, 0.0, 1.0, falling)
+    found = first_crossing(one_lane(series), 1, ORDER, 0.0, 1.0, falling, bend_of(series, 1.0))
     if wanted:
         assert found == pytest.approx(wanted[0], abs=1e-9)
     else:
@@ -97,7 +178,8 @@ def test_polish_finds_the_zero_and_leaves_out_the_one_at_the_start(root, curve, 
     series = np.zeros(ORDER + 1)
     series[1:4] = -side * root, side * (1 - curve * root), side * curve  # side h (h - root)(1 + curve h)
     upper = min(1.3 * root, 1.2)
-    found = polish(series, ORDER, 0.0, upper, falling, True)
+    found, slope = polish(one_lane(series), 1, ORDER, 0.0, upper, falling, True, 0.7 * upper)
+    assert (slope < 0.0) == falling
     with mpmath.workprec(100):
         a, b, c = (mpmath.mpf(float(x)) for x in series[1:4])
         true = (-b + side * mpmath.sqrt(b * b - 4 * a * c)) / (2 * c) if abs(c) > 1e-3 else None
