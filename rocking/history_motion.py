@@ -96,6 +96,7 @@ class Motion:
 
     def _free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
         steps = prepared_steps(answer)
+        stop = self.horizon * (1 + 1e-12)  # a step fills the samples before its end: the last one has to lie inside
         written = rock_freely(
             answer, steps, self.restitution, self.pulse_end, stop, self.farthest, tau, rotation, velocity, landings
         )
