@@ -1,7 +1,11 @@
-"""Fills a spectrum cube: the grid through the solver, then the error of interpolating it, measured between nodes."""
+"""Fills spectrum cubes: the grid through the solver, then the error of interpolating it, measured between nodes.
+
+Several coefficients of restitution are solved together, as the first flight of a block does not depend on them.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,23 +23,31 @@ PROBES = np.array([1 / 6, 1 / 2, 5 / 6])
 """Where in a cell, in either direction, interpolation is compared with the solver; the middle is the worst place of a
 smooth function, the other two catch what happens near the edges [-]."""
 
+TOGETHER = 4
+"""Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
 
-def spectrum(
+
+def spectrum(pulse: str, *, restitution: float, **grid: Any) -> xr.Dataset:
+    """The spectrum cube of one pulse and one coefficient of restitution; the other arguments as for `spectra`."""
+    return next(spectra(pulse, restitution=[restitution], **grid))
+
+
+def spectra(
     pulse: str,
     *,
-    restitution: float,
+    restitution: Sequence[float],
     slenderness: ArrayLike,
     frequency_ratio: ArrayLike,
     alpha: ArrayLike = (0.0,),
     threads: int | None = None,
-) -> xr.Dataset:
-    """The spectrum cube of one pulse and one coefficient of restitution (schema in `rocking.cube`).
+) -> Iterator[xr.Dataset]:
+    """The spectrum cubes of one pulse, one for each coefficient of restitution in turn (schema in `rocking.cube`).
 
     Parameters
     ----------
     pulse : str
         Name of the pulse.
-    restitution : float
+    restitution : sequence of float
         eta [-], [0, 1].
     slenderness : array_like, shape (n,), n >= 4
         1/a [-], > 0, ascending and uniformly spaced.
@@ -54,21 +66,25 @@ def spectrum(
     rows = in_range("slenderness", slenderness, 0.0, np.inf, closed="neither")
     columns = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     angles = in_range("alpha", alpha, 0.0, np.pi / 2, closed="left", unit="rad")
-    slices = [
-        _slice(rows, columns, pulse=pulse, restitution=restitution, alpha=float(angle) or None, threads=threads)
-        for angle in angles
-    ]
-    variables = {name: np.stack([part[name] for part in slices]) for name in VARIABLES}
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
-    return build_spectrum_dataset(variables, pulse=pulse, restitution=restitution, axes=axes)
+    for first in range(0, len(restitution), TOGETHER):
+        etas = np.asarray(restitution[first : first + TOGETHER], dtype=np.float64)
+        slices = [
+            _slice(rows, columns, pulse=pulse, restitution=etas, alpha=float(angle) or None, threads=threads)
+            for angle in angles
+        ]
+        for k, eta in enumerate(etas):
+            variables = {name: np.stack([part[name][..., k] for part in slices]) for name in VARIABLES}
+            yield build_spectrum_dataset(variables, pulse=pulse, restitution=float(eta), axes=axes)
 
 
 def _slice(rows: Array, columns: Array, **block: Any) -> dict[str, NDArray[Any]]:
-    """All variables of the cube for one slenderness angle, each of shape (slenderness, frequency_ratio)."""
-    nodes = peak_response(slenderness=rows[:, None], frequency_ratio=columns, **block)
-    smooth = smooth_cells(nodes.outcome, nodes.impacts, nodes.peak_mode)
+    """All variables of the cubes for one angle, each of shape (slenderness, frequency_ratio, restitution)."""
+    nodes = peak_response(slenderness=rows[:, None, None], frequency_ratio=columns[:, None], **block)
+    etas = range(nodes.shape[-1])
+    smooth = [smooth_cells(nodes.outcome[..., k], nodes.impacts[..., k], nodes.peak_mode[..., k]) for k in etas]
     error = np.full(nodes.shape, np.nan)
-    error[:-1, :-1] = _interpolation_error(nodes.peak_rotation, smooth, rows, columns, **block)
+    error[:-1, :-1] = _interpolation_error(nodes.peak_rotation, np.stack(smooth, axis=-1), rows, columns, **block)
     found: dict[str, NDArray[Any]] = {name: getattr(nodes, name) for name in VARIABLES if name != "interpolation_error"}
     return found | {"interpolation_error": error}
 
@@ -78,22 +94,26 @@ def _interpolation_error(peaks: Array, smooth: NDArray[np.bool_], rows: Array, c
     k = PROBES.size
     row_at = (np.arange(rows.size - 1)[:, None] + PROBES).ravel()
     column_at = (np.arange(columns.size - 1)[:, None] + PROBES).ravel()
-    interpolated = _along_last(_along_last(peaks, column_at).T, row_at).T
-    i, j = np.nonzero(np.repeat(np.repeat(smooth, k, axis=0), k, axis=1))
+    interpolated = _along(_along(peaks, row_at, 0), column_at, 1)
+    wanted = np.repeat(np.repeat(smooth.any(axis=-1), k, axis=0), k, axis=1)
+    i, j = np.nonzero(wanted)
     solved = peak_response(
-        slenderness=np.interp(row_at, np.arange(rows.size), rows)[i],
-        frequency_ratio=np.exp(np.interp(column_at, np.arange(columns.size), np.log(columns)))[j],
+        slenderness=np.interp(row_at, np.arange(rows.size), rows)[i, None],
+        frequency_ratio=np.exp(np.interp(column_at, np.arange(columns.size), np.log(columns)))[j, None],
         **block,
     )
     error = np.full(interpolated.shape, np.nan)
     error[i, j] = np.abs(interpolated[i, j] - solved.peak_rotation)
     # the largest of the probes; a nan among them (an overturned block inside the cell) makes the cell mixed
-    return np.asarray(error.reshape(rows.size - 1, k, columns.size - 1, k).max(axis=(1, 3)))
+    largest = error.reshape(rows.size - 1, k, columns.size - 1, k, -1).max(axis=(1, 3))
+    return np.where(smooth, largest, np.nan)
 
 
-def _along_last(values: Array, position: Array) -> Array:
-    """Four-point Lagrange interpolation along the last axis at fractional indices, shape (..., position.size)."""
-    first = stencil_start(position.astype(np.intp), values.shape[-1])
+def _along(values: Array, position: Array, axis: int) -> Array:
+    """Four-point Lagrange interpolation along an axis at fractional indices."""
+    first = stencil_start(position.astype(np.intp), values.shape[axis])
     weights = lagrange_weights(position - first)
-    terms = [weights[:, node] * values[..., first + node] for node in range(STENCIL)]
+    shape = [1] * values.ndim
+    shape[axis] = position.size
+    terms = [weights[:, node].reshape(shape) * values.take(first + node, axis) for node in range(STENCIL)]
     return np.asarray(sum(terms))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking.cube import describe, write_dataset
-from rocking.sweep import spectrum
+from rocking.sweep import spectra
 from workflow.scripts.job import run
 
 
@@ -28,8 +28,7 @@ def main(
         "frequency_ratio": np.geomspace(columns["low"], columns["high"], columns["points"]),
         "alpha": [math.radians(angle) for angle in grid["alpha_deg"]],
     }
-    for eta, path in zip(restitution, cubes, strict=True):
-        cube = spectrum(pulse, restitution=eta, **axes)
+    for cube, path in zip(spectra(pulse, restitution=restitution, **axes), cubes, strict=True):
         write_dataset(describe(cube, **provenance), path)
         print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
 
