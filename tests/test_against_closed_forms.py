@@ -84,15 +84,19 @@ def test_overturning_without_a_further_impact_for_every_pulse(name):
 
 
 @pytest.mark.slow
-def test_a_million_random_cells_have_an_answer():
+@pytest.mark.parametrize("rigid", [False, True])
+def test_a_million_random_cells_have_an_answer(rigid):
     rng = np.random.default_rng(14)
     n = 1_000_000 // len(PULSE_NAMES) + 1
     for name in PULSE_NAMES:
         slenderness = np.minimum(np.exp(rng.uniform(np.log(1e-3), 0.0, n)), 1 - 1e-9)
         slenderness[: n // 10] = 1 - np.exp(rng.uniform(np.log(1e-9), np.log(0.1), n // 10))
-        omega = np.exp(rng.uniform(np.log(0.05), np.log(50.0), n))
         found = rocking.peak_response(
-            name, slenderness=slenderness, frequency_ratio=omega, restitution=rng.uniform(0, 1, n)
+            name,
+            slenderness=slenderness,
+            frequency_ratio=np.exp(rng.uniform(np.log(0.02), np.log(100.0), n)),
+            restitution=rng.uniform(0, 1, n),
+            alpha=np.exp(rng.uniform(np.log(1e-8), np.log(1.5), n)) if rigid else None,
         )
         np.testing.assert_array_equal(np.isnan(found.peak_rotation), found.overturned)
         standing = found.peak_rotation[~found.overturned]
