@@ -7,6 +7,8 @@ rule claims:
         boundaries=overturning_files("sine", ETAS),
         cubes=spectrum_files("sine", ETAS),
         collapse="results/figures/figure-06.nc",
+        similar_blocks="results/figures/figure-09.nc",
+        histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
     output:
         **CLAIM_FILES,
     log:
@@ -17,7 +19,7 @@ rule claims:
         **config["claims"],
         provenance=provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values()),
     message:
-        "Checking the quantitative claims of sections 3 and 4"
+        "Checking the quantitative claims of the paper"
     script:
         "../scripts/claims.py"
 
