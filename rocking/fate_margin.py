@@ -1,4 +1,4 @@
-"""How near a block that has been left to itself is to another fate: where steps of lower accuracy are not enough."""
+"""How far a block left to itself is from another fate, in energy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 def fate_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
-    """Relative distance of the energy at the end of the pulse from that of another fate [-].
+    """By how much the energy at the end of the pulse, or after the next impact, passes that of the barrier [-].
 
     Parameters
     ----------
@@ -23,12 +23,13 @@ def fate_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     Returns
     -------
     float array
-        |X - w| over the barrier X(0), see `free_rocking`; where the block returns also the distance of the energy
-        after its impact from the barrier, (3.16), whichever is smaller. 0 on the boundary between two fates.
+        Positive where it overturns: the larger of (w - X)/X(0), see `free_rocking`, and of the energy with which it
+        leaves the next impact, relative to the barrier, less 1, (3.16). Continuous through 0 where it begins to
+        overturn.
     """
     half = np.where(alpha > 0.0, 0.5 * alpha, 1.0)
     barrier = np.where(alpha > 0.0, np.sin(half) / half, 1.0)
     x = np.where(alpha > 0.0, np.sin(half * (1.0 - z)) / half, 1.0 - z)
-    escape = np.abs(x - w) / barrier
+    escape = (w - x) / barrier  # (3.8)
     rebound = eta * eta * (1.0 - (x - w) * (x + w) / (barrier * barrier))
-    return np.asarray(np.where(w < x, np.minimum(escape, np.abs(1.0 - rebound)), escape))
+    return np.asarray(np.where(w < x, np.maximum(escape, rebound - 1.0), escape))

@@ -57,6 +57,8 @@ class Response:
     peak_mode : int32 array
         Which lobe holds the peak: 2 x (impacts before it) + (1 if reached in free rocking); -1 where there is none.
         Within one mode the peak is a smooth function of the groups.
+    end_rotation, end_velocity : float arrays [-]
+        |theta|/alpha and its rate with respect to tau at the end of the pulse, or when the block was known to overturn.
     """
 
     peak_rotation: NDArray[np.float64]
@@ -68,6 +70,8 @@ class Response:
     first_impact_time: NDArray[np.float64]
     first_impact_velocity: NDArray[np.float64]
     peak_mode: NDArray[np.int32]
+    end_rotation: NDArray[np.float64]
+    end_velocity: NDArray[np.float64]
 
     @property
     def overturned(self) -> NDArray[np.bool_]:

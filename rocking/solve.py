@@ -17,8 +17,8 @@ from rocking.response import Response
 from rocking.rock_many import rock_many
 from rocking.scratch import ANSWER, FINEST, prepared, prepared_steps
 
-CHUNK = 4096
-"""Cells handed to one thread at a time: about a millisecond of work, fine enough to balance the threads."""
+SMALLEST_SHARE, LARGEST_SHARE = 256, 4096
+"""Cells handed to one thread at a time: at least a tenth of a millisecond of work, at most some."""
 
 
 SMALLEST_SLENDERNESS = 1e-12
@@ -119,7 +119,7 @@ def peak_response(
     answers = _rock(made, cells, precision, threads)
     if precision > FINEST:
         margin = fate_margin(answers["end_z"], answers["end_w"], cells[2], cells[3])
-        near = np.flatnonzero(margin < CLOSE + 100.0 * allowed)
+        near = np.flatnonzero(np.abs(margin) < CLOSE + 100.0 * allowed)
         answers[near] = _rock(made, [cell[near] for cell in cells], FINEST, threads)
     found = {name: np.ascontiguousarray(answers[name]).reshape(shape) for name in ANSWER.names or ()}
     peak = found["peak"]
@@ -133,6 +133,8 @@ def peak_response(
         first_impact_time=found["first_time"],
         first_impact_velocity=found["first_velocity"],
         peak_mode=found["mode"],
+        end_rotation=found["end_z"],
+        end_velocity=found["end_w"],
     )
 
 
@@ -144,14 +146,17 @@ def _rock(
     answers = np.empty(size, ANSWER)
     flight = prepared(pulse)
 
+    cores = int(threads) if threads else os.cpu_count() or 1
+    share = min(max(math.ceil(size / cores), SMALLEST_SHARE), LARGEST_SHARE)
+
     def fill(start: int) -> None:
-        part = slice(start, start + CHUNK)
+        part = slice(start, start + share)
         rock_many(
             *(cell[part] for cell in cells), np.repeat(flight, LANES), prepared_steps(flight, precision), answers[part]
         )
 
-    starts = range(0, size, CHUNK)
-    workers = min(int(threads) if threads else os.cpu_count() or 1, len(starts))
+    starts = range(0, size, share)
+    workers = min(cores, len(starts))
     if workers <= 1:
         for start in starts:
             fill(start)

@@ -55,7 +55,7 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         curves.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
-        f"overturn from blocks which survive, each point bisected with the solver to {RESOLUTION:g}.",
+        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}.",
         history="rocking.boundary.overturning_boundary",
         id=f"overturning/{pulse}/eta-{restitution:.2f}",
     )
