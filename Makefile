@@ -33,8 +33,10 @@ test: .venv/project ## format, lint, types and all tests, among them a small rea
 serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results
 
-bench: .venv/project ## time per cell of the solver beside a general-purpose integrator
-	python -m benchmarks.slender_cell
+bench: .venv/project ## time per cell against error beside general integrators, error against tolerance; some minutes
+	@echo 'Slender cells ...'; python -m benchmarks.slender_cell
+	@echo; echo 'Rigid cells ...'; python -m benchmarks.rigid_cell
+	@echo; echo 'Tolerance ...'; python -m benchmarks.tolerance
 
 lock: ## resolve pyproject.toml anew into environment.lock (UPGRADE=--upgrade for the newest versions)
 	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
