@@ -42,7 +42,7 @@ def polish(
     `deflated` takes the series divided by h, to leave out its zero at the start of a flight.
     """
     h = guess if lo < guess < hi else 0.5 * (lo + hi)
-    before, rate = hi - lo, 0.0
+    before, rate = 0.0, 0.0
     for _ in range(100):
         value, rate = value_and_slope(series, lane, top, h)
         if deflated:

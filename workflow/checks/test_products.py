@@ -72,7 +72,7 @@ def test_fate_changes_across_each_boundary_as_its_file_states(name: str) -> None
         curves = curves_at(stored, alpha)
         # after many impacts regions lie in layers, some thinner than a millionth and a few than the smallest step
         agrees = np.array([_as_stated(curves, step) for step in STEPS])
-        assert agrees[0].mean() > 0.8
+        assert agrees[0].mean() > 0.7
         assert agrees.any(axis=0).mean() > 0.95
 
 
