@@ -16,7 +16,7 @@ from starlette.staticfiles import StaticFiles
 from api.answers import VERSION
 from api.problems import RESPONSES, Problem, add_handlers
 from api.questions import BatchQuestion
-from api.routes import blocks, datasets, health, history, overturning, pages, response, spectrum
+from api.routes import blocks, control_map, datasets, health, history, overturning, pages, response, spectrum
 from api.service import Service
 from api.settings import Settings
 from api.zarr_view import ZarrViews
@@ -51,7 +51,7 @@ def create_app(settings: Settings) -> FastAPI:
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest"],
         )
     add_handlers(app)
-    for module in (response, blocks, spectrum, overturning, history, datasets, health, pages):
+    for module in (response, blocks, spectrum, control_map, overturning, history, datasets, health, pages):
         app.include_router(module.router)
     app.mount("/static", StaticFiles(directory=pages.STATIC))
     _describe_bodies(app)

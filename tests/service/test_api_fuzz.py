@@ -21,6 +21,7 @@ OPERATIONS = [
     ("/v1/response", "GET"),
     ("/v1/response", "POST"),
     ("/v1/spectrum", "GET"),
+    ("/v1/map", "GET"),
     ("/v1/history", "GET"),
     ("/v1/blocks/response", "GET"),
     ("/v1/datasets", "GET"),

@@ -98,6 +98,7 @@ def test_openapi_describes_every_route(client):
     assert set(described["paths"]) == {
         "/v1/response",
         "/v1/spectrum",
+        "/v1/map",
         "/v1/overturning",
         "/v1/history",
         "/v1/blocks/response",
