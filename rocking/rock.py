@@ -147,18 +147,26 @@ def first_flight_again(flight: Record, eta: float) -> bool:
 
 
 @kernel
-def advance(flight: Record, steps: Record, eta: float) -> bool:
-    """Follow the next flight to its end; False if there is none, or if it was the last."""
+def advance_by_arc(flight: Record, eta: float) -> bool:
+    """Follow the next flight of a slender block under sinusoids to its end; False if there is none, or no other."""
     if not take_off(flight):
         return False
-    if flight.by_arcs == 0:
-        ended, w, z = fly_steps(flight, steps)
-        flight.length, top = flight.elapsed, flight.largest
-        return touch_down(flight, eta, ended, w, z, top)
     to_cut = (flight.cut_phase[flight.interval + 1] - flight.phase) / flight.omega
     ended, z = IMPACT, 0.0
     h, w, top = hop(flight, to_cut, flight.peak)
     if h < 0.0:
         ended, h, w, z, top = fly(flight)
     flight.length = h
+    return touch_down(flight, eta, ended, w, z, top)
+
+
+@kernel
+def advance(flight: Record, steps: Record, eta: float) -> bool:
+    """The same for any block and pulse."""
+    if flight.by_arcs == 1:
+        return advance_by_arc(flight, eta)
+    if not take_off(flight):
+        return False
+    ended, w, z = fly_steps(flight, steps)
+    flight.length, top = flight.elapsed, flight.largest
     return touch_down(flight, eta, ended, w, z, top)

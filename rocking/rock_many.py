@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from rocking.compilation import Record, Vector, kernel
 from rocking.lanes import LANES
-from rocking.rock import advance, begin, first_flight_again, take_off, touch_down
+from rocking.rock import advance_by_arc, begin, first_flight_again, take_off, touch_down
 from rocking.scratch import UNDERWAY
 from rocking.taylor_flight import follow_step, start_steps
 from rocking.taylor_step import set_block, take_step
@@ -30,7 +30,7 @@ def same_cell(i: int, j: int, slenderness: Vector, omega: Vector, alpha: Vector)
 
 
 @kernel
-def next_eta(flight: Record, steps: Record, eta: Vector, answers: Record) -> bool:
+def next_eta(flight: Record, eta: Vector, answers: Record) -> bool:
     """Write down the answer of a cell that is done and go on with its next eta; False if that was the last.
 
     By Taylor steps it stops where the next flight begins, by arcs it runs to the end.
@@ -45,7 +45,7 @@ def next_eta(flight: Record, steps: Record, eta: Vector, answers: Record) -> boo
         going = first_flight_again(flight, eta[flight.cell])
         if flight.by_arcs == 1:
             while going:
-                going = advance(flight, steps, eta[flight.cell])
+                going = advance_by_arc(flight, eta[flight.cell])
         elif going and take_off(flight):
             return True
 
@@ -71,13 +71,13 @@ def next_cell(
         i = flight.cell
         begin(slenderness[i], omega[i], alpha[i], flight)
         if flight.by_arcs == 1:
-            while advance(flight, steps, eta[i]):
+            while advance_by_arc(flight, eta[i]):
                 pass
         elif take_off(flight):
             set_block(steps, lane, flight.alpha, flight.omega)
             start_steps(flight, steps, lane)
             return following
-        next_eta(flight, steps, eta, answers)
+        next_eta(flight, eta, answers)
     flight.cell = -1
     return following
 
@@ -119,7 +119,7 @@ def rock_many(
                 continue
             flight.length = flight.elapsed
             going = touch_down(flight, eta[flight.cell], ended, w, z, flight.largest) and take_off(flight)
-            if going or next_eta(flight, steps, eta, answers):
+            if going or next_eta(flight, eta, answers):
                 start_steps(flight, steps, lane)
                 continue
             following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, answers)

@@ -121,7 +121,7 @@ def peak_response(
         margin = fate_margin(answers["end_z"], answers["end_w"], cells[2], cells[3])
         near = np.flatnonzero(np.abs(margin) < CLOSE + 100.0 * allowed)
         answers[near] = _rock(made, [cell[near] for cell in cells], FINEST, threads)
-    found = {name: np.ascontiguousarray(answers[name]).reshape(shape) for name in ANSWER.names or ()}
+    found = {name: answers[name].reshape(shape) for name in ANSWER.names or ()}
     peak = found["peak"]
     return Response(
         peak_rotation=peak,
