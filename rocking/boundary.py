@@ -195,7 +195,7 @@ def overturning_boundary(
     in_range("slenderness[1]", top, bottom, 1.0, closed="right")
     made = as_pulse(pulse)
     classify = _classifier(made, restitution, alpha)
-    axes = np.linspace(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
+    axes = _spaced(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
     codes, _ = classify(*np.meshgrid(*axes, indexing="ij"))
 
     inside, outside, sizes, own = [np.empty((0, 2))], [np.empty((0, 2))], [], [np.empty(0, np.int64)]
@@ -214,6 +214,16 @@ def overturning_boundary(
     return _as_dataset(points, starts, code[starts], neighbour[starts]).assign_attrs(
         pulse=made.name, restitution=float(restitution), alpha=float(alpha or 0.0)
     )
+
+
+def _spaced(low: float, high: float, nodes: int) -> Floats:
+    """Nodes from `low` to `high`, as dense as half of them uniform and half of them uniform in the logarithm.
+
+    Near onset the regions are thin in 1/a, under strong pulses in a.
+    """
+    fine = np.linspace(low, high, 16 * nodes)
+    passed = (fine - low) / (high - low) + np.log(fine / low) / np.log(high / low)
+    return np.interp(np.linspace(0.0, 2.0, nodes), passed, fine)
 
 
 def _grid_edges(line: Floats, axes: tuple[Floats, Floats], region: NDArray[np.bool_]) -> tuple[Floats, Floats]:
