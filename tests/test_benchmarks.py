@@ -97,7 +97,7 @@ def test_numbalsoda_finds_the_truth(standing: truth.Cells, flight: str, error: f
     np.testing.assert_allclose(found, standing.peak_rotation, rtol=error)
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_grid_keeps_to_the_tolerance(grid: truth.Cells, tolerance: float) -> None:
     found = accuracy(ours(tolerance, grid), grid.peak_rotation)
     assert found["wrong_fates"] == 0
