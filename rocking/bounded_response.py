@@ -11,10 +11,7 @@ from rocking.response import Outcome
 from rocking.solve import peak_response
 
 SOLVER_ERROR = 1e-12
-"""Relative error of a well-conditioned answer of the slender solver, against multi-precision integration [-]."""
-
-RIGID_ERROR = 1e-10
-"""The same for the rigid equation (2.2) [-]."""
+"""Relative error of a well-conditioned answer of the solver, against multi-precision integration [-]."""
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -80,7 +77,7 @@ def solve_with_bound(
 ) -> BoundedResponse:
     """Ask the solver, and ask it again beside the question to learn how well the question determines the answer.
 
-    The bound is `SOLVER_ERROR` (`RIGID_ERROR`) of the peak, plus the change of the peak under relative changes of
+    The bound is `SOLVER_ERROR` of the peak, plus the change of the peak under relative changes of
     `SOLVER_ERROR` in each of the three groups: rounding errors act like such changes, and beside a fate boundary they
     are amplified.
 
@@ -105,7 +102,7 @@ def solve_with_bound(
     peak, outcome = found.peak_rotation[0], found.outcome[0]
     with np.errstate(invalid="ignore"):
         change = np.abs(found.peak_rotation[1:] - peak).sum(axis=0)
-    bound = np.asarray((RIGID_ERROR if alpha else SOLVER_ERROR) * peak + change)
+    bound = np.asarray(SOLVER_ERROR * peak + change)
     bound[found.overturned.any(axis=0)] = np.inf
     bound[found.overturned[0]] = np.nan
     bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
