@@ -9,8 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rocking
-from rocking.pulses import PULSE_NAMES
 from rocking.lanes import LANES
+from rocking.pulses import PULSE_NAMES
 from rocking.scratch import FINEST, ORDER, prepared, prepared_steps
 from rocking.taylor_events import evaluate, first_crossing, polish, value_and_slope
 from rocking.taylor_step import set_block, take_step
