@@ -11,7 +11,6 @@ import anyio.to_thread
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
-from starlette.staticfiles import StaticFiles
 
 from api.answers import VERSION
 from api.problems import RESPONSES, Problem, add_handlers
@@ -53,7 +52,7 @@ def create_app(settings: Settings) -> FastAPI:
     add_handlers(app)
     for module in (response, blocks, spectrum, control_map, overturning, history, datasets, health, pages):
         app.include_router(module.router)
-    app.mount("/static", StaticFiles(directory=pages.STATIC))
+    app.mount("/static", pages.PageFiles(directory=pages.STATIC))
     _describe_bodies(app)
     return app
 

@@ -2,30 +2,47 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from fastapi.responses import FileResponse
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
 
 STATIC = Path(__file__).parents[1] / "static"
 
+_OURS = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 # styles inside elements and data: images are what swagger-ui needs
-_POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
+_SWAGGER = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
+_ASK_AGAIN = {"Cache-Control": "no-cache"}  # kept by the browser, but asked for again by ETag: no page of two versions
 
 router = APIRouter(include_in_schema=False)
 
 
 @router.get("/")
-async def get_landing_page() -> FileResponse:
-    """A first question, and the way to everything else."""
-    return _page("index.html")
+async def get_explorer() -> FileResponse:
+    """The explorer: a block in metres, the map of all blocks, and how each of them rocks."""
+    return _page("index.html", _OURS)
 
 
 @router.get("/docs")
 async def get_documentation() -> FileResponse:
     """The OpenAPI description, readable."""
-    return _page("docs.html")
+    return _page("docs.html", _SWAGGER)
 
 
-def _page(name: str) -> FileResponse:
-    return FileResponse(STATIC / name, media_type="text/html", headers={"Content-Security-Policy": _POLICY})
+class PageFiles(StaticFiles):
+    """Scripts, styles and libraries of the pages."""
+
+    def file_response(
+        self, full_path: str | os.PathLike[str], stat_result: os.stat_result, scope: Scope, status_code: int = 200
+    ) -> Response:
+        response = super().file_response(full_path, stat_result, scope, status_code)
+        response.headers.update(_ASK_AGAIN)
+        return response
+
+
+def _page(name: str, policy: str) -> FileResponse:
+    headers = {"Content-Security-Policy": policy, "X-Content-Type-Options": "nosniff", **_ASK_AGAIN}
+    return FileResponse(STATIC / name, media_type="text/html", headers=headers)

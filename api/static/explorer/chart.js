@@ -1,0 +1,55 @@
+// A line chart by uPlot in the colours of the page, as wide as its place.
+
+import { onTheme, themed } from "./colours.js";
+import { number } from "./words.js";
+
+const FONT = "12px system-ui, sans-serif";
+
+const live = new Map();
+
+/** An axis with a title. */
+export function axis(label, more = {}) {
+  return {
+    ...(label && { label, labelFont: FONT, labelSize: 20 }),
+    labelGap: 2,
+    font: FONT,
+    size: 44,
+    values: (_, splits) => splits.map((value) => number(value, 4)),
+    stroke: () => themed("ink"),
+    grid: { stroke: () => themed("line"), width: 1 },
+    ticks: { stroke: () => themed("muted"), width: 1, size: 4 },
+    ...more,
+  };
+}
+
+/** A chart in `place`, in the stead of the one that was there; the options are uPlot's, without width. */
+export function chart(place, options, data) {
+  live.get(place)?.destroy();
+  const made = new uPlot(
+    {
+      legend: { show: false },
+      cursor: { drag: { setScale: false, x: false, y: false }, points: { show: false } },
+      ...options,
+      width: Math.max(place.clientWidth, 120),
+    },
+    data,
+    place,
+  );
+  live.set(place, made);
+  return made;
+}
+
+/** The canvas of a chart, for a picture of it. */
+export function canvasOf(place) {
+  return place.querySelector("canvas");
+}
+
+const watch = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const made = live.get(target);
+    if (made && target.clientWidth) made.setSize({ width: target.clientWidth, height: made.height });
+  }
+});
+for (const place of document.querySelectorAll(".chart")) watch.observe(place);
+
+onTheme(() => live.forEach((made) => made.redraw(false)));

@@ -1,0 +1,69 @@
+// What is shown, to keep: numbers from the service, pictures from the page, and the address of it all.
+
+import { canvasOf } from "./chart.js";
+import { themed } from "./colours.js";
+import { drawLegend } from "./legend.js";
+import { say } from "./page.js";
+
+const FOOT = 34;
+
+/** Set the links of one part of the page: `urls` by form. */
+export function setLinks(part, urls) {
+  for (const link of document.querySelectorAll(`[data-links=${part}] a`)) link.href = urls[link.dataset.form];
+}
+
+/** Wire the picture buttons and the link button; `caption()` words what is shown. */
+export function wireDownloads(caption) {
+  const layers = {
+    map: () => [["map", "map-marks"].map((id) => document.getElementById(id))],
+    motion: () => ["rotation", "acceleration-chart"].map((id) => [canvasOf(document.getElementById(id))]),
+    spectrum: () => [[canvasOf(document.getElementById("spectrum-chart"))]],
+  };
+  for (const button of document.querySelectorAll("[data-picture]")) {
+    button.addEventListener("click", () => {
+      const part = button.dataset.picture;
+      save(part, layers[part](), caption());
+    });
+  }
+  document.getElementById("copy").addEventListener("click", copyAddress);
+}
+
+/** One picture: rows of canvases below each other, those of a row on top of each other, the caption at the foot. */
+function save(part, rows, caption) {
+  const ratio = devicePixelRatio;
+  const legend = part === "map" ? 24 : 0;
+  const made = document.createElement("canvas");
+  made.width = Math.max(...rows.map(([first]) => first.width));
+  made.height = rows.reduce((sum, [first]) => sum + first.height, (FOOT + legend) * ratio);
+  const pen = made.getContext("2d");
+  pen.fillStyle = themed("paper");
+  pen.fillRect(0, 0, made.width, made.height);
+  let y = 0;
+  for (const row of rows) {
+    for (const layer of row) pen.drawImage(layer, 0, y);
+    y += row[0].height;
+  }
+  if (legend) drawLegend(pen, 12 * ratio, y + 8 * ratio, Math.min(ratio, made.width / 800));
+  pen.fillStyle = themed("ink");
+  pen.font = `${12 * ratio}px system-ui, sans-serif`;
+  pen.textBaseline = "middle";
+  pen.fillText(caption, 12 * ratio, made.height - (FOOT / 2) * ratio, made.width - 24 * ratio);
+  made.toBlob((blob) => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(blob);
+    link.download = `${part}.png`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  });
+}
+
+async function copyAddress() {
+  const place = document.getElementById("copied");
+  try {
+    await navigator.clipboard.writeText(location.href);
+    say(place, "Copied.");
+  } catch {
+    say(place, "Copy it from the address bar.");
+  }
+}
+

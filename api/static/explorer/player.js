@@ -1,0 +1,64 @@
+// Play, pause, speed and time of the film.
+
+const button = document.getElementById("play");
+const slider = document.getElementById("time");
+const speed = document.getElementById("speed");
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** Seconds per unit of tau without a block in metres: those of a block with p = 2 rad/s, R = 1.8 m. */
+const SECONDS = 0.5;
+
+let reel = null; // { end, seconds, show }
+let tau = 0;
+let last = null; // clock of the frame before, null while paused
+
+/** Wind on a film that ends at `end` [tau]; `size` gives real time, `show(tau)` draws. Plays at once if asked to. */
+export function wind(end, size, show, atOnce) {
+  reel = { end, seconds: size ? 1 / size.p : SECONDS, show };
+  slider.max = end;
+  slider.step = end / 1000;
+  seek(0);
+  if (atOnce && !still.matches) play();
+  else pause();
+}
+
+/** Go to a time. */
+export function seek(to) {
+  tau = Math.min(Math.max(to, 0), reel.end);
+  slider.value = tau;
+  slider.setAttribute("aria-valuetext", reel.show(tau));
+}
+
+/** Show the time that is on again. */
+export function refresh() {
+  if (reel) seek(tau);
+}
+
+function play() {
+  if (tau >= reel.end) seek(0);
+  const running = last !== null;
+  last = performance.now();
+  button.textContent = "Pause";
+  button.setAttribute("aria-pressed", "true");
+  if (!running) requestAnimationFrame(step);
+}
+
+function pause() {
+  last = null;
+  button.textContent = "Play";
+  button.setAttribute("aria-pressed", "false");
+}
+
+function step(now) {
+  if (last === null) return;
+  seek(tau + (Math.max(now - last, 0) / 1000 / reel.seconds) * Number(speed.value));
+  last = now;
+  if (tau >= reel.end) pause();
+  else requestAnimationFrame(step);
+}
+
+button.addEventListener("click", () => (last === null ? play() : pause()));
+slider.addEventListener("input", () => {
+  pause();
+  seek(Number(slider.value));
+});

@@ -1,0 +1,148 @@
+// The rocking spectrum at the chosen slenderness: peak against frequency ratio, other restitutions beside it.
+
+import { ask, urlOf } from "./api.js";
+import { axis, chart } from "./chart.js";
+import { hatch, themed } from "./colours.js";
+import { say } from "./page.js";
+import { number } from "./words.js";
+
+const OTHERS = [0.8, 0.88, 0.96];
+const POINTS = 400;
+
+const section = document.getElementById("spectrum");
+const status = document.getElementById("spectrum-status");
+const caption = document.getElementById("spectrum-caption");
+const place = document.getElementById("spectrum-chart");
+
+let latest = null;
+
+/** Show the spectrum through the point of a situation, over the window of the map. */
+export async function showSpectrum(situation, view) {
+  section.classList.toggle("empty", !situation.point);
+  if (!situation.point) return;
+  latest = situation;
+  say(status, "Drawing the spectrum …");
+  const question = spectrumQuestion(situation, view);
+  try {
+    const found = await Promise.all(
+      [question.restitution, ...OTHERS].map((restitution, at) =>
+        ask(`spectrum ${at}`, "/v1/spectrum", { ...question, restitution }),
+      ),
+    );
+    if (found.includes(null) || latest !== situation) return;
+    say(status, "");
+    draw(situation, found);
+  } catch (problem) {
+    say(status, problem);
+  }
+}
+
+/** The address of the spectrum with all its digits, in a form. */
+export function spectrumUrl(situation, view, format) {
+  return urlOf("/v1/spectrum", { ...spectrumQuestion(situation, view), format });
+}
+
+function spectrumQuestion({ pulse, restitution, alpha_deg, point }, view) {
+  const { frequency_ratio_min, frequency_ratio_max } = view;
+  const { slenderness } = point;
+  return { pulse, restitution, alpha_deg, slenderness, frequency_ratio_min, frequency_ratio_max, points: POINTS };
+}
+
+function draw(situation, [chosen, ...others]) {
+  const shades = others.map(() => ({ stroke: () => themed("muted"), width: 1, spanGaps: false }));
+  const series = [{}, ...shades, { stroke: () => themed("accent"), width: 2.5, spanGaps: false }];
+  const tell = ({ cursor }) => {
+    caption.textContent = inWords(situation, chosen, cursor.idx);
+  };
+  chart(
+    place,
+    {
+      height: 300,
+      series,
+      axes: [
+        axis("frequency ratio ω", { filter: (_, splits) => splits, values: (_, splits) => splits.map(label), size: 30 }),
+        axis("peak rotation θ/α"),
+      ],
+      scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, Math.max(1.2, high * 1.2)] } },
+      hooks: {
+        drawClear: [(u) => shadeFalls(u, chosen)],
+        draw: [(u) => nameOthers(u, others), (u) => markPoint(u, situation.point)],
+        setCursor: [tell],
+      },
+    },
+    [chosen.frequency_ratio, ...others.map((one) => one.peak_rotation), chosen.peak_rotation],
+  );
+  caption.textContent = inWords(situation, chosen, null);
+}
+
+function inWords({ restitution, point }, chosen, at) {
+  if (at !== null && at !== undefined) {
+    const omega = `ω ${number(chosen.frequency_ratio[at])}`;
+    return chosen.overturned[at] ? `${omega}: falls` : `${omega}: peak ${chosen.peak_rotation[at].toFixed(4)} α`;
+  }
+  const others = OTHERS.map((eta) => number(eta, 2)).join(", ");
+  return (
+    `1/a = ${number(point.slenderness)}, η = ${number(restitution)}; thin: η = ${others}. ` +
+    "Hatched: the block falls; dashed: the chosen frequency ratio."
+  );
+}
+
+function label(value) {
+  if (value === null) return "";
+  const digit = value.toExponential().split("e")[0];
+  return ["1", "2", "3", "5", "7"].includes(digit) ? number(value, 3) : "";
+}
+
+/** Hatch the frequency ratios at which the chosen block falls. */
+function shadeFalls(u, chosen) {
+  const { ctx, bbox } = u;
+  const omega = chosen.frequency_ratio;
+  ctx.save();
+  for (const fate of ["OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"]) {
+    ctx.fillStyle = hatch(ctx, fate, devicePixelRatio);
+    chosen.outcome.forEach((outcome, at) => {
+      if (outcome !== fate) return;
+      const left = u.valToPos(Math.sqrt(omega[at] * omega[Math.max(at - 1, 0)]), "x", true);
+      const right = u.valToPos(Math.sqrt(omega[at] * omega[Math.min(at + 1, omega.length - 1)]), "x", true);
+      ctx.fillRect(left, bbox.top, right - left + 1, bbox.height);
+    });
+  }
+  ctx.restore();
+}
+
+/** Write each restitution above the highest place of its curve's last stretch. */
+function nameOthers(u, others) {
+  const { ctx } = u;
+  ctx.save();
+  ctx.fillStyle = themed("ink");
+  ctx.strokeStyle = themed("paper");
+  ctx.lineWidth = 3 * devicePixelRatio;
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.textAlign = "center";
+  others.forEach(({ frequency_ratio, peak_rotation }, n) => {
+    const from = peak_rotation.lastIndexOf(null) + 1;
+    const stretch = peak_rotation.slice(from);
+    const top = Math.max(...stretch);
+    if (!stretch.length || top > u.scales.y.max) return;
+    const x = u.valToPos(frequency_ratio[from + stretch.indexOf(top)], "x", true);
+    const y = u.valToPos(top, "y", true) - (5 + 12 * n) * devicePixelRatio; // stairs, so that they do not meet
+    ctx.strokeText(`η ${number(OTHERS[n], 2)}`, x, y);
+    ctx.fillText(`η ${number(OTHERS[n], 2)}`, x, y);
+  });
+  ctx.restore();
+}
+
+function markPoint(u, point) {
+  const { ctx, bbox } = u;
+  const x = u.valToPos(point.frequency_ratio, "x", true);
+  if (!(x >= bbox.left && x <= bbox.left + bbox.width)) return;
+  ctx.save();
+  ctx.strokeStyle = themed("ink");
+  ctx.lineWidth = 1.5 * devicePixelRatio;
+  ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(x, bbox.top);
+  ctx.lineTo(x, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.restore();
+}

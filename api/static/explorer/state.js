@@ -1,0 +1,69 @@
+// Everything the page shows follows from its address: names and numbers as they stand in the URL, as text.
+
+export const DEFAULTS = {
+  pulse: "sine",
+  restitution: "0.85",
+  alpha_deg: "0",
+  frequency_ratio: "",
+  slenderness: "",
+  frequency_ratio_min: "",
+  frequency_ratio_max: "",
+  slenderness_min: "",
+  slenderness_max: "",
+  // a block in metres, each with its unit, as "0.4 m"; it takes the place of alpha_deg and of the point above
+  width: "",
+  height: "",
+  acceleration: "",
+  period: "",
+};
+
+const listeners = [];
+let current = read();
+
+function read() {
+  const given = new URLSearchParams(location.search);
+  const found = { ...DEFAULTS };
+  for (const name of Object.keys(DEFAULTS)) if (given.has(name)) found[name] = given.get(name);
+  return found;
+}
+
+/** The state now. */
+export function state() {
+  return current;
+}
+
+/** The address that shows a state. */
+export function addressOf(wanted) {
+  const told = Object.entries(wanted).filter(([name, value]) => value !== DEFAULTS[name]);
+  const query = new URLSearchParams(told).toString();
+  return query ? `?${query}` : location.pathname;
+}
+
+/** Whether a block in metres is asked about, rather than a point of the map. */
+export function isBlock(wanted) {
+  return wanted.width !== "" || wanted.height !== "";
+}
+
+/** Change some of the state; `keep` makes a step to which the browser's back button returns. */
+export function change(parts, { keep = true } = {}) {
+  const before = addressOf(current);
+  current = { ...current, ...parts };
+  const after = addressOf(current);
+  if (after !== before && keep) history.pushState(null, "", after);
+  else history.replaceState(null, "", after);
+  tell();
+}
+
+/** Call `listener(state)` after every change, the back and forward buttons among them. */
+export function onChange(listener) {
+  listeners.push(listener);
+}
+
+function tell() {
+  for (const listener of listeners) listener(current);
+}
+
+addEventListener("popstate", () => {
+  current = read();
+  tell();
+});

@@ -1,0 +1,46 @@
+// The window of the map: whole unless the address says otherwise, widened to hold the chosen point, and zoomed.
+
+const WHOLE = { frequency_ratio_min: 0.5, frequency_ratio_max: 12, slenderness_min: 0.01, slenderness_max: 1.05 };
+const MOST_SLENDER = 2;
+const LEAST_SPAN = 1e-3;
+
+/** The four borders as numbers; `point` (or null) lies inside unless it never uplifts by far. */
+export function windowOf(state, point) {
+  const found = { ...WHOLE };
+  if (point && !asked(state)) {
+    const { frequency_ratio: omega, slenderness: s } = point;
+    if (omega < found.frequency_ratio_min) found.frequency_ratio_min = omega / 1.5;
+    if (omega > found.frequency_ratio_max) found.frequency_ratio_max = omega * 1.5;
+    if (s < found.slenderness_min * 2) found.slenderness_min = s / 2;
+    if (s > found.slenderness_max) found.slenderness_max = Math.min(s * 1.05, MOST_SLENDER);
+  }
+  for (const name of Object.keys(WHOLE)) if (state[name] !== "") found[name] = Number(state[name]);
+  return found;
+}
+
+/** What to write into the state for the whole map. */
+export function whole() {
+  return Object.fromEntries(Object.keys(WHOLE).map((name) => [name, ""]));
+}
+
+/** What to write into the state to see `factor` of the window's sides about a point of it. */
+export function zoomed(view, about, factor) {
+  const bends = { frequency_ratio: [Math.log, Math.exp], slenderness: [(x) => x, (x) => x] };
+  const parts = {};
+  for (const [name, [bend, back]] of Object.entries(bends)) {
+    const [low, high] = [bend(view[`${name}_min`]), bend(view[`${name}_max`])];
+    const at = Math.min(Math.max(bend(about[name]), low), high);
+    const span = Math.max((high - low) * factor, LEAST_SPAN);
+    const share = (at - low) / (high - low);
+    let [from, to] = [at - share * span, at + (1 - share) * span];
+    if (name === "slenderness" && from < WHOLE.slenderness_min) from = Math.min(low, WHOLE.slenderness_min);
+    if (name === "slenderness") to = Math.min(to, MOST_SLENDER);
+    parts[`${name}_min`] = Number(back(from).toPrecision(5)).toString();
+    parts[`${name}_max`] = Number(back(to).toPrecision(5)).toString();
+  }
+  return parts;
+}
+
+function asked(state) {
+  return Object.keys(WHOLE).some((name) => state[name] !== "");
+}

@@ -1,0 +1,56 @@
+// Numbers and fates as people say them.
+
+export const FATES = {
+  NO_UPLIFT: "never lifts off the ground",
+  SAFE: "rocks and comes to rest",
+  OVERTURNED_DIRECTLY: "falls without an impact",
+  OVERTURNED_AFTER_IMPACT: "falls after impacts",
+};
+
+export const PULSES = {
+  sine: "One full sine",
+  cosine: "One full cosine",
+  half_sine: "Half a sine",
+  rectangular: "Rectangular",
+  c1: "Type C1, 1.5 cycles",
+  c2: "Type C2, 2.5 cycles",
+  ricker: "Ricker wavelet",
+  ricker_antisymmetric: "Ricker wavelet, antisymmetric",
+  mavroeidis_papageorgiou: "Mavroeidis and Papageorgiou",
+};
+
+/** A number to some significant digits, without trailing noughts. */
+export function number(value, digits = 3) {
+  if (Math.abs(value) < 1e-14) return "0";
+  const text = Number(value).toPrecision(digits);
+  const plain = text.includes("e") ? Number(text).toString() : text;
+  return plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain;
+}
+
+/** A bound of an error: one digit suffices, 5e-11 is 5·10⁻¹¹. */
+export function bound(value) {
+  if (value >= 1e-3 || value === 0) return number(value, 1);
+  const [digit, power] = value.toExponential(0).split("e-");
+  return `${digit}·10⁻${[...power].map((figure) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[figure]).join("")}`;
+}
+
+/** A length in the unit that suits it. */
+export function length(metres) {
+  if (Math.abs(metres) < 1e-3) return `${number(metres * 1e3, 2)} mm`;
+  return Math.abs(metres) < 1 ? `${number(metres * 100, 3)} cm` : `${number(metres, 3)} m`;
+}
+
+/** "1 impact", "3 impacts". */
+export function impacts(count) {
+  return count === 1 ? "1 impact" : `${count} impacts`;
+}
+
+/** What the solver says of one point, in a line. */
+export function answerInWords(found) {
+  const fate = FATES[found.outcome];
+  if (found.overturned) return found.impacts ? `falls after ${impacts(found.impacts)}` : fate;
+  if (found.outcome === "NO_UPLIFT") return fate;
+  const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
+  const beyond = found.exceeded_alpha ? "; it passes α and is brought back" : "";
+  return `${fate}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${beyond}`;
+}
