@@ -1,0 +1,108 @@
+"""Frequencies at which the fate of a block changes while the amplitude of its pulse stays: other periods, other sizes.
+
+At one slenderness the frequency ratio omega_g/p is all that a longer pulse or a larger block of the same shape changes,
+and both change it in the same way: omega falls as 1/T_p and grows as the square root of R (2.2). So one line through
+the control space tells the critical periods of a block and the critical sizes of a shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.boundary import RESOLUTION, fate_code, shrink
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.fate_margin import fate_margin
+from rocking.pulses import AbstractPulse
+from rocking.solve import FREQUENCY_RATIOS, as_pulse, peak_response
+
+NODES_PER_DECADE = 1000
+"""Nodes on which fates are looked for, before their changes are refined [-]."""
+
+ROUNDS = 32
+"""Times that brackets are shrunk: each may uncover a further fate between the two at its ends."""
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class FrequencyThresholds:
+    """Frequency ratios at which the fate of a block changes, ascending; arrays (thresholds,).
+
+    Attributes
+    ----------
+    frequency_ratio : float array [-]
+        omega = omega_g/p; the block overturns at it, and stands within a relative `RESOLUTION` of it.
+    overturns_above : bool array
+        True where the block overturns just above the threshold and stands just below it.
+    overturns_at_ends : (bool, bool)
+        Whether it overturns at the lower and at the upper end of the window.
+    """
+
+    frequency_ratio: Floats
+    overturns_above: Flags
+    overturns_at_ends: tuple[bool, bool]
+
+
+def critical_frequency_ratio(
+    pulse: str | AbstractPulse,
+    *,
+    slenderness: float,
+    restitution: float,
+    window: tuple[float, float],
+    alpha: float | None = None,
+) -> FrequencyThresholds:
+    """Every frequency ratio of a window at which the fate changes, the amplitude being fixed.
+
+    Parameters
+    ----------
+    pulse, slenderness, restitution, alpha
+        As for `peak_response`; scalars.
+    window : (float, float)
+        Smallest and largest omega = omega_g/p looked at [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
+
+    Returns
+    -------
+    FrequencyThresholds
+        Each good to a relative `RESOLUTION`. A region narrower than 1/1000 of a decade that lies between equal fates
+        can be missed; a safe band between two ways of overturning is not, unless it is narrower than `RESOLUTION`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    """
+    made = as_pulse(pulse)
+    low, high = (float(in_range("window", end, *FREQUENCY_RATIOS)) for end in window)
+    if not low < high <= 1e4 * low:
+        raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
+
+    def classify(s: Floats, log_omega: Floats) -> tuple[NDArray[np.int64], Floats]:
+        omega = np.clip(np.exp(log_omega), low, high)  # rounding must not lead out of the window
+        found = peak_response(made, slenderness=s, frequency_ratio=omega, restitution=restitution, alpha=alpha)
+        margin = fate_margin(
+            found.end_rotation, found.end_velocity, np.asarray(restitution, float), np.asarray(alpha or 0.0)
+        )
+        return fate_code(found), margin
+
+    grid = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
+    codes, _ = classify(np.full(grid.size, slenderness), grid)
+    for _ in range(ROUNDS):
+        edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
+        if edge.size == 0:
+            break
+        # where the fate at the left end stops; a third fate met there becomes a node, and a new edge
+        left, right = (np.stack(np.broadcast_arrays(slenderness, grid[k]), axis=-1) for k in (edge, edge + 1))
+        inside, outside = shrink(left, right, codes[edge], classify)
+        met, _ = classify(outside[:, 0], outside[:, 1])
+        grid = np.concatenate([grid, inside[:, 1], outside[:, 1]])
+        codes = np.concatenate([codes, codes[edge], met])
+        grid, kept = np.unique(grid, return_index=True)
+        codes = codes[kept]
+    falls = codes > 0
+    edge = np.flatnonzero(falls[1:] != falls[:-1])
+    above = falls[edge + 1]
+    return FrequencyThresholds(np.exp(grid[np.where(above, edge + 1, edge)]), above, (bool(falls[0]), bool(falls[-1])))
