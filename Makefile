@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce test serve bench lock environment FORCE
+.PHONY: help reproduce test browser serve bench lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -23,12 +23,15 @@ help: ## show this list
 reproduce: .venv/project ## data sets, figures and claims of the paper into results/ (CONFIG=FILE for another configuration)
 	snakemake $(if $(CONFIG),--configfile $(CONFIG))
 
-test: .venv/project ## format, lint, types and all tests, among them a small real run of the workflow
+test: .venv/project browser ## format, lint, types and all tests, among them a small real run of the workflow
 	ruff format --check .
 	ruff check .
 	mypy
 	snakefmt --check Snakefile workflow
 	pytest
+
+browser: .venv/project ## a Chromium for the tests of the page, fetched if there is none (ROCKING_NO_BROWSER=1: without)
+	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.service.chromium
 
 serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results

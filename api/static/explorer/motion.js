@@ -95,7 +95,7 @@ function drawCharts(history, units, dimensional) {
 }
 
 function line(place, height, axes, data, hooks) {
-  const series = [{}, { stroke: () => themed("accent"), width: 2 }];
+  const series = [{}, { stroke: () => themed("accent"), width: 2, pxAlign: 0 }];
   const made = chart(place, { height, axes, series, hooks, scales: { x: { time: false } } }, data);
   made.over.append(Object.assign(document.createElement("div"), { className: "cursor" }));
   return made;

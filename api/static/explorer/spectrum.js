@@ -49,8 +49,8 @@ function spectrumQuestion({ pulse, restitution, alpha_deg, point }, view) {
 }
 
 function draw(situation, [chosen, ...others]) {
-  const shades = others.map(() => ({ stroke: () => themed("muted"), width: 1, spanGaps: false }));
-  const series = [{}, ...shades, { stroke: () => themed("accent"), width: 2.5, spanGaps: false }];
+  const shades = others.map(() => ({ stroke: () => themed("muted"), width: 1, spanGaps: false, pxAlign: 0 }));
+  const series = [{}, ...shades, { stroke: () => themed("accent"), width: 2.5, spanGaps: false, pxAlign: 0 }];
   const tell = ({ cursor }) => {
     caption.textContent = inWords(situation, chosen, cursor.idx);
   };
