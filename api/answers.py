@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, Field
 
+from api.formats import Column
+from api.points import Point
 from api.questions import HistoryQuestion, OverturningQuestion, ResponseQuestion
 from rocking.bounded_response import BoundedResponse
 from rocking.response import Outcome
@@ -164,43 +166,49 @@ class Health(BaseModel):
     status: str = Field(description="ok, or degraded: it answers by the solver where data sets are missing or damaged")
     version: str = VERSION
     datasets: int = Field(description="data sets found")
+    unchecked: int = Field(0, description="of these, not yet read and checked: ask again in a moment")
     problems: dict[str, str] = Field(description="what is missing or damaged, by name")
 
 
 def columns_of(found: BoundedResponse) -> dict[str, Any]:
     """The fields of `Columns` as plain lists."""
+    return {name: column.tolist() for name, column in arrays_of(found).items()}
+
+
+def arrays_of(found: BoundedResponse) -> dict[str, Column]:
+    """The same as arrays (points,)."""
     return {
-        "peak_rotation": found.peak_rotation.tolist(),
-        "overturned": found.overturned.tolist(),
-        "outcome": np.array(OUTCOMES)[found.outcome].tolist(),
-        "impacts": found.impacts.tolist(),
-        "exceeded_alpha": found.exceeded_alpha.tolist(),
-        "error_bound": found.error_bound.tolist(),
-        "source": found.source.tolist(),
+        "peak_rotation": found.peak_rotation,
+        "overturned": found.overturned,
+        "outcome": np.array(OUTCOMES)[found.outcome],
+        "impacts": found.impacts,
+        "exceeded_alpha": found.exceeded_alpha,
+        "error_bound": found.error_bound,
+        "source": found.source,
     }
 
 
-def response_answer(question: ResponseQuestion, found: BoundedResponse, versions: tuple[str, ...]) -> ResponseAnswer:
+def response_answer(question: ResponseQuestion, point: Point) -> ResponseAnswer:
     """The answer about one block."""
-    outcome = Outcome(int(found.outcome))
-    bound = float(found.error_bound)
+    outcome = Outcome(point.outcome)
+    overturned = outcome >= Outcome.OVERTURNED_DIRECTLY
     note = None
-    if found.overturned:
+    if overturned:
         note = "the block overturns: there is no peak"
-    elif math.isinf(bound):
+    elif math.isinf(point.error_bound):
         note = "the fate changes within the rounding of the question: there is no bound"
-    return ResponseAnswer(
+    return ResponseAnswer.model_construct(
         query=question,
-        peak_rotation=finite(float(found.peak_rotation)),
-        overturned=bool(found.overturned),
+        peak_rotation=finite(point.peak_rotation),
+        overturned=overturned,
         outcome=outcome.name,
         meaning=outcome.sentence,
-        impacts=int(found.impacts),
-        exceeded_alpha=bool(found.exceeded_alpha),
-        error_bound=finite(bound),
+        impacts=point.impacts,
+        exceeded_alpha=point.exceeded_alpha,
+        error_bound=finite(point.error_bound),
         note=note,
-        source=str(found.source),
-        data_version=versions[0] if versions else None,
+        source=point.source,
+        data_version=point.data_version,
     )
 
 

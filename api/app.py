@@ -13,15 +13,33 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
 from api.answers import VERSION
+from api.observer import Observer
 from api.problems import RESPONSES, Problem, add_handlers
 from api.questions import BatchQuestion
-from api.routes import blocks, control_map, datasets, health, history, overturning, pages, response, spectrum
+from api.routes import (
+    blocks,
+    control_map,
+    critical_amplitude,
+    datasets,
+    health,
+    history,
+    metrics,
+    overturning,
+    pages,
+    response,
+    spectrum,
+)
 from api.service import Service
 from api.settings import Settings
 from api.zarr_view import ZarrViews
 from rocking.lookup_atlas import Atlas
 
 LOG = logging.getLogger("rocking.service")
+
+ROUTES = (
+    *(response, blocks, critical_amplitude, spectrum, control_map, overturning, history),
+    *(datasets, health, metrics, pages),
+)
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -38,19 +56,22 @@ def create_app(settings: Settings) -> FastAPI:
         responses=RESPONSES,
     )
     atlas = Atlas(settings.results)
-    app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
+    service = app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
     # data sets are compressed already, and a compressed answer has no ranges
     binary = ("application/x-netcdf", "application/octet-stream")
-    app.add_middleware(GZipMiddleware, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary))
+    app.add_middleware(
+        GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
+    )
     if settings.cors_origins:
         app.add_middleware(
             CORSMiddleware,
             allow_origins=list(settings.cors_origins),
             allow_methods=["GET", "HEAD", "POST"],
-            expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest"],
+            expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
+    app.add_middleware(Observer, metrics=service.metrics, access_log=settings.access_log)  # the outermost
     add_handlers(app)
-    for module in (response, blocks, spectrum, control_map, overturning, history, datasets, health, pages):
+    for module in ROUTES:
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
     _describe_bodies(app)
@@ -59,23 +80,23 @@ def create_app(settings: Settings) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    """Check the data sets and load the solver in the background, so that the first request need not wait for it."""
+    """Load the solver in the background, so that the first request need not wait for it."""
+    service: Service = app.state.service
     async with anyio.create_task_group() as background:
-        background.start_soon(_look_around, app.state.service)
+        background.start_soon(_look_around, service)
         yield
         background.cancel_scope.cancel()
+    service.workshop.close()
 
 
 async def _look_around(service: Service) -> None:
-    def work() -> dict[str, str]:
-        service.atlas.response(
-            "sine", slenderness=0.5, frequency_ratio=5.0, restitution=0.85, method="solver"
-        )  # loads the compiled solver
-        return service.atlas.problems()
+    def work() -> bool:
+        ask = service.atlas.response
+        ask("sine", slenderness=0.5, frequency_ratio=5.0, restitution=0.85, method="solver")  # loads compiled code
+        return any(name.startswith("spectra/") for name in service.atlas.catalogue.names())
 
-    problems = await anyio.to_thread.run_sync(work, abandon_on_cancel=True)
-    for name, text in problems.items():
-        LOG.warning("data set %s: %s; the solver answers in its place", name, text)
+    if not await anyio.to_thread.run_sync(work, abandon_on_cancel=True):
+        LOG.warning("no spectrum cubes in %s; the solver answers in their place", service.settings.results)
 
 
 def _describe_bodies(app: FastAPI) -> None:

@@ -7,13 +7,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import anyio
 import numpy as np
 import xarray as xr
 from fastapi import Request
 from numpy.typing import NDArray
 
 from api.formats import MEDIA_TYPES, Form
-from api.problems import TooLargeError, UnsupportedBodyError
+from api.problems import SlowBodyError, TooLargeError, UnsupportedBodyError
 from api.questions import BatchQuestion, LookupOptions
 from rocking.errors import InvalidArgumentError
 
@@ -47,22 +48,30 @@ def body_form(request: Request) -> Form:
     raise UnsupportedBodyError("Content-Type", declared, "one of " + ", ".join(MEDIA_TYPES.values()))
 
 
-async def limited_body(request: Request, limit: int) -> bytes:
-    """The body, given up as soon as it grows beyond `limit` bytes.
+async def limited_body(request: Request, limit: int, seconds: float) -> bytes:
+    """The body, given up as soon as it grows beyond `limit` bytes, or when it takes longer than `seconds` to arrive.
 
     Raises
     ------
-    TooLargeError
+    TooLargeError, SlowBodyError
         If it does.
+    UnsupportedBodyError
+        If it is compressed: a few bytes could become any number.
     """
+    coding = request.headers.get("content-encoding", "identity")
+    if coding != "identity":
+        raise UnsupportedBodyError("Content-Encoding", coding, "none: bodies are not compressed")
     declared = request.headers.get("content-length", "")
-    if declared.isdigit() and int(declared) > limit:
-        raise TooLargeError("body", int(declared), f"at most {limit} bytes")
+    if declared.isdecimal() and int(declared[:20]) > limit:  # more digits are more than any limit
+        raise TooLargeError("body", declared[:20], f"at most {limit} bytes")
     body = bytearray()
-    async for chunk in request.stream():
-        body += chunk
-        if len(body) > limit:
-            raise TooLargeError("body", len(body), f"at most {limit} bytes")
+    with anyio.move_on_after(seconds) as patience:
+        async for chunk in request.stream():
+            body += chunk
+            if len(body) > limit:
+                raise TooLargeError("body", len(body), f"at most {limit} bytes")
+    if patience.cancelled_caught:
+        raise SlowBodyError("body", f"{len(body)} bytes", f"all of it within {seconds:g} s")
     return bytes(body)
 
 

@@ -8,30 +8,18 @@ from fastapi import Request, Response
 from fastapi.responses import FileResponse
 from starlette.types import Message, Receive, Scope, Send
 
+from api.caching import ASK_AGAIN, not_modified, validators
 from api.problems import problem
 from rocking.lookup_files import Product
 
 
-def validators(sha256: str) -> dict[str, str]:
-    """Headers by which a client knows a version again."""
-    return {"ETag": f'"{sha256}"', "Cache-Control": "no-cache"}  # kept by the client, but asked for again
-
-
-def not_modified(request: Request, sha256: str) -> Response | None:
-    """304 if the client has this version already (If-None-Match: a list, weak tags, or *)."""
-    known = [tag.strip().removeprefix("W/") for tag in request.headers.get("if-none-match", "").split(",")]
-    if f'"{sha256}"' in known or "*" in known:
-        return Response(status_code=304, headers=validators(sha256))
-    return None
-
-
-def file_response(request: Request, product: Product) -> Response:
-    """The file of a data set, whole or in ranges."""
-    unchanged = not_modified(request, product.sha256)
+def file_response(request: Request, product: Product, control: str = ASK_AGAIN) -> Response:
+    """The file of a data set, whole or in ranges; `control` says how long it may be kept."""
+    unchanged = not_modified(request, product.sha256, control)
     if unchanged is not None:
         return unchanged
     digest = base64.b64encode(bytes.fromhex(product.sha256)).decode()
-    headers = {**validators(product.sha256), "Repr-Digest": f"sha-256=:{digest}:"}  # RFC 9530
+    headers = {**validators(product.sha256, control), "Repr-Digest": f"sha-256=:{digest}:"}  # RFC 9530
     filename = product.name.replace("/", "-") + ".nc"
     return _RangedFile(product.path, headers=headers, media_type="application/x-netcdf", filename=filename)
 

@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field, ValidationError
 from starlette.exceptions import HTTPException
 
+from api.workshop import BusyError, TimeLimitError
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.lookup_files import UnknownDatasetError
 
@@ -29,15 +30,29 @@ class UnsupportedBodyError(InvalidArgumentError):
     """The body is in a form that the service does not read."""
 
 
+class SlowBodyError(InvalidArgumentError):
+    """The body does not arrive."""
+
+
 STATUS: dict[type[Exception], int] = {
     InvalidArgumentError: HTTPStatus.UNPROCESSABLE_ENTITY,  # OutsideCubeError is one
     TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     UnsupportedBodyError: HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
     UnknownDatasetError: HTTPStatus.NOT_FOUND,
+    SlowBodyError: HTTPStatus.REQUEST_TIMEOUT,
     DatasetError: HTTPStatus.SERVICE_UNAVAILABLE,
+    BusyError: HTTPStatus.SERVICE_UNAVAILABLE,
+    TimeLimitError: HTTPStatus.GATEWAY_TIMEOUT,
     RequestValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
     ValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
 }
+
+
+HEADERS: dict[type[Exception], dict[str, str]] = {
+    BusyError: {"Retry-After": "2"},
+    SlowBodyError: {"Connection": "close"},  # what still arrives is not read
+}
+"""What else is said."""
 
 
 class Problem(BaseModel):
@@ -55,7 +70,7 @@ class Problem(BaseModel):
 RESPONSES: dict[int | str, dict[str, Any]] = {
     int(status): {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": schema}}}
     for schema in [{"$ref": "#/components/schemas/Problem"}]
-    for status in (404, 405, 413, 415, 422, 500, 503)
+    for status in (404, 405, 408, 413, 415, 422, 500, 503, 504)
 }
 """For the OpenAPI description: what any route may answer instead."""
 
@@ -67,27 +82,33 @@ def problem(status: int, detail: str, headers: dict[str, str] | None = None, **p
     return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
 
 
+def internal_error() -> Response:
+    """The answer when the service itself is at fault; it tells nothing of the inside."""
+    return problem(HTTPStatus.INTERNAL_SERVER_ERROR, "an error of the service, not of the question; it was logged")
+
+
 def add_handlers(app: FastAPI) -> None:
-    """Answer every exception by its line in the table; any other is a 500 that tells nothing of the inside."""
+    """Answer every exception by its line in the table; what is not in it the observer logs and answers."""
     for kind in STATUS:
         app.add_exception_handler(kind, _handle)
     app.add_exception_handler(HTTPException, _handle_http)
-    app.add_exception_handler(Exception, _handle_unknown)
 
 
 async def _handle(_: Request, error: Exception) -> Response:
     status = next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
+    headers = HEADERS.get(type(error))
     if isinstance(error, RequestValidationError):
         return _of_validation(status, error.errors()[0])
     if isinstance(error, ValidationError):
         return _of_validation(status, error.errors(include_url=False)[0])
     if isinstance(error, InvalidArgumentError):
-        return problem(status, str(error), parameter=error.parameter, value=error.value, allowed=error.allowed)
+        parts = {"parameter": error.parameter, "value": error.value, "allowed": error.allowed}
+        return problem(status, str(error), headers, **parts)
     if isinstance(error, UnknownDatasetError):
         allowed = "a name that /v1/datasets lists"
         detail = f"there is no data set `{error.args[0]}`"
         return problem(status, detail, parameter="name", value=error.args[0], allowed=allowed)
-    return problem(status, str(error))
+    return problem(status, str(error), headers)
 
 
 def _of_validation(status: int, error: pydantic_core.ErrorDetails | dict[str, Any]) -> Response:
@@ -116,10 +137,6 @@ async def _handle_http(request: Request, error: Exception) -> Response:
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and methods:
         headers = {"Allow": ", ".join(method.upper() for method in methods)}  # of all routes of the path
     return problem(error.status_code, str(error.detail), headers)
-
-
-async def _handle_unknown(_: Request, __: Exception) -> Response:
-    return problem(HTTPStatus.INTERNAL_SERVER_ERROR, "an error of the service, not of the question; it was logged")
 
 
 def _plain(value: Any) -> float | str | None:

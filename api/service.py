@@ -1,4 +1,4 @@
-"""What the routes share: settings, data sets, and a place for heavy work outside the event loop."""
+"""What the routes share: settings, data sets, counts, and places for work outside the event loop."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
+from api.inspection import Inspection
+from api.metrics import Metrics
 from api.settings import Settings
+from api.together import Together
+from api.workshop import Leave, Workshop
 from api.zarr_view import ZarrViews
 from rocking.lookup_atlas import Atlas
 
@@ -24,14 +28,31 @@ class Service:
     settings: Settings
     atlas: Atlas
     zarr_views: ZarrViews
-    limiter: CapacityLimiter = field(init=False)
+    together: Together = field(init=False)
+    workshop: Workshop = field(init=False)
+    metrics: Metrics = field(init=False)
+    inspection: Inspection = field(init=False)
+    reader: CapacityLimiter = field(init=False)
 
     def __post_init__(self) -> None:
-        self.limiter = CapacityLimiter(self.settings.max_workers)
+        settings = self.settings
+        self.together = Together(self.atlas)
+        self.workshop = Workshop(settings.max_workers, settings.max_queue, settings.max_seconds)
+        self.metrics = Metrics(self.workshop)
+        self.inspection = Inspection(self.atlas)
+        self.reader = CapacityLimiter(settings.max_workers)
 
     async def off_loop(self, work: Callable[[], T]) -> T:
-        """Run work of more than a millisecond in a thread, at most `max_workers` at once."""
-        return await anyio.to_thread.run_sync(work, limiter=self.limiter)
+        """Have heavy work done that cannot be stopped half-way, see `Workshop.run`."""
+        return await self.workshop.run(lambda _: work())
+
+    async def in_pieces(self, work: Callable[[Leave], T], request: Request) -> T:
+        """Have heavy work done that asks between its pieces whether to go on."""
+        return await self.workshop.run(work, request)
+
+    async def reading(self, work: Callable[[], T]) -> T:
+        """Have files read: this does not wait behind heavy work."""
+        return await anyio.to_thread.run_sync(work, limiter=self.reader)
 
 
 async def _service(request: Request) -> Service:  # async: a plain function would cost a thread hop per request

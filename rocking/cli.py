@@ -141,12 +141,10 @@ def serve(
     results: Annotated[Path, typer.Option(help="Folder that the workflow filled.")] = Path("results"),
 ) -> None:
     """Answer over HTTP until interrupted; the routes are described under /docs."""
-    import uvicorn
-
-    from api.app import create_app
+    from api.server import serve as listen
     from api.settings import Settings
 
-    uvicorn.run(create_app(Settings(results=results)), host=host, port=port, ws="none")
+    listen(Settings(results=results), host, port)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
 from api.answers import OUTCOMES, VERSION
-from api.download import not_modified
+from api.caching import not_modified
 from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
 from api.questions import (

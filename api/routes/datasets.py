@@ -27,7 +27,7 @@ async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
         catalogue = service.atlas.catalogue
         return [catalogue.product(name) for name in catalogue.names()]
 
-    products = await service.off_loop(work)
+    products = await service.reading(work)
     return DatasetCatalogue(datasets=[DatasetSummary(**_summary(product)) for product in products])
 
 
@@ -47,7 +47,7 @@ async def get_netcdf(name: str, request: Request, service: ServiceDep) -> Respon
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
-    return file_response(request, await service.off_loop(partial(_sound, service, name)))
+    return file_response(request, await service.reading(partial(_sound, service, name)))
 
 
 @router.head("/{name:path}.zarr/{key:path}", include_in_schema=False)
@@ -62,7 +62,7 @@ async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -
 
     `xarray.open_dataset(".../{name}.zarr", engine="zarr")` reads it.
     """
-    sha256, store = await service.off_loop(partial(service.zarr_views.store, name))
+    sha256, store = await service.reading(partial(service.zarr_views.store, name))
     if key not in store:
         raise HTTPException(404, f"the zarr store of `{name}` has no key `{key}`")
     unchanged = not_modified(request, sha256)
@@ -76,7 +76,7 @@ async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -
 @router.get("/{name:path}", summary="Description")
 async def get_dataset(name: str, service: ServiceDep) -> DatasetDescription:
     """Dimensions, variables and attributes of a data set, its size and its sha256."""
-    return await service.off_loop(partial(_description, service, name))
+    return await service.reading(partial(_description, service, name))
 
 
 def _sound(service: Service, name: str) -> Product:

@@ -12,7 +12,10 @@ router = APIRouter(tags=["health"])
 
 @router.get("/health", summary="State and versions")
 async def get_health(service: ServiceDep) -> Health:
-    """Every data set is read and checked, once per version of its file: the first call after a change takes longer."""
-    names = await service.off_loop(service.atlas.catalogue.names)
-    problems = await service.off_loop(service.atlas.problems)
-    return Health(status="degraded" if problems else "ok", datasets=len(names), problems=problems)
+    """Every data set is read and checked, once per version of its file, in the background; this waits a second for it.
+
+    It does not wait behind heavy work.
+    """
+    names, unchecked, problems = await service.inspection.state()
+    status = "degraded" if problems else "ok"
+    return Health(status=status, datasets=len(names), unchecked=unchecked, problems=problems)

@@ -10,12 +10,13 @@ from fastapi import APIRouter, Query, Request, Response
 from api.answers import ContactAnswer, HistoryAnswer, finite
 from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
+from api.question_route import QuestionRoute
 from api.questions import HistoryQuestion, alpha_of, checked
 from api.service import ServiceDep
 from rocking.history import time_history
 from rocking.history_contact import ATTRIBUTES, COLUMNS
 
-router = APIRouter(prefix="/v1", tags=["curves"])
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
 
 
 @router.get("/history", summary="Motion of one block", response_model=HistoryAnswer, responses=CONTENT)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from api.answers import OUTCOMES, Curve, OverturningAnswer
 from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
+from api.question_route import QuestionRoute
 from api.questions import OverturningQuestion, alpha_of
 from api.service import Service, ServiceDep
 from rocking.boundary import overturning_boundary
@@ -19,7 +20,7 @@ from rocking.errors import DatasetError, in_range
 from rocking.lookup_files import UnknownDatasetError
 from rocking.pulses import get_pulse
 
-router = APIRouter(prefix="/v1", tags=["curves"])
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
 
 NODES = 201
 """Grid on which curves are looked for on request: half as fine as the workflow's, seconds for the wavelets [-]."""

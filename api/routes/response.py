@@ -6,34 +6,31 @@ from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
-from numpy.typing import ArrayLike
 
-from api.answers import BatchAnswer, ResponseAnswer, columns_of, response_answer
+from api.answers import BatchAnswer, ResponseAnswer, response_answer
+from api.ask import ask
 from api.batch import Batch, body_form, limited_body, read_batch
-from api.formats import CONTENT, MEDIA_TYPES, Form, csv_response, dataset_of, form_of, json_response, netcdf_response
-from api.questions import LookupOptions, ResponseQuestion, alpha_of, checked
+from api.batch_answer import answer_batch, batch_response
+from api.formats import CONTENT, MEDIA_TYPES, Form, form_of
+from api.points import points_of
+from api.question_route import QuestionRoute, single_parameters
+from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
-from rocking.bounded_response import BoundedResponse
-from rocking.lookup_atlas import Atlas
+from api.workshop import Leave
 
-router = APIRouter(prefix="/v1", tags=["response"])
+router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
 
 
 @router.get("/response", summary="One block")
 async def get_response(question: Annotated[ResponseQuestion, Query()], service: ServiceDep) -> ResponseAnswer:
     """Whether it falls, and how far it rocks."""
-    work = partial(
-        ask,
-        service.atlas,
-        question,
-        slenderness=question.slenderness,
-        frequency_ratio=question.frequency_ratio,
-        restitution=question.restitution,
-    )
-    # well below a millisecond, unless a cube has to be read first
-    at_once = question.method == "solver" or service.atlas.is_open(question.pulse, question.restitution)
-    found, versions = work() if at_once else await service.off_loop(work)
-    return response_answer(question, found, versions)
+    if question.method == "solver" or service.atlas.is_open(question.pulse, question.restitution):
+        point = await service.together.ask(question)
+    else:  # a data set has to be read first
+        groups = {name: getattr(question, name) for name in ("slenderness", "frequency_ratio", "restitution")}
+        (point,) = points_of(*await service.reading(partial(ask, service.atlas, question, **groups)))
+    service.metrics.points(point.source, 1)
+    return response_answer(question, point)
 
 
 @router.post(
@@ -60,40 +57,20 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     """
     given = body_form(request)
     form = form_of(request, None, default=given)
-    body = await limited_body(request, service.settings.max_body_bytes)
-    parameters = dict(request.query_params)
-    return await service.off_loop(lambda: _answer(service, body, given, form, parameters))
+    parameters = single_parameters(request)
+    settings = service.settings
+    body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds)
+
+    def work(leave: Leave) -> Response:
+        batch = read_batch(body, given, parameters, settings.max_points)
+        return _answered(service, batch, form, leave)
+
+    return await service.in_pieces(work, request)
 
 
-def ask(
-    atlas: Atlas,
-    options: LookupOptions,
-    *,
-    slenderness: ArrayLike,
-    frequency_ratio: ArrayLike,
-    restitution: ArrayLike,
-) -> tuple[BoundedResponse, tuple[str, ...]]:
-    """Ask the atlas with the options of a question."""
-    return atlas.response(
-        options.pulse,
-        slenderness=checked("slenderness", slenderness),
-        frequency_ratio=checked("frequency_ratio", frequency_ratio),
-        restitution=restitution,
-        alpha=alpha_of(options.alpha_deg),
-        tolerance=options.tolerance,
-        method=options.method,
-    )
-
-
-def _answer(service: Service, body: bytes, given: Form, form: Form, parameters: dict[str, str]) -> Response:
-    batch: Batch = read_batch(body, given, parameters, service.settings.max_points)
-    found, versions = ask(service.atlas, batch.options, **batch.groups)
-    query = batch.options.model_dump() | {"points": batch.points}
-    if form == "json":
-        columns = columns_of(found)
-        return json_response(BatchAnswer.model_construct(query=query, data_versions=list(versions), **columns))
-    if form == "csv":
-        groups = {name: values.tolist() for name, values in batch.groups.items()}
-        return csv_response(groups | columns_of(found), "response")
-    attributes = {name: value for name, value in query.items() if value is not None}
-    return netcdf_response(dataset_of(batch.groups, found, attributes), "response")
+def _answered(service: Service, batch: Batch, form: Form, leave: Leave) -> Response:
+    found, versions = answer_batch(service.atlas, batch, leave)
+    from_cubes = int((found.source == "cube").sum())
+    service.metrics.points("cube", from_cubes)
+    service.metrics.points("solver", batch.points - from_cubes)
+    return batch_response(batch, found, versions, form)

@@ -8,14 +8,15 @@ import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
 from api.answers import SpectrumAnswer, columns_of
+from api.ask import ask
 from api.formats import CONTENT, csv_response, dataset_of, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
+from api.question_route import QuestionRoute
 from api.questions import FREQUENCY_RATIOS, SpectrumQuestion
-from api.routes.response import ask
 from api.service import Service, ServiceDep
 from rocking.errors import in_range
 
-router = APIRouter(prefix="/v1", tags=["curves"])
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
 
 
 @router.get(

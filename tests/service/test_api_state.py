@@ -23,6 +23,7 @@ def test_healthy(client):
         "status": "ok",
         "version": "",
         "datasets": 3,
+        "unchecked": 0,
         "problems": {},
     }
 
@@ -102,11 +103,13 @@ def test_openapi_describes_every_route(client):
         "/v1/overturning",
         "/v1/history",
         "/v1/blocks/response",
+        "/v1/critical_amplitude",
         "/v1/datasets",
         "/v1/datasets/{name}",
         "/v1/datasets/{name}.nc",
         "/v1/datasets/{name}.zarr/{key}",
         "/health",
+        "/metrics",
     }
     text = str(described)
     for reference in set(re.findall(r"#/components/schemas/(\w+)", text)):

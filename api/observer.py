@@ -1,0 +1,102 @@
+"""Around every request: an id, a line in the log, a count; and no exception gets past.
+
+The id is the client's `X-Request-ID` if that is sane, else a new one. It comes back with the answer and stands in the
+log, where an error of the service leaves its traceback.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+import secrets
+import time
+from typing import Any
+
+from starlette.datastructures import MutableHeaders
+from starlette.requests import ClientDisconnect
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from api.metrics import Metrics
+from api.problems import internal_error
+
+ACCESS = logging.getLogger("rocking.access")
+ERRORS = logging.getLogger("rocking.service")
+
+METHODS = {"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH"}
+
+_SANE = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+
+
+class Observer:
+    """The outermost of our layers.
+
+    Parameters
+    ----------
+    app : ASGI application
+        What is inside.
+    metrics : Metrics
+        Where requests are counted.
+    access_log : bool
+        Whether each request is a line in the log "rocking.access".
+    """
+
+    def __init__(self, app: ASGIApp, metrics: Metrics, access_log: bool) -> None:
+        self._app = app
+        self._metrics = metrics
+        self._access_log = access_log
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        began = time.perf_counter()
+        request_id = _request_id(scope)
+        status, sent = 0, 0
+
+        async def watched(message: Message) -> None:
+            nonlocal status, sent
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                message.setdefault("headers", [])
+                MutableHeaders(scope=message)["X-Request-ID"] = request_id
+            else:
+                sent += len(message.get("body", b""))
+            await send(message)
+
+        try:
+            await self._app(scope, receive, watched)
+        except ClientDisconnect:
+            status = 499  # nobody reads it; the log's usual word for it
+        except Exception:
+            ERRORS.exception("error of the service", extra={"request_id": request_id, "path": scope["path"]})
+            if status:
+                raise  # too late to say so; the server closes the connection
+            await internal_error()(scope, receive, watched)
+        finally:
+            seconds = time.perf_counter() - began
+            route = getattr(scope.get("route"), "path", "none")
+            method = scope["method"] if scope["method"] in METHODS else "other"
+            self._metrics.request(method, route, status or 500, seconds)
+            if self._access_log:
+                ACCESS.info("request", extra=_line(scope, request_id, status, sent, seconds))
+
+
+def _request_id(scope: Scope) -> str:
+    for name, value in scope["headers"]:
+        if name == b"x-request-id" and _SANE.fullmatch(value):
+            return str(value.decode())
+    return secrets.token_hex(8)
+
+
+def _line(scope: Scope, request_id: str, status: int, sent: int, seconds: float) -> dict[str, Any]:
+    client = scope.get("client")
+    return {
+        "request_id": request_id,
+        "client": client[0] if client else None,
+        "method": scope["method"],
+        "path": scope["path"],
+        "query": scope["query_string"].decode("latin-1")[:1000],
+        "status": status,
+        "bytes": sent,
+        "milliseconds": round(1e3 * seconds, 3),
+    }

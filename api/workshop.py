@@ -1,0 +1,138 @@
+"""Heavy work beside the event loop: a few threads, a short queue before them, and an end to everything.
+
+Work that comes in pieces asks its `Leave` between them, and stops when its time is up or nobody waits any more. What
+cannot be stopped is answered 504 at the end of its time and keeps its place until it is done, so that there is never
+more work than threads.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, TypeVar
+
+from fastapi import Request
+from starlette.requests import ClientDisconnect
+
+T = TypeVar("T")
+
+
+class BusyError(RuntimeError):
+    """The queue is full: to be asked again later."""
+
+
+class TimeLimitError(RuntimeError):
+    """The work takes longer than the service grants."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(f"the answer takes longer than the {seconds:g} s that a request is granted; ask for less")
+
+
+class Leave:
+    """To go on working.
+
+    Parameters
+    ----------
+    seconds : float
+        How long [s].
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._until = time.monotonic() + seconds
+        self._withdrawn = False
+
+    def withdraw(self) -> None:
+        """Nobody waits for the answer."""
+        self._withdrawn = True
+
+    def ask(self) -> None:
+        """Go on, or not.
+
+        Raises
+        ------
+        TimeLimitError
+            When the time is up.
+        ClientDisconnect
+            When nobody waits any more.
+        """
+        if self._withdrawn:
+            raise ClientDisconnect
+        if time.monotonic() > self._until:
+            raise TimeLimitError(self._seconds)
+
+
+class Workshop:
+    """Threads for heavy work.
+
+    Parameters
+    ----------
+    workers : int
+        Threads.
+    queue : int
+        Requests that may wait for one.
+    seconds : float
+        What one request is granted, waiting included [s].
+    """
+
+    def __init__(self, workers: int, queue: int, seconds: float) -> None:
+        self._pool = ThreadPoolExecutor(workers, thread_name_prefix="heavy")
+        self._places = workers + queue
+        self._workers = workers
+        self._seconds = seconds
+        self._inside: set[Future[Any]] = set()
+
+    @property
+    def running(self) -> int:
+        """Requests that are worked on."""
+        return min(self._workers, len(self._inside))
+
+    @property
+    def waiting(self) -> int:
+        """Requests in the queue."""
+        return max(0, len(self._inside) - self._workers)
+
+    async def run(self, work: Callable[[Leave], T], request: Request | None = None) -> T:
+        """Have work done in a thread; given the request, its body read, stop when its client goes away.
+
+        Raises
+        ------
+        BusyError
+            If the queue is full.
+        TimeLimitError
+            If it takes too long.
+        ClientDisconnect
+            If the client has gone.
+        """
+        if len(self._inside) >= self._places:
+            raise BusyError("all places for heavy work are taken; ask again in a moment")
+        leave = Leave(self._seconds)
+        future = self._pool.submit(work, leave)
+        self._inside.add(future)
+        future.add_done_callback(self._inside.discard)
+        answer = asyncio.wrap_future(future)
+        gone = None if request is None else asyncio.create_task(_gone(request))
+        try:
+            waited_for = {answer} if gone is None else {answer, gone}
+            await asyncio.wait(waited_for, timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED)
+            if answer.done():
+                return answer.result()
+            if gone is not None and gone.done():
+                raise ClientDisconnect
+            raise TimeLimitError(self._seconds)
+        finally:
+            leave.withdraw()
+            if gone is not None:
+                gone.cancel()
+            answer.cancel()  # out of the queue, if it has not begun
+
+    def close(self) -> None:
+        """Begin nothing more; what runs comes to its end."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+async def _gone(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
