@@ -94,7 +94,8 @@ function marginOf(found) {
   const [nearest] = [...found.thresholds].sort((one, other) => apart(one) - apart(other));
   if (!nearest) return null;
   const way = nearest.peak_acceleration > asked ? "more" : "less";
-  return [found.overturned ? "It would stand with" : "It would fall with", `${number(100 * apart(nearest), 2)} % ${way}`];
+  const share = `${number(100 * apart(nearest), 2)} %`;
+  return ["Margin of acceleration", `${found.overturned ? "stands" : "falls"} with ${share} ${way}`];
 }
 
 function acceleration(value) {

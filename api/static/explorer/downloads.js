@@ -43,7 +43,7 @@ function save(part, rows, caption) {
     for (const layer of row) pen.drawImage(layer, 0, y);
     y += row[0].height;
   }
-  if (legend) drawLegend(pen, 12 * ratio, y + 8 * ratio, Math.min(ratio, made.width / 800));
+  if (legend) drawLegend(pen, 12 * ratio, y + 8 * ratio, Math.min(ratio, made.width / 820));
   pen.fillStyle = themed("ink");
   pen.font = `${12 * ratio}px system-ui, sans-serif`;
   pen.textBaseline = "middle";

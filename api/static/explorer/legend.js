@@ -3,7 +3,7 @@
 import { BROUGHT_BACK, colourOfPeak, hatch, onTheme, scaleGradient, themed } from "./colours.js";
 
 const ENTRIES = [
-  ["BROUGHT_BACK", "passes α, is brought back"],
+  ["BROUGHT_BACK", "passes α, brought back"],
   ["OVERTURNED_AFTER_IMPACT", "falls after impacts"],
   ["OVERTURNED_DIRECTLY", "falls without impact"],
   ["NO_UPLIFT", "never lifts off"],
@@ -21,7 +21,7 @@ export function drawLegend(pen, x, y, ratio) {
     pen.fillText(text, x, y);
     x += pen.measureText(text).width + 8 * ratio;
   };
-  say("peak rotation θ/α   0");
+  say("peak θ/α   0");
   for (let step = 0; step < 100; step += 1) {
     pen.fillStyle = `rgb(${colourOfPeak(step / 100)})`;
     pen.fillRect(x + step * ratio, y - 6 * ratio, ratio + 1, 12 * ratio);

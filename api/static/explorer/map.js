@@ -155,30 +155,30 @@ function drawMarks() {
 }
 
 function drawCross(pen, frame, scales, point, ratio) {
-  const [x, y] = [scales.x.place(point.frequency_ratio), scales.y.place(point.slenderness)];
-  pen.strokeStyle = themed("ink");
-  pen.globalAlpha = 0.5;
-  pen.lineWidth = ratio;
+  const sharp = (place) => Math.floor(place) + 0.5;
+  const [x, y] = [sharp(scales.x.place(point.frequency_ratio)), sharp(scales.y.place(point.slenderness))];
   pen.beginPath();
   pen.moveTo(frame.left, y);
   pen.lineTo(frame.left + frame.width, y);
   pen.moveTo(x, frame.top);
   pen.lineTo(x, frame.top + frame.height);
-  pen.stroke();
-  pen.globalAlpha = 1;
+  for (const [colour, width] of [["#ffffff", 2.5], ["#111111", 1]]) strokeIn(pen, colour, width * ratio);
 }
 
 function drawRing(pen, frame, scales, point, ratio) {
   const x = scales.x.place(point.frequency_ratio);
   const y = Math.max(scales.y.place(point.slenderness), frame.top); // above the window: at its upper edge
   if (x < frame.left || x > frame.left + frame.width || y > frame.top + frame.height) return;
-  for (const [colour, width] of [["#ffffff", 6], ["#111111", 2.4]]) {
-    pen.strokeStyle = colour;
-    pen.lineWidth = width * ratio;
-    pen.beginPath();
-    pen.arc(x, y, 8 * ratio, 0, 2 * Math.PI);
-    pen.stroke();
-  }
+  pen.beginPath();
+  pen.arc(x, y, 8 * ratio, 0, 2 * Math.PI);
+  for (const [colour, width] of [["#ffffff", 6], ["#111111", 2.4]]) strokeIn(pen, colour, width * ratio);
+}
+
+/** White under black is seen on every colour of the map. */
+function strokeIn(pen, colour, width) {
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.stroke();
 }
 
 new ResizeObserver(draw).observe(canvas);

@@ -2,6 +2,7 @@
 
 import { ask } from "./api.js";
 import { hover, middle, pointAt, pointBeside } from "./map.js";
+import { settled } from "./page.js";
 import { zoomed } from "./view.js";
 import { answerInWords, number } from "./words.js";
 
@@ -18,11 +19,11 @@ export function wireMap(look, choose, frame) {
   over.addEventListener("pointermove", (event) => {
     const point = pointAt(event.offsetX, event.offsetY);
     hover(point);
-    tellOf(point ?? look().situation.point, look().situation);
+    settled("readout", 25, () => tellOf(point ?? look().situation.point, look().situation));
   });
   over.addEventListener("pointerleave", () => {
     hover(null);
-    tellOf(look().situation.point, look().situation);
+    settled("readout", 25, () => tellOf(look().situation.point, look().situation));
   });
   over.addEventListener("click", (event) => {
     const point = pointAt(event.offsetX, event.offsetY);
