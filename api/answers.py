@@ -133,6 +133,7 @@ class DatasetSummary(BaseModel):
     sha256: str
     metadata: str = Field(description="path of its description")
     netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
+    version: str = Field(description="path of this very version of the file: may be kept for ever")
     zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
 
 

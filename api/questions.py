@@ -148,6 +148,23 @@ def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
     return in_range(name, value, *FREQUENCY_RATIOS)
 
 
+def check_point(question: ResponseQuestion) -> None:
+    """Refuse a block outside the border of the service; a microsecond where it is inside.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is.
+    """
+    lowest, highest = FREQUENCY_RATIOS
+    if not SMALLEST_SLENDERNESS <= question.slenderness < math.inf:
+        checked("slenderness", question.slenderness)
+    if not lowest <= question.frequency_ratio <= highest:
+        checked("frequency_ratio", question.frequency_ratio)
+    if not 0.0 <= question.restitution <= 1.0:
+        in_range("restitution", question.restitution, 0.0, 1.0)
+
+
 def alpha_of(alpha_deg: float | None) -> float | None:
     """Slenderness angle [rad], None for the slender limit.
 

@@ -10,9 +10,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Hashable
 
+import anyio.to_thread
+
 from api.ask import ask
 from api.points import Point, points_of
-from api.questions import ResponseQuestion
+from api.questions import ResponseQuestion, check_point
 from rocking.lookup_atlas import Atlas
 
 MOST = 256
@@ -33,6 +35,7 @@ class Together:
     def __init__(self, atlas: Atlas) -> None:
         self._atlas = atlas
         self._waiting: dict[Hashable, list[Asked]] = {}
+        self._reading: set[asyncio.Task[None]] = set()
 
     async def ask(self, question: ResponseQuestion) -> Point:
         """The answer to one question.
@@ -43,6 +46,7 @@ class Together:
             As `Atlas.response`.
         """
         loop = asyncio.get_running_loop()
+        check_point(question)  # one that is out of range must not spoil the call of the others
         if not self._waiting:
             loop.call_soon(self._answer_all)
         answer: asyncio.Future[Point] = loop.create_future()
@@ -56,28 +60,44 @@ class Together:
                 self._answer(group[start : start + MOST])
 
     def _answer(self, group: list[Asked]) -> None:
-        try:
-            points = self._points([question for question, _ in group])
-        except Exception as error:  # noqa: BLE001  (whatever it is, it is for those who asked)
-            if len(group) > 1:  # one of them spoils it: each is to have its own answer
-                for one in group:
-                    self._answer([one])
-            elif not group[0][1].done():
-                group[0][1].set_exception(error)
-            return
-        for (_, answer), point in zip(group, points, strict=True):
-            if not answer.done():  # its client may have gone
-                answer.set_result(point)
+        questions = [question for question, _ in group]
+        first = questions[0]
+        if first.method == "solver" or self._atlas.is_open(first.pulse, first.restitution):
+            _tell(group, self._outcomes(questions))
+        else:
+            task = asyncio.create_task(self._answer_from_file(group, questions))
+            self._reading.add(task)
+            task.add_done_callback(self._reading.discard)
 
-    def _points(self, questions: list[ResponseQuestion]) -> list[Point]:
-        found, versions = ask(
-            self._atlas,
-            questions[0],
-            slenderness=[question.slenderness for question in questions],
-            frequency_ratio=[question.frequency_ratio for question in questions],
-            restitution=questions[0].restitution,
-        )
-        return points_of(found, versions)
+    async def _answer_from_file(self, group: list[Asked], questions: list[ResponseQuestion]) -> None:
+        """In a thread: a data set has to be read first."""
+        _tell(group, await anyio.to_thread.run_sync(self._outcomes, questions))
+
+    def _outcomes(self, questions: list[ResponseQuestion]) -> list[Point | Exception]:
+        """Each question's answer, or what is wrong with it."""
+        try:
+            found, versions = ask(
+                self._atlas,
+                questions[0],
+                slenderness=[question.slenderness for question in questions],
+                frequency_ratio=[question.frequency_ratio for question in questions],
+                restitution=questions[0].restitution,
+            )
+        except Exception as error:  # noqa: BLE001  (whatever it is, it is for those who asked)
+            if len(questions) == 1:
+                return [error]
+            return [outcome for question in questions for outcome in self._outcomes([question])]  # each its own
+        return [*points_of(found, versions)]
+
+
+def _tell(group: list[Asked], outcomes: list[Point | Exception]) -> None:
+    for (_, answer), outcome in zip(group, outcomes, strict=True):
+        if answer.done():
+            continue  # its client has gone
+        if isinstance(outcome, Exception):
+            answer.set_exception(outcome)
+        else:
+            answer.set_result(outcome)
 
 
 def _kind(question: ResponseQuestion) -> Hashable:

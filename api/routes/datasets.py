@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from starlette.exceptions import HTTPException
 
 from api.answers import DatasetCatalogue, DatasetDescription, DatasetSummary, VariableDescription
-from api.download import file_response, not_modified, validators
+from api.caching import IMMUTABLE, not_modified, validators
+from api.download import file_response
 from api.service import Service, ServiceDep
 from rocking.errors import DatasetError
 from rocking.lookup_files import Product
@@ -42,12 +43,22 @@ async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
         304: {"description": "not modified"},
     },
 )
-async def get_netcdf(name: str, request: Request, service: ServiceDep) -> Response:
+async def get_netcdf(
+    name: str,
+    request: Request,
+    service: ServiceDep,
+    sha256: Annotated[str | None, Query(description="only this version: 404 once the file is another")] = None,
+) -> Response:
     """The file as the workflow wrote it; its ETag is its sha256, and ranges may be asked for.
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
-    return file_response(request, await service.reading(partial(_sound, service, name)))
+    product = await service.reading(partial(_sound, service, name))
+    if sha256 is None:
+        return file_response(request, product)
+    if sha256 != product.sha256:
+        raise HTTPException(404, f"`{name}` has another version now: sha256 {product.sha256}")
+    return file_response(request, product, IMMUTABLE)
 
 
 @router.head("/{name:path}.zarr/{key:path}", include_in_schema=False)
@@ -103,6 +114,7 @@ def _description(service: Service, name: str) -> DatasetDescription:
 def _summary(product: Product) -> dict[str, Any]:
     path = f"/v1/datasets/{product.name}"
     links = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
+    links["version"] = f"{path}.nc?sha256={product.sha256}"
     return {"name": product.name, "size": product.size, "sha256": product.sha256, **links}
 
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
 from api.answers import BatchAnswer, ResponseAnswer, response_answer
-from api.ask import ask
 from api.batch import Batch, body_form, limited_body, read_batch
 from api.batch_answer import answer_batch, batch_response
 from api.formats import CONTENT, MEDIA_TYPES, Form, form_of
-from api.points import points_of
 from api.question_route import QuestionRoute, single_parameters
 from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
@@ -24,11 +21,7 @@ router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
 @router.get("/response", summary="One block")
 async def get_response(question: Annotated[ResponseQuestion, Query()], service: ServiceDep) -> ResponseAnswer:
     """Whether it falls, and how far it rocks."""
-    if question.method == "solver" or service.atlas.is_open(question.pulse, question.restitution):
-        point = await service.together.ask(question)
-    else:  # a data set has to be read first
-        groups = {name: getattr(question, name) for name in ("slenderness", "frequency_ratio", "restitution")}
-        (point,) = points_of(*await service.reading(partial(ask, service.atlas, question, **groups)))
+    point = await service.together.ask(question)
     service.metrics.points(point.source, 1)
     return response_answer(question, point)
 
