@@ -104,9 +104,10 @@ def _map(service: Service, question: MapQuestion, form: str) -> Response:
         return netcdf_response(_dataset(query, frequency_ratio, slenderness, found), "map")
     if form == "csv":
         s, w = np.meshgrid(slenderness, frequency_ratio, indexing="ij")
-        columns = {"slenderness": s, "frequency_ratio": w, "peak_rotation": found.peak_rotation}
-        columns |= {"overturned": found.overturned, "outcome": np.array(OUTCOMES)[found.outcome]}
-        columns |= {"impacts": found.impacts, "exceeded_alpha": found.exceeded_alpha}
+        columns: dict[str, NDArray[Any]] = {"slenderness": s, "frequency_ratio": w}
+        columns |= {"peak_rotation": found.peak_rotation, "overturned": found.overturned}
+        columns |= {"outcome": np.array(OUTCOMES)[found.outcome], "impacts": found.impacts}
+        columns |= {"exceeded_alpha": found.exceeded_alpha}
         return csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
     return json_response(
         MapAnswer.model_construct(
