@@ -121,3 +121,67 @@ def test_doubts_are_told(client, changes, words, overturned):
 )
 def test_bad_input(client, changes, parameter):
     assert_problem(ask(client, **changes), 422, parameter)
+
+
+def overturned(client, **changes):
+    return ask(client, method="solver", **changes).json()["overturned"]
+
+
+@pytest.mark.parametrize("peak_acceleration", [4.0, 4.8, 13.5, 20.0])
+def test_margins_are_where_the_fate_changes_next(client, peak_acceleration):
+    margins = ask(client, peak_acceleration=peak_acceleration).json()["margins"]
+    here = overturned(client, peak_acceleration=peak_acceleration)
+    for name, value, factor in (
+        ("peak_acceleration", margins["nearest_acceleration"], margins["acceleration_factor"]),
+        ("pulse_period", margins["nearest_period"], margins["period_factor"]),
+    ):
+        start = {"peak_acceleration": peak_acceleration, "pulse_period": 0.5}
+        assert value == pytest.approx(factor * start[name])
+        beyond = math.copysign(1e-9, factor - 1)
+        assert overturned(client, **start | {name: value * (1 + beyond)}) is not here
+        # nothing nearer, on either side
+        for step in (0.02, 0.3, 0.7, 0.98):
+            for way in (1, -1):
+                assert overturned(client, **start | {name: start[name] * factor ** (way * step)}) is here
+
+
+def test_sizes_of_the_shape_that_survive(client):
+    margins = ask(client).json()["margins"]
+    block = Block(0.2, 0.8)
+
+    def falls(half_diagonal):
+        scale = half_diagonal / block.half_diagonal
+        return overturned(client, half_width=0.2 * scale, half_height=0.8 * scale)
+
+    smallest, steadily = margins["smallest_surviving_half_diagonal"], margins["surviving_from_half_diagonal"]
+    assert falls(smallest * (1 - 1e-9))
+    assert not falls(smallest * (1 + 1e-9))
+    assert falls(steadily * (1 - 1e-9))
+    assert not falls(steadily * (1 + 1e-9))
+    assert not any(falls(steadily * factor) for factor in (1.01, 2, 10, 50))
+    assert all(falls(smallest / factor) for factor in (1.01, 2, 8))
+    assert any("larger ones that fall" in note for note in ask(client).json()["notes"])
+    low, high = margins["sizes_searched"]
+    assert low == pytest.approx(block.half_diagonal / 100)
+    assert high == pytest.approx(block.half_diagonal * 100)
+
+
+def test_a_pulse_that_moves_nothing_has_no_margin_in_period(client):
+    margins = ask(client, peak_acceleration=2.0).json()["margins"]
+    assert margins["nearest_period"] is margins["period_factor"] is None
+    assert margins["smallest_surviving_half_diagonal"] == margins["surviving_from_half_diagonal"]
+    assert margins["nearest_acceleration"] > 2.0
+
+
+def test_the_url_repeats_the_question(client):
+    answer = ask(client, pulse="-cosine", restitution=0.9, gravity=3.71).json()
+    assert client.get(answer["url"]).json() == answer
+
+
+def test_a_change_of_fate_close_in_period_is_a_doubt(client):
+    answer = ask(client, pulse_period=0.55).json()
+    assert any("5 % of this period: at 0.5681 s" in warning for warning in answer["warnings"])
+
+
+def test_an_answer_outside_of_the_data_sets_says_so(client):
+    assert any("solver answered" in note for note in ask(client).json()["notes"])

@@ -19,6 +19,7 @@ export const DEFAULTS = {
 
 const listeners = [];
 let current = read();
+let step = addressOf(current);
 
 function read() {
   const given = new URLSearchParams(location.search);
@@ -44,13 +45,18 @@ export function isBlock(wanted) {
   return wanted.width !== "" || wanted.height !== "";
 }
 
-/** Change some of the state; `keep` makes a step to which the browser's back button returns. */
+/**
+ * Change some of the state. `keep` makes a step to which the back button returns; what was shown on the way since the
+ * step before, while a slider was dragged, makes none.
+ */
 export function change(parts, { keep = true } = {}) {
-  const before = addressOf(current);
   current = { ...current, ...parts };
-  const after = addressOf(current);
-  if (after !== before && keep) history.pushState(null, "", after);
-  else history.replaceState(null, "", after);
+  const address = addressOf(current);
+  if (keep && address !== step) {
+    history.replaceState(null, "", step);
+    history.pushState(null, "", address);
+    step = address;
+  } else history.replaceState(null, "", address);
   tell();
 }
 
@@ -65,5 +71,6 @@ function tell() {
 
 addEventListener("popstate", () => {
   current = read();
+  step = addressOf(current);
   tell();
 });
