@@ -35,6 +35,8 @@ def test_another_restitution_gives_other_curves(open_page):
     assert query(page)["restitution"] == "0.9"
     changed = (pixels(page, "map") != before).any(axis=-1).mean()
     assert 0.005 < changed < 0.9
+    page.go_back()
+    expect(page.locator("#eta-value")).to_have_text("0.85")
 
 
 def test_a_click_opens_the_history_of_that_block(open_page):
