@@ -10,7 +10,7 @@ from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError
 from .history import time_history as time_history
 from .lookup import Cube as Cube
-from .lookup import open_cube as open_cube
+from .lookup_open import open_cube as open_cube
 from .pulses import PULSE_NAMES as PULSE_NAMES
 from .pulses import get_pulse as get_pulse
 from .response import Outcome as Outcome

@@ -28,7 +28,8 @@ class BoundedResponse:
     outcome : int8 array
         Code of `rocking.Outcome`.
     impacts : int32 array
-        Impacts before the pulse ends, and the one after it upon which the block overturns.
+        Impacts before the pulse ends, and the one after it upon which the block overturns; -1 where a cube answers
+        whose nodes around the point differ in them.
     exceeded_alpha : bool array
         |theta| passed alpha at some time.
     error_bound : float array [-]
@@ -73,13 +74,17 @@ class BoundedResponse:
 
 
 def solve_with_bound(
-    pulse: str, *, slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: float | None
+    pulse: str,
+    *,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike,
+    restitution: ArrayLike,
+    alpha: ArrayLike | None,
 ) -> BoundedResponse:
     """Ask the solver, and ask it again beside the question to learn how well the question determines the answer.
 
-    The bound is `SOLVER_ERROR` of the peak, plus the change of the peak under relative changes of
-    `SOLVER_ERROR` in each of the three groups: rounding errors act like such changes, and beside a fate boundary they
-    are amplified.
+    The bound is `SOLVER_ERROR` of the peak, plus three times the change of the peak when the three groups change by a
+    share `SOLVER_ERROR` together: rounding errors act like such changes, and beside a fate boundary they are amplified.
 
     Parameters
     ----------
@@ -87,22 +92,22 @@ def solve_with_bound(
         Name of the pulse.
     slenderness, frequency_ratio, restitution : array_like, broadcasting
         1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
-    alpha : float or None
-        Slenderness angle [rad]; None for the slender limit.
+    alpha : array_like or None
+        Slenderness angle [rad]; None or 0 for the slender limit.
 
     Raises
     ------
     InvalidArgumentError
         If a value is out of range.
     """
-    groups = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (slenderness, frequency_ratio, restitution))))
-    shifts = 1.0 - SOLVER_ERROR * np.vstack([np.zeros(3), np.eye(3)])  # downwards, so that eta = 1 stays in [0, 1]
-    s, w, eta = np.moveaxis(groups * shifts.reshape(4, 3, *[1] * (groups.ndim - 1)), 1, 0)
-    found = peak_response(pulse, slenderness=s, frequency_ratio=w, restitution=eta, alpha=alpha)
+    given = (slenderness, frequency_ratio, restitution, 0.0 if alpha is None else alpha)
+    s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))
+    shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
+    found = peak_response(pulse, slenderness=s * shift, frequency_ratio=w * shift, restitution=eta * shift, alpha=angle)
     peak, outcome = found.peak_rotation[0], found.outcome[0]
     with np.errstate(invalid="ignore"):
-        change = np.abs(found.peak_rotation[1:] - peak).sum(axis=0)
-    bound = np.asarray(SOLVER_ERROR * peak + change)
+        change = np.abs(found.peak_rotation[1] - peak)
+    bound = np.asarray(SOLVER_ERROR * peak + 3.0 * change)
     bound[found.overturned.any(axis=0)] = np.inf
     bound[found.overturned[0]] = np.nan
     bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact

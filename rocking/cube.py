@@ -8,7 +8,10 @@ outcome               i1   code of `rocking.response.Outcome`
 impacts               i4   impacts before the pulse ends, and the one after it upon which the block overturns
 exceeded_alpha        i1   1 where |theta| passed alpha at some time
 peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
-interpolation_error   f8   largest measured error of interpolation in the cell whose lower corner is the node
+stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
+interpolation_error   f4   largest error of that, measured at points of the cell
+restitution_error     f4   error of interpolating to the middle before the next restitution, at the cell's centre
+alpha_error           f4   the same before the next angle
 ====================  ===  =====================================================================================
 
 with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
@@ -31,6 +34,10 @@ from numpy.typing import ArrayLike
 from rocking.errors import DatasetError
 from rocking.pulses import PULSE_NAMES, get_pulse
 from rocking.response import Outcome
+from rocking.seal import flaw, seal
+
+SQUARED, OVERTURNS, NO_STENCIL = 9, 18, -1
+"""Values of `stencil`: from 9 on (1 - peak)^2 is interpolated; all overturn alike; not interpolated."""
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 """Dimensions of a spectrum cube, in order."""
@@ -59,7 +66,8 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     "peak_rotation": (
         "f8",
         {"long_name": "peak rotation, max |theta|/alpha over the whole response", "equation": "3.2",
-         "ancillary_variables": "outcome peak_mode interpolation_error", "comment": "missing where it overturns"},
+         "ancillary_variables": "outcome peak_mode stencil interpolation_error",
+         "comment": "missing where it overturns"},
     ),
     "outcome": ("i1", {"long_name": "final fate of the block", "equation": "3.8", **_OUTCOMES}),
     "impacts": ("i4", {"long_name": "number of impacts before the pulse ends", "equation": "2.3",
@@ -70,12 +78,32 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
         {"long_name": "lobe that holds the peak", "equation": "3.4",
          "comment": "twice the impacts before it, plus one if reached in free rocking; -1 where there is no peak"},
     ),
+    "stencil": (
+        "i1",
+        {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
+         "comment": "0 to 8: four-point Lagrange in slenderness and log(frequency_ratio), the 16 nodes starting below "
+                    "the cell by (1,1), (1,0), (1,2), (0,1), (2,1), (0,0), (0,2), (2,0), (2,2) rows and columns; "
+                    "9 to 17: the same for (1 - peak_rotation)^2; 18: all overturn alike; -1: not at all"},
+    ),
     "interpolation_error": (
-        "f8",
+        "f4",
         {"long_name": "largest measured error of interpolated peak_rotation in the cell above the node",
          "equation": "3.2",
-         "comment": "four-point Lagrange in log(frequency_ratio) and slenderness against the solver, at points "
-                    "between nodes; missing where the cell is mixed: not one outcome, number of impacts and lobe"},
+         "comment": "against the solver at five points; 0 where all overturn alike, missing where stencil is -1"},
+    ),
+    "restitution_error": (
+        "f4",
+        {"long_name": "measured error of peak_rotation interpolated to the middle before the next restitution",
+         "equation": "3.2",
+         "comment": "at the centre of the cell above the node, by four-point Lagrange over the files of the pulse; "
+                    "missing where they differ in kind"},
+    ),
+    "alpha_error": (
+        "f4",
+        {"long_name": "measured error of peak_rotation interpolated to the middle before the next alpha",
+         "equation": "3.2",
+         "comment": "at the centre of the cell above the node, by four-point Lagrange in the square of alpha; "
+                    "missing where the layers differ in kind"},
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube."""
@@ -159,7 +187,8 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Its values are written with a digest (`content_sha256`) by which `read_dataset` sees damage.
+        Its values are written with a digest (`content_sha256`), and the file with another at its end (`seal`), by which
+        `read_dataset` sees damage.
     path : path
         Parent folders are made; an existing file is replaced.
     """
@@ -171,6 +200,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     temporary = Path(name)
     try:
         signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed))
+        seal(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
         temporary.chmod(0o644)  # mkstemp makes it readable by its owner only
@@ -190,12 +220,15 @@ def read_dataset(path: Path | str) -> xr.Dataset:
     path = Path(path)
     if not path.is_file():
         raise DatasetError(f"{path}: no such data set; `make reproduce` builds it")
+    damage = flaw(path)
+    if damage is not None:  # some broken files make the netCDF library run for ever
+        raise DatasetError(f"{path}: {damage}; delete it and build it again")
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
             dataset = opened.load()
         written = dataset.attrs.get("content_sha256")
         found = _content_digest(dataset)
-    except (OSError, RuntimeError, ValueError, KeyError) as error:  # what netCDF4 and HDF5 raise on broken files
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise DatasetError(f"{path}: damaged, {error}; delete it and build it again") from error
     if written is None:
         raise DatasetError(f"{path}: not written by this package (no content_sha256)")

@@ -1,9 +1,8 @@
-"""Four-point Lagrange interpolation on a regular grid of slenderness and frequency ratio: the pure kernels.
+"""Interpolation of a cube: where a value lies on the axes, which nodes serve a cell, and with which weights.
 
 Rows are slenderness, spaced uniformly; columns are frequency_ratio, spaced uniformly in its logarithm. Cell (i, j)
-lies between the nodes (i, j) and (i + 1, j + 1). Its stencil is the 4 x 4 nodes around it, shifted inwards at the edges
-of the grid. The peak rotation is smooth only inside one fate, one count of impacts and one lobe, so a cell may be
-interpolated only where its whole stencil shares the three (`smooth_cells`).
+lies between the nodes (i, j) and (i + 1, j + 1). It is interpolated from 4 x 4 nodes that hold it: those around it if
+all of them may serve, else a block shifted by one to a side, so that cells next to a boundary keep the full order.
 """
 
 from __future__ import annotations
@@ -12,15 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.errors import InvalidArgumentError
-from rocking.response import Outcome
 
 STENCIL = 4
 """Nodes of a stencil in one direction: the interpolant is exact for cubics."""
 
-_BLOCK = 1 << 14  # points handled at once, so that their 16 weights and 16 values stay in the cache
+SHIFTS = ((1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2))
+"""Rows and columns by which a stencil may start before its cell, the best first."""
+
+Array = NDArray[np.float64]
 
 
-def uniform_index(axis: NDArray[np.float64], value: ArrayLike) -> NDArray[np.float64]:
+def uniform_index(axis: Array, value: ArrayLike) -> Array:
     """Fractional index of `value` on a uniformly spaced ascending axis; nan outside the axis.
 
     Parameters
@@ -35,7 +36,7 @@ def uniform_index(axis: NDArray[np.float64], value: ArrayLike) -> NDArray[np.flo
     return np.where(inside, np.clip(position, 0.0, axis.size - 1), np.nan)
 
 
-def log_index(axis: NDArray[np.float64], value: ArrayLike) -> NDArray[np.float64]:
+def log_index(axis: Array, value: ArrayLike) -> Array:
     """Fractional index of `value` > 0 on an axis uniformly spaced in the logarithm; nan outside the axis."""
     value = np.asarray(value, dtype=np.float64)
     inside = (value >= axis[0]) & (value <= axis[-1])
@@ -44,19 +45,12 @@ def log_index(axis: NDArray[np.float64], value: ArrayLike) -> NDArray[np.float64
     return np.where(inside, np.clip(position, 0.0, axis.size - 1), np.nan)
 
 
-def cell_index(position: NDArray[np.float64], nodes: int) -> NDArray[np.intp]:
+def cell_index(position: Array, nodes: int) -> NDArray[np.intp]:
     """Cell along one axis of `nodes` nodes that holds a fractional index in [0, nodes - 1]; the last node ends it."""
     return np.minimum(position.astype(np.intp), nodes - 2)
 
 
-def stencil_start(cell: NDArray[np.intp], nodes: int) -> NDArray[np.intp]:
-    """First node of the stencil of a cell: one before the cell, shifted inwards at either edge of the grid."""
-    if nodes < STENCIL:
-        raise InvalidArgumentError("nodes", nodes, f"an axis of at least {STENCIL} nodes")
-    return np.clip(cell - 1, 0, nodes - STENCIL)
-
-
-def lagrange_weights(local: ArrayLike) -> NDArray[np.float64]:
+def lagrange_weights(local: ArrayLike) -> Array:
     """Weights of the nodes 0, 1, 2, 3 for a point at `local` in [0, 3]; shape (..., 4), they add up to 1.
 
     Lagrange's basis polynomials l_k(t) = prod over m != k of (t - m)/(k - m).
@@ -66,78 +60,89 @@ def lagrange_weights(local: ArrayLike) -> NDArray[np.float64]:
     return np.stack([-t1 * t2 * t3 / 6.0, t0 * t2 * t3 / 2.0, -t0 * t1 * t3 / 2.0, t0 * t1 * t2 / 6.0], axis=-1)
 
 
-def lagrange4(
-    values: NDArray[np.float64], row: NDArray[np.float64], column: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Interpolate `values` at fractional indices, four-point Lagrange in either direction.
+def level_weights(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
+    """How to interpolate between unevenly spaced levels: the gap, the first level that serves, and the weights.
 
     Parameters
     ----------
-    values : float array, shape (n, m), n and m >= 4
-        Node values; nan at a node of the stencil makes the answer nan.
-    row, column : float arrays of one shape
-        Fractional indices, in [0, n - 1] and [0, m - 1] (`uniform_index`, `log_index`).
+    levels : float array, shape (k,)
+        Ascending.
+    value : array_like, any shape
+        Within the levels.
 
     Returns
     -------
-    float array of the shape of `row`.
+    gap : int array
+        Level just below the value; -1 where it lies on a level.
+    first : int array
+        The first of the levels that serve: the four around the gap, fewer if there are no more; the level itself.
+    weights : float array, shape (..., 4)
+        Of `first` and those after it; 1, 0, 0, 0 on a level.
     """
-    n, m = values.shape
-    flat = np.ascontiguousarray(values).reshape(-1)
-    offsets = (m * np.arange(STENCIL)[:, None] + np.arange(STENCIL)).reshape(-1)
-    rows, columns = np.ravel(row), np.ravel(column)
-    result = np.empty(rows.size)
-    for begin in range(0, rows.size, _BLOCK):
-        part = slice(begin, begin + _BLOCK)
-        first_row = stencil_start(cell_index(rows[part], n), n)
-        first_column = stencil_start(cell_index(columns[part], m), m)
-        row_weights = lagrange_weights(rows[part] - first_row)
-        column_weights = lagrange_weights(columns[part] - first_column)
-        nodes = flat[(first_row * m + first_column)[:, None] + offsets].reshape(-1, STENCIL, STENCIL)
-        result[part] = np.einsum("pk,pkl,pl->p", row_weights, nodes, column_weights)
-    return result.reshape(np.shape(row))
+    value = np.asarray(value, dtype=np.float64)
+    above = np.searchsorted(levels, value, side="left")
+    exact = levels[np.minimum(above, levels.size - 1)] == value
+    count = min(STENCIL, levels.size)
+    first = np.where(exact, above, np.clip(above - count // 2, 0, levels.size - count))
+    nodes = levels[np.minimum(first[..., None] + np.arange(count), levels.size - 1)]
+    weights = np.zeros((*value.shape, STENCIL))
+    for k in range(count):
+        others = [m for m in range(count) if m != k]
+        with np.errstate(divide="ignore", invalid="ignore"):  # on a level the nodes run off the end
+            basis = [(value - nodes[..., m]) / (nodes[..., k] - nodes[..., m]) for m in others]
+            weights[..., k] = np.prod(basis, axis=0)
+    weights[exact] = (1.0, 0.0, 0.0, 0.0)
+    return np.where(exact, -1, above - 1), first, weights
 
 
-def uniform_cells(*labels: NDArray[np.integer]) -> NDArray[np.bool_]:
-    """Cells on whose whole stencil every label has one value.
+def stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """For each cell the first of `SHIFTS` whose 4 x 4 nodes all serve, -1 if there is none.
 
     Parameters
     ----------
-    *labels : integer arrays, shape (..., n, m), n and m >= 4
+    serves : bool array, shape (n, m), n and m >= 4
+        Nodes that may be used.
 
     Returns
     -------
-    bool array, shape (..., n - 1, m - 1)
+    int8 array, shape (n - 1, m - 1)
     """
-    n, m = labels[0].shape[-2:]
-    row = stencil_start(np.arange(n - 1), n)[:, None]
-    column = stencil_start(np.arange(m - 1), m)
-    uniform = np.ones((*labels[0].shape[:-2], n - 3, m - 3), dtype=np.bool_)
-    for label in labels:
-        same_row = label[..., :, 1:] == label[..., :, :-1]
-        same_column = label[..., 1:, :] == label[..., :-1, :]
-        # 16 nodes are equal if each of the 4 rows is constant and so is their first column
-        constant_rows = same_row[..., :, :-2] & same_row[..., :, 1:-1] & same_row[..., :, 2:]
-        for k in range(STENCIL):
-            uniform &= constant_rows[..., k : n - 3 + k, :]
-        for k in range(STENCIL - 1):
-            uniform &= same_column[..., k : n - 3 + k, : m - 3]
-    return np.asarray(uniform[..., row, column])
+    n, m = serves.shape
+    if min(n, m) < STENCIL:
+        raise InvalidArgumentError("nodes", (n, m), f"axes of at least {STENCIL} nodes")
+    rows = serves[:, :-3] & serves[:, 1:-2] & serves[:, 2:-1] & serves[:, 3:]
+    whole = rows[:-3] & rows[1:-2] & rows[2:-1] & rows[3:]
+    i, j = np.arange(n - 1)[:, None], np.arange(m - 1)
+    found = np.full((n - 1, m - 1), -1, dtype=np.int8)
+    for code in reversed(range(len(SHIFTS))):
+        row, column = i - SHIFTS[code][0], j - SHIFTS[code][1]
+        inside = (row >= 0) & (row < n - 3) & (column >= 0) & (column < m - 3)
+        fits = inside & whole[np.clip(row, 0, n - 4), np.clip(column, 0, m - 4)]
+        found[fits] = code
+    return found
 
 
-def smooth_cells(
-    outcome: NDArray[np.integer], impacts: NDArray[np.integer], peak_mode: NDArray[np.integer]
-) -> NDArray[np.bool_]:
-    """Cells that may be interpolated: all 16 nodes SAFE, with equal counts of impacts and the peak in the same lobe.
+def interpolate(
+    values: Array, cells: tuple[NDArray[np.intp], ...], codes: NDArray[np.int8], at: tuple[float, float]
+) -> Array:
+    """Interpolate at one place within each of several cells.
 
     Parameters
     ----------
-    outcome, impacts, peak_mode : integer arrays, shape (..., n, m), n and m >= 4
-        As in `rocking.Response`.
-
-    Returns
-    -------
-    bool array, shape (..., n - 1, m - 1)
+    values : float array, shape (n, m)
+        Node values.
+    cells : two int arrays, shape (cells,)
+        Row and column of each cell.
+    codes : int8 array, shape (cells,)
+        Stencil of each, as of `stencils`.
+    at : two floats in [0, 1]
+        Row and column of the place within the cell.
     """
-    safe = outcome[..., :-1, :-1] == Outcome.SAFE
-    return np.asarray(uniform_cells(outcome, impacts, peak_mode) & safe)
+    shifts = np.array(SHIFTS)[codes]
+    row, column = cells[0] - shifts[:, 0], cells[1] - shifts[:, 1]
+    by_row, by_column = lagrange_weights(at[0] + shifts[:, 0]), lagrange_weights(at[1] + shifts[:, 1])
+    total = np.zeros(row.size)
+    for p in range(STENCIL):
+        for q in range(STENCIL):
+            total += by_row[:, p] * by_column[:, q] * values[row + p, column + q]
+    return total

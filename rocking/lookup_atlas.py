@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.bounded_response import BoundedResponse, solve_with_bound
+from rocking.bounded_response import BoundedResponse
 from rocking.cube import read_dataset
-from rocking.errors import DatasetError, OutsideCubeError, in_range, one_of
-from rocking.lookup import METHODS, Cube, open_cube
+from rocking.errors import DatasetError
+from rocking.lookup import Cube
 from rocking.lookup_files import Catalogue, Stamp, UnknownDatasetError, stamp_of
+from rocking.lookup_level import Level, open_level
 from rocking.pulses import get_pulse
+from rocking.response import Outcome
 
 
 class Atlas:
@@ -35,7 +37,7 @@ class Atlas:
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
-        self._cubes: dict[str, tuple[Stamp, Cube | DatasetError]] = {}
+        self._cubes: dict[str, tuple[Stamp, Level | DatasetError]] = {}
         self._checked: dict[str, tuple[Stamp, str | None]] = {}
 
     def levels(self, pulse: str) -> list[float]:
@@ -43,7 +45,7 @@ class Atlas:
         folder = self.catalogue.results / "spectra" / pulse.removeprefix("-")
         return sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
 
-    def cube(self, pulse: str, restitution: float) -> Cube | None:
+    def level(self, pulse: str, restitution: float) -> Level | None:
         """The cube of a pulse and a restitution, None if there is none.
 
         A mirrored pulse has the same peaks and fates, and is answered by the same cube.
@@ -67,10 +69,30 @@ class Atlas:
             raise known[1]
         return known[1]
 
+    def cube(self, pulse: str, method: str = "auto") -> Cube:
+        """The cubes of a pulse as one; each is opened when first asked.
+
+        A damaged one raises `DatasetError` then with `method="cube"`, else it counts as missing; `problems` tells.
+        """
+        restitutions = np.array(self.levels(pulse))
+
+        def level(k: int) -> Level | None:
+            try:
+                return self.level(pulse, float(restitutions[k]))
+            except DatasetError:
+                if method == "cube":
+                    raise
+                return None
+
+        return Cube(pulse, restitutions, level)
+
     def is_open(self, pulse: str, restitution: float) -> bool:
         """Whether a question needs no file to be read first."""
-        name = _cube_name(pulse, restitution)
-        return name in self._cubes or not (self.catalogue.results / f"{name}.nc").exists()
+        levels = self.levels(pulse)
+        if not levels or not levels[0] <= restitution <= levels[-1]:
+            return True
+        used = Cube(pulse, np.array(levels), lambda _: None).used(np.array([restitution]))
+        return all(_cube_name(pulse, levels[k]) in self._cubes for k in used)
 
     def problems(self) -> dict[str, str]:
         """Read and check every data set, once per version of the file; what is wrong with it, by name.
@@ -94,7 +116,7 @@ class Atlas:
         slenderness: ArrayLike,
         frequency_ratio: ArrayLike,
         restitution: ArrayLike,
-        alpha: float | None = None,
+        alpha: ArrayLike | None = None,
         tolerance: float = 1e-4,
         method: str = "auto",
     ) -> tuple[BoundedResponse, tuple[str, ...]]:
@@ -106,7 +128,7 @@ class Atlas:
             Name of the pulse.
         slenderness, frequency_ratio, restitution : array_like, broadcasting
             1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
-        alpha : float, optional
+        alpha : array_like, optional
             Slenderness angle [rad]; None or 0 for the slender limit.
         tolerance : float
             Largest error of an interpolated peak_rotation [-], >= 0.
@@ -123,46 +145,19 @@ class Atlas:
             With `method="cube"`, for a damaged cube.
         """
         get_pulse(pulse)
-        one_of("method", method, METHODS)
-        in_range("tolerance", tolerance, 0.0, np.inf, closed="left")
-        groups = np.broadcast_arrays(
-            in_range("slenderness", slenderness, 0.0, np.inf, closed="neither"),
-            in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither"),
-            in_range("restitution", restitution, 0.0, 1.0),
+        cube = self.cube(pulse, method)
+        answer = cube.response(
+            slenderness=slenderness,
+            frequency_ratio=frequency_ratio,
+            restitution=restitution,
+            alpha=alpha,
+            tolerance=tolerance,
+            method=method,
         )
-        shape = groups[0].shape
-        s, w, eta = (group.ravel() for group in groups)
-        answer = BoundedResponse.empty(s.shape)
-        versions = []
-        left = np.ones(s.shape, dtype=np.bool_)
-        for level in self.levels(pulse) if method != "solver" else ():
-            here = eta == level
-            cube = self._usable(pulse, level, method) if here.any() else None
-            if cube is not None:
-                part = cube.response(
-                    slenderness=s[here], frequency_ratio=w[here], alpha=alpha, tolerance=tolerance, method=method
-                )
-                answer.put(here, part)
-                left &= ~here
-                if (part.source == "cube").any():
-                    versions.append(cube.sha256)
-        if left.any() and method == "cube":
-            levels = ", ".join(f"{level:.2f}" for level in self.levels(pulse)) or "none"
-            raise OutsideCubeError("restitution", float(eta[left][0]), f"one with a cube ({levels}), or method auto")
-        if left.any():
-            part = solve_with_bound(
-                pulse, slenderness=s[left], frequency_ratio=w[left], restitution=eta[left], alpha=alpha
-            )
-            answer.put(left, part)
-        return answer.reshape(shape), tuple(versions)
-
-    def _usable(self, pulse: str, level: float, method: str) -> Cube | None:
-        try:
-            return self.cube(pulse, level)
-        except DatasetError:
-            if method == "cube":
-                raise
-            return None  # the solver answers; `problems` tells
+        eta = np.broadcast_to(np.asarray(restitution, dtype=np.float64), answer.source.shape)
+        rocked = (answer.source == "cube") & (answer.outcome != Outcome.NO_UPLIFT)
+        used = [cube.level(k) for k in cube.used(eta[rocked])] if rocked.any() else []
+        return answer, tuple(level.sha256 for level in used if level is not None)
 
     def problem(self, name: str) -> str | None:
         """What is wrong with a data set, read and checked once per version of its file; None if nothing is."""
@@ -187,9 +182,9 @@ def _level(stem: str) -> float:
         return np.nan
 
 
-def _open(path: Path, pulse: str, restitution: float) -> Cube | DatasetError:
+def _open(path: Path, pulse: str, restitution: float) -> Level | DatasetError:
     try:
-        cube = open_cube(path)
+        cube = open_level(path)
     except DatasetError as error:
         return error
     if (cube.pulse, cube.restitution) != (pulse, restitution):

@@ -55,8 +55,9 @@ class Response:
     first_impact_velocity : float array [-]
         d(theta/alpha)/d tau just before it, with its sign; nan likewise.
     peak_mode : int32 array
-        Which lobe holds the peak: 2 x (impacts before it) + (1 if reached in free rocking); -1 where there is none.
-        Within one mode the peak is a smooth function of the groups.
+        Which lobe holds the peak: 2 x (impacts before it) + (1 if reached in free rocking), counted anew with every
+        uplift from rest after the first, each of which adds 65536; -1 where there is none. Within one mode the peak
+        is a smooth function of the groups.
     end_rotation, end_velocity : float arrays [-]
         |theta|/alpha and its rate with respect to tau at the end of the pulse, or when the block was known to overturn.
     """

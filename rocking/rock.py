@@ -22,6 +22,9 @@ from rocking.taylor_flight import fly_steps
 IMPACT_LIMIT = 20_000
 """Impacts after which a block that neither rests nor overturns is declared at rest, and flagged as chattering."""
 
+LOBES = 65536
+"""Modes kept for the lobes between one rest and the next."""
+
 NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
 
@@ -36,6 +39,7 @@ def begin(slenderness: float, omega: float, alpha: float, flight: Record) -> Non
     flight.uplift_time, flight.first_time, flight.first_velocity = math.nan, math.nan, math.nan
     flight.end_z, flight.end_w, flight.end_sign = 0.0, 0.0, 0.0
     flight.interval, flight.count, flight.at_rest = 0, 0, 1
+    flight.uplifts, flight.before_uplift = 0, 0
     if slenderness >= 1.0:
         return
     flight.a, flight.omega, flight.alpha = 1.0 / slenderness, omega, alpha
@@ -55,6 +59,7 @@ def uplift(flight: Record) -> bool:
         return False
     flight.next_phase, flight.next_w = flight.cut_phase[flight.interval], 0.0
     flight.next_sign = -flight.cut_level[flight.interval]  # positive ground acceleration: negative rotation
+    flight.uplifts, flight.before_uplift = flight.uplifts + 1, flight.impacts
     for k in range(len(flight.force)):
         flight.cosine0[k] = flight.cut_cosine[flight.interval, k]
         flight.sine0[k] = flight.cut_sine[flight.interval, k]
@@ -65,10 +70,13 @@ def uplift(flight: Record) -> bool:
 
 
 @kernel
-def raise_peak(flight: Record, peak: float, mode: int) -> None:
-    """Take a later peak if it is higher; of two that differ by rounding the mode of the earlier one stands."""
+def raise_peak(flight: Record, peak: float, impacts: int, free: int) -> None:
+    """Take a later peak if it is higher; of two that differ by rounding the mode of the earlier one stands.
+
+    The mode numbers the lobe by the impacts since the last uplift: rest forgets how many went before.
+    """
     if peak > flight.peak * (1.0 + 1e-12):
-        flight.mode = mode
+        flight.mode = LOBES * (flight.uplifts - 1) + 2 * (impacts - flight.before_uplift) + free
     flight.peak = max(flight.peak, peak)
 
 
@@ -82,7 +90,7 @@ def conclude(flight: Record, z: float, w: float, eta: float, fallen: bool) -> No
         flight.impacts += escapes - 1
         flight.peak, flight.mode = math.nan, -1
     else:
-        raise_peak(flight, peak, 2 * (flight.impacts + after) + 1)
+        raise_peak(flight, peak, flight.impacts + after, 1)
 
 
 @kernel
@@ -128,7 +136,7 @@ def touch_down(flight: Record, eta: float, ended: int, w: float, z: float, top: 
         flight.known, flight.known_end, flight.known_w, flight.known_z, flight.known_top = 1, ended, w, z, top
         flight.known_length, flight.known_phase = flight.length, flight.phase
         flight.known_sign, flight.known_interval = flight.sign, flight.interval
-    raise_peak(flight, top, 2 * flight.impacts)
+    raise_peak(flight, top, flight.impacts, 0)
     if ended != IMPACT:
         conclude(flight, z, w, eta, ended == FALLEN)
         return False
@@ -142,7 +150,7 @@ def first_flight_again(flight: Record, eta: float) -> bool:
     flight.outcome, flight.peak, flight.mode, flight.impacts, flight.chatter = SAFE, 0.0, -1, 0, 0
     flight.first_time, flight.first_velocity = math.nan, math.nan
     flight.length, flight.phase, flight.sign = flight.known_length, flight.known_phase, flight.known_sign
-    flight.interval = flight.known_interval
+    flight.interval, flight.uplifts, flight.before_uplift = flight.known_interval, 1, 0
     return touch_down(flight, eta, flight.known_end, flight.known_w, flight.known_z, flight.known_top)
 
 

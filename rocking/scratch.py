@@ -71,6 +71,8 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("count", np.int64),  # intervals between cuts
             ("interval", np.int64),  # the one that holds the start of the next flight
             ("at_rest", np.int64),  # whether that starts with an uplift
+            ("uplifts", np.int64),  # uplifts from rest so far
+            ("before_uplift", np.int64),  # impacts before the last of them
             ("next_phase", np.float64),  # its start
             ("next_w", np.float64),
             ("next_sign", np.float64),

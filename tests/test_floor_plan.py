@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[1]
 # From the ground up. A room is one idea, in one module or in several with a common stem; rooms of one floor are
 # independent of each other.
 FLOORS = (
-    ("errors", "compilation", "provenance", "version", "lanes"),
+    ("errors", "compilation", "provenance", "version", "lanes", "seal"),
     ("block", "pulses", "orientation", "response"),
     ("scratch",),
     ("free_rocking", "fate_margin", "lane_sines", "contact", "cuts", "groups", "cube", "interpolation", "scale_law"),

@@ -1,28 +1,41 @@
 """Answers from a cube: the right fate, a bound that holds, and the solver wherever the cube cannot promise."""
 
+import shutil
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
+
 import numpy as np
 import pytest
 
 import rocking.lookup
+from rocking.boundary import overturning_boundary
+from rocking.boundary_cells import crossed_cells
 from rocking.bounded_response import SOLVER_ERROR, solve_with_bound
-from rocking.cube import write_dataset
+from rocking.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.lookup import SAFETY, open_cube
+from rocking.lookup import SAFETY
+from rocking.lookup_level import largest_around
+from rocking.lookup_open import open_cube
 from rocking.response import Outcome
 from rocking.solve import peak_response
-from rocking.sweep import spectrum
+from rocking.sweep import spectra, spectrum
 
 ETA = 0.85
+GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomspace(0.5, 12.0, 91)}
+ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 5.0, 10.0, 15.0, 20.0])
+
+
+def crossed(eta, alpha):
+    """Cells that a boundary crosses."""
+    curves = overturning_boundary("sine", restitution=eta, alpha=alpha or None, nodes=101)
+    curves["alpha"] = "curve", np.full(curves.sizes["curve"], alpha)
+    return crossed_cells(curves, alpha, *GRID.values())
 
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
-    made = spectrum(
-        "sine",
-        restitution=ETA,
-        slenderness=np.linspace(0.05, 0.95, 91),
-        frequency_ratio=np.geomspace(0.5, 12.0, 91),
-    )
+    made = spectrum("sine", restitution=ETA, barred=crossed(ETA, 0.0)[None, None], **GRID)
     path = tmp_path_factory.mktemp("cube") / "eta-0.85.nc"
     write_dataset(made, path)
     return path
@@ -39,13 +52,111 @@ def questions(count, seed=5):
     return {"slenderness": rng.uniform(0.05, 0.95, count), "frequency_ratio": frequency_ratio}
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Cubes of several restitutions and angles."""
+    folder = tmp_path_factory.mktemp("sine")
+    barred = np.array([[crossed(eta, float(alpha)) for alpha in ANGLES] for eta in ETAS])
+    for cube in spectra("sine", restitution=ETAS, alpha=ANGLES, barred=barred, **GRID):
+        write_dataset(cube, folder / f"eta-{float(cube.restitution):.2f}.nc")
+    return folder
+
+
+@pytest.mark.parametrize(("between_etas", "between_angles"), [(False, True), (True, False), (True, True)])
+def test_restitution_and_angle_are_interpolated_too(folder, between_etas, between_angles):
+    rng = np.random.default_rng(8)
+    asked = questions(20_000, seed=9)
+    n = len(asked["slenderness"])
+    asked["restitution"] = rng.uniform(ETAS[0], ETAS[-1], n) if between_etas else rng.choice(ETAS, n)
+    asked["alpha"] = rng.uniform(ANGLES[0], ANGLES[-1], n) if between_angles else rng.choice(ANGLES, n)
+    cube = open_cube(folder)
+    for tolerance, share in ((1e-4, 0.6), (1e-6, 0.45)):
+        found = cube.response(**asked, tolerance=tolerance)
+        truth = peak_response("sine", **asked)
+        from_cube = found.source == "cube"
+        assert from_cube.mean() > share
+        np.testing.assert_array_equal(found.outcome, truth.outcome)
+        np.testing.assert_array_equal(found.exceeded_alpha, truth.exceeded_alpha)
+        stands = from_cube & ~truth.overturned
+        error = np.abs(found.peak_rotation - truth.peak_rotation)[stands]
+        assert (error <= found.error_bound[stands]).all()
+        assert (found.error_bound[stands] <= tolerance).all()
+
+
+def test_a_cube_that_was_made_with_another_neighbour_is_not_interpolated_towards_it(folder, tmp_path):
+    for eta in (0.80, 0.85, 0.88, 0.90, 0.94):  # 0.83 is missing
+        shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)
+    question = {"slenderness": 0.4, "frequency_ratio": 9.0, "restitution": 0.82}
+    assert open_cube(folder).response(**question).source == "cube"
+    assert open_cube(tmp_path).response(**question).source == "solver"
+
+
+def test_several_cubes_want_to_know_the_restitution(folder):
+    with pytest.raises(InvalidArgumentError, match="restitution"):
+        open_cube(folder).response(slenderness=0.4, frequency_ratio=9.0)
+    with pytest.raises(OutsideCubeError, match=r"0\.80, 0\.94"):
+        open_cube(folder).response(slenderness=0.4, frequency_ratio=9.0, restitution=0.99, method="cube")
+
+
+def test_a_cube_is_opened_by_its_address_too(path):
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(SimpleHTTPRequestHandler, directory=path.parent))
+    Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        address = f"http://127.0.0.1:{server.server_port}"
+        fetched = open_cube(f"{address}/{path.name}")
+        asked = questions(200)
+        here, there = (one.response(**asked) for one in (open_cube(path), fetched))
+        np.testing.assert_array_equal(here.peak_rotation, there.peak_rotation)
+        with pytest.raises(DatasetError, match="cannot be fetched"):
+            open_cube(f"{address}/none.nc")
+    finally:
+        server.shutdown()
+        server.server_close()
+
+
+def test_folders_that_hold_no_cubes_or_unlike_ones_are_refused(folder, path, tmp_path):
+    with pytest.raises(DatasetError, match="no spectrum cubes"):
+        open_cube(tmp_path)
+    shutil.copy(folder / "eta-0.80.nc", tmp_path)
+    shutil.copy(path, tmp_path / "eta-0.85.nc")
+    with pytest.raises(DatasetError, match="different pulses or grids"):
+        open_cube(tmp_path)
+
+
+def test_no_cell_that_a_boundary_crosses_is_interpolated(path):
+    stencil = read_spectrum(path)["stencil"].values[0, :-1, :-1]
+    curves = overturning_boundary(
+        "sine", restitution=ETA, nodes=301, slenderness=(0.05, 0.95), frequency_ratio=(0.5, 12.0)
+    )
+    row = np.searchsorted(GRID["slenderness"], curves.slenderness.values) - 1
+    column = np.searchsorted(GRID["frequency_ratio"], curves.frequency_ratio.values) - 1
+    inside = (row >= 0) & (column >= 0) & (row < stencil.shape[0]) & (column < stencil.shape[1])
+    assert inside.sum() > 500
+    # points of a finer tracing; a few sit on the edge of a cell or belong to islands that the coarse one does not see
+    assert (stencil[row[inside], column[inside]] == -1).mean() > 0.97
+
+
+def test_largest_around_spreads_errors_and_keeps_what_is_unknown():
+    errors = np.zeros((1, 5, 6), dtype=np.float32)
+    errors[0, 2, 3], errors[0, 2, 4] = 7.0, np.nan
+    found = largest_around(errors)[0]
+    assert np.isnan(found[2, 4])
+    assert np.isnan(found).sum() == 1
+    expected = np.zeros((5, 6))
+    expected[1:4, 2:5] = 7.0
+    expected[2, 4] = np.nan
+    np.testing.assert_array_equal(found, expected)
+
+
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6])
 def test_fate_is_right_and_the_bound_holds(cube, tolerance):
     asked = questions(20_000)
     found = cube.response(**asked, tolerance=tolerance)
     truth = peak_response("sine", **asked, restitution=ETA)
     np.testing.assert_array_equal(found.outcome, truth.outcome)
-    np.testing.assert_array_equal(found.impacts, truth.impacts)
+    counted = (found.impacts >= 0) & ~truth.chatter
+    np.testing.assert_array_equal(found.impacts[counted], truth.impacts[counted])
+    assert counted.mean() > 0.9
     np.testing.assert_array_equal(found.exceeded_alpha, truth.exceeded_alpha)
     np.testing.assert_array_equal(found.overturned, truth.overturned)
     stands = ~truth.overturned
@@ -150,11 +261,13 @@ def test_solver_bound_grows_beside_a_separatrix():
 
 
 def test_bound_is_the_measured_error_times_the_safety_factor(cube, path):
-    stored = rocking.lookup.read_spectrum(path)["interpolation_error"].values[0]
-    i, j = np.argwhere(np.isfinite(stored))[100]
-    s, w = cube.slenderness[i : i + 2].mean(), np.sqrt(cube.frequency_ratio[j] * cube.frequency_ratio[j + 1])
-    found = cube.response(slenderness=s, frequency_ratio=w, tolerance=1.0, method="cube")
-    assert found.error_bound == SAFETY * stored[i, j] + SOLVER_ERROR
+    stored = read_spectrum(path)
+    error = largest_around(stored["interpolation_error"].values)[0]
+    i, j = np.argwhere(error > 0.0)[100]
+    s, w = (stored[name].values for name in ("slenderness", "frequency_ratio"))
+    found = cube.response(slenderness=s[i : i + 2].mean(), frequency_ratio=np.sqrt(w[j] * w[j + 1]), tolerance=1.0)
+    assert found.source == "cube"
+    assert found.error_bound == pytest.approx(SAFETY * float(error[i, j]) + SOLVER_ERROR, rel=1e-12)
 
 
 def test_uneven_axis_is_refused(tmp_path):

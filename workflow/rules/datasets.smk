@@ -21,6 +21,8 @@ OVERTURNING_PROVENANCE = provenance(
 
 
 rule spectra:
+    input:
+        boundaries=overturning_files("{pulse}", ETAS),
     output:
         cubes=spectrum_files("{pulse}", ETAS),
     log:

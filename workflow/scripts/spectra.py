@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking.cube import describe, write_dataset
+from rocking.boundary_cells import crossed_cells
+from rocking.cube import describe, read_dataset, write_dataset
 from rocking.sweep import spectra
 from workflow.scripts.job import run
 
@@ -17,18 +18,25 @@ def main(
     pulse: str,
     restitution: Sequence[float],
     grid: Mapping[str, Any],
+    boundaries: Sequence[Path],
     cubes: Sequence[Path],
     provenance: Mapping[str, str],
 ) -> None:
-    """Fill one cube per restitution [-] over the configured grid and write it to the path beside it in `cubes`."""
+    """Fill one cube per restitution [-] over the configured grid and write it to the path beside it in `cubes`.
+
+    Cells that the overturning boundaries cross, read from `boundaries`, are marked as not to be interpolated.
+    """
     rows, columns = grid["slenderness"], grid["frequency_ratio"]
-    axes = {
+    axes: dict[str, Any] = {
         # rounded so that a step of 0.0025 gives 0.9 and not 0.9000000000000001
         "slenderness": np.round(np.linspace(rows["low"], rows["high"], rows["points"]), 12),
         "frequency_ratio": np.geomspace(columns["low"], columns["high"], columns["points"]),
         "alpha": [math.radians(angle) for angle in grid["alpha_deg"]],
     }
-    for cube, path in zip(spectra(pulse, restitution=restitution, **axes), cubes, strict=True):
+    plane = axes["slenderness"], axes["frequency_ratio"]
+    curves = [read_dataset(path) for path in boundaries]
+    barred = np.array([[crossed_cells(one, alpha, *plane) for alpha in axes["alpha"]] for one in curves])
+    for cube, path in zip(spectra(pulse, restitution=restitution, barred=barred, **axes), cubes, strict=True):
         write_dataset(describe(cube, **provenance), path)
         print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
 

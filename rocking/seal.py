@@ -1,0 +1,29 @@
+"""A file's own digest at its end: damage is noticed before a library trips, or hangs, over it.
+
+netCDF readers look at no byte beyond the end that the file itself states, so they do not see the seal.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+_MARK = b"\nsha256 "
+_LENGTH = len(_MARK) + 64 + 1
+
+
+def seal(path: Path) -> None:
+    """Append the digest of all that a file holds."""
+    with path.open("ab") as file:
+        file.write(_MARK + hashlib.sha256(path.read_bytes()).hexdigest().encode() + b"\n")
+
+
+def flaw(path: Path) -> str | None:
+    """What is wrong with a sealed file: that it carries no seal, or not its own; None if it is whole."""
+    content = path.read_bytes()
+    body, end = content[:-_LENGTH], content[-_LENGTH:]
+    if not end.startswith(_MARK):
+        return "damaged, or not written by this package: no digest at its end"
+    if end != _MARK + hashlib.sha256(body).hexdigest().encode() + b"\n":
+        return "damaged, its bytes do not match its own digest"
+    return None
