@@ -191,9 +191,10 @@ class Cube:
         )
         gap, first, weights = level_weights(etas, restitution[inside])
         between = gap >= 0
-        for start, several in np.unique(np.stack([first, between], axis=1), axis=0):
-            mine = (first == start) & (between == several)
-            opened = [self.level(int(start) + k) for k in range(min(4, etas.size - start) if several else 1)]
+        group = 2 * first + between
+        for start, several in (divmod(int(one), 2) for one in np.unique(group)):
+            mine = group == 2 * start + several
+            opened = [self.level(start + k) for k in range(min(4, etas.size - start) if several else 1)]
             levels = [one for one in opened if one is not None]
             whole = len(levels) == len(opened) and all(one.fits(levels[0]) for one in levels)
             # the errors between restitutions were measured with these neighbours

@@ -12,6 +12,10 @@ from rocking.response import Outcome
 UNKNOWN = -1
 """Impacts where the nodes around a point differ in them."""
 
+GAP_SHARE = 0.5
+"""Weight of the errors between levels beside those within cells [-]: they are measured where they are largest, in the
+middle of the gap, and the safety factor is made for those within cells, which creases can pass by."""
+
 _ROW_SHIFT, _COLUMN_SHIFT = np.array(SHIFTS).T.copy()
 _OVERTURNED = int(Outcome.OVERTURNED_DIRECTLY)
 
@@ -132,7 +136,7 @@ def interpolate_many(
             continue
         found = answers[point]
         found.known = True
-        found.error = in_cells + between_etas + between_angles
+        found.error = in_cells + GAP_SHARE * (between_etas + between_angles)
         found.impacts = impacts
         found.overturned = kind < 0
         found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1
