@@ -55,6 +55,10 @@ HEADERS: dict[type[Exception], dict[str, str]] = {
 """What else is said."""
 
 
+LONGEST = 400
+"""Characters of what is repeated to the client: a question of megabytes is not sent back."""
+
+
 class Problem(BaseModel):
     """RFC 9457, with the three parts of every message of ours."""
 
@@ -77,8 +81,9 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
 
 def problem(status: int, detail: str, headers: dict[str, str] | None = None, **parts: Any) -> Response:
     """The answer to a request that cannot be met."""
-    value = parts.pop("value", None)
-    content = Problem(title=HTTPStatus(status).phrase, status=status, detail=detail, value=_plain(value), **parts)
+    value = _plain(parts.pop("value", None))
+    said = {name: text[:LONGEST] for name, text in {"detail": detail, **parts}.items() if text is not None}
+    content = Problem(title=HTTPStatus(status).phrase, status=status, value=value, **said)
     return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
 
 
@@ -143,4 +148,4 @@ def _plain(value: Any) -> float | str | None:
     """A value that JSON can carry; nan and inf as words."""
     if value is None or (isinstance(value, (int, float)) and math.isfinite(value)):
         return value
-    return str(value)[:200]
+    return str(value)[:LONGEST]

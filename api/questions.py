@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking.errors import in_range
-from rocking.pulses import PULSE_NAMES
+from rocking.pulses import PULSE_NAMES, get_pulse
 
 PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
+_KNOWN = frozenset(PULSES)
 
 # The border of the service, far outside of all practice: beyond it the solver's numbers leave the range of doubles.
 SMALLEST_SLENDERNESS = 1e-9
@@ -149,13 +150,15 @@ def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 
 def check_point(question: ResponseQuestion) -> None:
-    """Refuse a block outside the border of the service; a microsecond where it is inside.
+    """Refuse an unknown pulse and a block outside the border of the service; a microsecond where all is well.
 
     Raises
     ------
     InvalidArgumentError
-        If it is.
+        For the first that is wrong.
     """
+    if question.pulse not in _KNOWN:
+        get_pulse(question.pulse)
     lowest, highest = FREQUENCY_RATIOS
     if not SMALLEST_SLENDERNESS <= question.slenderness < math.inf:
         checked("slenderness", question.slenderness)

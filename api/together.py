@@ -8,7 +8,7 @@ differ in the block only are asked together. Nobody notices but the clock.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 
 import anyio.to_thread
 
@@ -62,7 +62,12 @@ class Together:
     def _answer(self, group: list[Asked]) -> None:
         questions = [question for question, _ in group]
         first = questions[0]
-        if first.method == "solver" or self._atlas.is_open(first.pulse, first.restitution):
+        try:
+            at_once = first.method == "solver" or self._atlas.is_open(first.pulse, first.restitution)
+        except Exception as error:  # noqa: BLE001  (nobody may wait for ever)
+            _tell(group, [error] * len(group))
+            return
+        if at_once:
             _tell(group, self._outcomes(questions))
         else:
             task = asyncio.create_task(self._answer_from_file(group, questions))
@@ -90,7 +95,7 @@ class Together:
         return [*points_of(found, versions)]
 
 
-def _tell(group: list[Asked], outcomes: list[Point | Exception]) -> None:
+def _tell(group: list[Asked], outcomes: Sequence[Point | Exception]) -> None:
     for (_, answer), outcome in zip(group, outcomes, strict=True):
         if answer.done():
             continue  # its client has gone

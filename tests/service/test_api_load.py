@@ -176,6 +176,13 @@ def test_questions_asked_together_have_the_answers_of_questions_asked_alone(resu
     assert len(calls) < len(questions) / 2
 
 
+def test_an_error_inside_reaches_all_that_asked(results, monkeypatch):
+    with client_of(results) as client:
+        monkeypatch.setattr(client.app.state.service.atlas, "is_open", lambda *_: 1 / 0)
+        together = asyncio.run(_all_at_once(client.app, [POINT, POINT | {"slenderness": 0.5}]))
+    assert [status for status, _ in together] == [500, 500]
+
+
 def _count_calls(atlas):
     calls, respond = [], atlas.response
 
