@@ -21,6 +21,9 @@ FREQUENCY_RATIOS = (1e-6, 1e6)
 SMALLEST_ALPHA_DEG = 1e-6
 LARGEST_ALPHA_DEG = 89.9
 
+LONGEST_DURATION = 1e9
+"""Of a history, in tau = p t [-]."""
+
 PulseName = Annotated[
     str,
     Field(description="pulse; a leading minus mirrors it", examples=["sine"], json_schema_extra={"enum": [*PULSES]}),
@@ -129,7 +132,7 @@ class HistoryQuestion(Question):
     duration: float | None = Field(
         None,
         description="length tau = p t [-]; absent: the pulse and some free rocking",
-        json_schema_extra={"exclusiveMinimum": 0},
+        json_schema_extra={"exclusiveMinimum": 0, "maximum": LONGEST_DURATION},
     )
     samples: int = Field(400, description="uniform samples [-]; the events are added", json_schema_extra={"minimum": 2})
     contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")

@@ -11,8 +11,9 @@ from api.answers import ContactAnswer, HistoryAnswer, finite
 from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
 from api.question_route import QuestionRoute
-from api.questions import HistoryQuestion, alpha_of, checked
+from api.questions import LONGEST_DURATION, HistoryQuestion, alpha_of, checked
 from api.service import ServiceDep
+from rocking.errors import in_range
 from rocking.history import time_history
 from rocking.history_contact import ATTRIBUTES, COLUMNS
 
@@ -32,6 +33,8 @@ async def get_history(question: Annotated[HistoryQuestion, Query()], request: Re
 
 
 def _history(question: HistoryQuestion, form: str) -> Response:
+    if question.duration is not None:
+        in_range("duration", question.duration, 0.0, LONGEST_DURATION, closed="right")
     motion = time_history(
         question.pulse,
         slenderness=float(checked("slenderness", question.slenderness)),

@@ -54,7 +54,7 @@ def test_made_up_questions(results, path, method):
     @settings(max_examples=share, suppress_health_check=list(HealthCheck), derandomize=SEED is None)
     @given(case=schema[path][method].as_strategy())
     def ask(case):
-        case.call_and_validate(checks=CHECKS)
+        case.call_and_validate(checks=CHECKS, timeout=100)  # what the service grants, and more
 
     if SEED is not None:
         ask = hypothesis.seed(int(SEED))(ask)

@@ -17,7 +17,7 @@ ROUTES = {
     "/v1/blocks/response": BLOCK,
     "/v1/critical_amplitude": {key: POINT[key] for key in ("pulse", "frequency_ratio", "restitution")},
     "/v1/spectrum": {key: POINT[key] for key in ("pulse", "slenderness", "restitution")} | {"points": "20"},
-    "/v1/history": POINT | {"samples": "20"},
+    "/v1/history": POINT | {"samples": "20", "duration": "9"},
     "/v1/overturning": {key: POINT[key] for key in ("pulse", "restitution")},
 }
 NO_NUMBERS = ["1e400", "-1e400", "nan", "-nan", "inf", "Infinity", "1e", "0x10", "", " ", "١", "1,5", "9" * 5000]
