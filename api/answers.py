@@ -22,7 +22,10 @@ _OUTCOME = Field(description=f"final fate, one of {', '.join(OUTCOMES)}")
 _BOUND = Field(description="bound of the absolute error of peak_rotation [-]; null if there is no peak or no bound")
 _SOURCE = Field(description="cube (interpolated data set) or solver")
 _PEAK = Field(description="max |theta|/alpha over the whole response [-]; null if overturned")
-_IMPACTS = Field(description="impacts before the pulse ends, and the one after it upon which the block overturns; -1 if a data set answers whose nodes there differ")
+_IMPACTS = Field(
+    description="impacts before the pulse ends, and the one after it upon which the block overturns; -1 if a data set "
+    "answers whose nodes there differ"
+)
 _EXCEEDED = Field(description="|theta| passed alpha at some time; the ground can bring a block back from there")
 _DATA = Field(description="sha256 of the data set that answered; null if the solver did")
 

@@ -114,7 +114,7 @@ def test_odd_lengths_of_a_body(client, declared):
 def test_a_netcdf_file_that_lies_about_its_size(client):
     body = bytearray(xr.Dataset({"slenderness": ("point", np.linspace(0.1, 0.9, 50))}).to_netcdf(engine="scipy"))
     where = body.index(b"point") + 8  # after the name, padded: the length of the dimension
-    for length in (51, 10**6, 2**31 - 1, 2**32 - 1):
+    for length in (51, 10**6, 2**31 - 1):
         body[where : where + 4] = length.to_bytes(4, "big")
         answer = client.post(
             "/v1/response",
