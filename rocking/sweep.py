@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 PROBE_TOLERANCE = 1e-9
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
 
-TOGETHER = 8
-"""Restitutions solved together: most of what sharing the first flight saves, at eight times the memory of one."""
+TOGETHER = 4
+"""Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
 
 
 def spectrum(pulse: str, *, restitution: float, **grid: Any) -> xr.Dataset:

@@ -26,6 +26,10 @@ PROBES = (CENTRE, (0.2, 0.2), (0.2, 0.8), (0.8, 0.2), (0.8, 0.8))
 smooth function, the others catch what happens near the corners [-]."""
 
 
+FEW_IMPACTS = 1
+"""Impacts up to which the ways of overturning fill regions with boundaries that are traced one by one."""
+
+
 @dataclass(frozen=True)
 class Layer:
     """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `cube`."""
@@ -44,9 +48,7 @@ class Layer:
         safe = outcome == Outcome.SAFE
         squared = stencils(safe & (mode % 2 == 1))
         codes = np.where(squared >= 0, squared + SQUARED, stencils(safe))
-        way = fate_codes(outcome, impacts)
-        alike = (way[:-1, :-1] < 0) & _alike(way)
-        codes = np.where(alike, OVERTURNS, codes)
+        codes = np.where(_overturn_alike(fate_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
         return cls(
@@ -119,7 +121,21 @@ def gap_error(layers: Sequence[Layer], levels: Array, level: float, peak: Array,
     return error
 
 
-def _alike(labels: NDArray[np.int64]) -> Flags:
-    """Cells whose four corners share one label."""
-    corner = labels[:-1, :-1]
-    return np.asarray((labels[1:, :-1] == corner) & (labels[:-1, 1:] == corner) & (labels[1:, 1:] == corner))
+def _overturn_alike(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Flags:
+    """Cells whose four corners overturn in one way, and the twelve nodes around them too if any has several impacts.
+
+    Where the ways of many impacts meet they lie in layers, with safe bands between them that are thinner than a cell.
+    """
+    n, m = ways.shape
+    around = np.pad(ways, 1, mode="edge")
+    most = np.zeros((n - 1, m - 1), dtype=np.int32)
+    alike, uniform = ways[:-1, :-1] < 0, np.ones((n - 1, m - 1), dtype=np.bool_)
+    padded = np.pad(impacts, 1, mode="edge")
+    for i in range(4):
+        for j in range(4):
+            same = around[i : i + n - 1, j : j + m - 1] == ways[:-1, :-1]
+            uniform &= same
+            most = np.maximum(most, padded[i : i + n - 1, j : j + m - 1])
+            if i in (1, 2) and j in (1, 2):
+                alike = alike & same
+    return np.asarray(alike & (uniform | (most <= FEW_IMPACTS)))
