@@ -15,6 +15,7 @@ import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -71,7 +72,7 @@ def server_port(smoke_results: Path) -> Iterator[int]:
 
 def test_every_command_has_a_test() -> None:
     assert len(MAKE) + len(CURL) + len(ROCKING) == len(COMMANDS)
-    assert len(PYTHON_BLOCKS) == 2
+    assert len(PYTHON_BLOCKS) == 3
     assert MAKE
     assert CURL
     assert ROCKING
@@ -106,6 +107,14 @@ def test_data_set_block(
     monkeypatch.chdir(smoke_results.parent)
     exec(PYTHON_BLOCKS[1], {})
     assert "peak_rotation" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_cube_block(smoke_results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(smoke_results.parent)
+    names: dict[str, Any] = {}
+    exec(PYTHON_BLOCKS[2], names)
+    assert names["found"].outcome == rocking.Outcome.SAFE
 
 
 @pytest.mark.slow
