@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
 import anyio
@@ -42,8 +42,11 @@ ROUTES = (
 )
 
 
-def create_app(settings: Settings) -> FastAPI:
-    """Build the service over the results folder of the settings, which need not exist."""
+def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None) -> FastAPI:
+    """Build the service over the results folder of the settings, which need not exist.
+
+    `when_ready` is called once the compiled solver is loaded.
+    """
     app = FastAPI(
         title="rocking",
         version=VERSION,
@@ -69,6 +72,7 @@ def create_app(settings: Settings) -> FastAPI:
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
+    app.state.when_ready = when_ready
     app.add_middleware(Observer, metrics=service.metrics, access_log=settings.access_log)  # the outermost
     add_handlers(app)
     for module in ROUTES:
@@ -83,13 +87,13 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     """Load the solver in the background, so that the first request need not wait for it."""
     service: Service = app.state.service
     async with anyio.create_task_group() as background:
-        background.start_soon(_look_around, service)
+        background.start_soon(_look_around, service, app.state.when_ready)
         yield
         background.cancel_scope.cancel()
     service.workshop.close()
 
 
-async def _look_around(service: Service) -> None:
+async def _look_around(service: Service, when_ready: Callable[[], None]) -> None:
     def work() -> bool:
         ask = service.atlas.response
         ask("sine", slenderness=0.5, frequency_ratio=5.0, restitution=0.85, method="solver")  # loads compiled code
@@ -97,6 +101,7 @@ async def _look_around(service: Service) -> None:
 
     if not await anyio.to_thread.run_sync(work, abandon_on_cancel=True):
         LOG.warning("no spectrum cubes in %s; the solver answers in their place", service.settings.results)
+    when_ready()
 
 
 def _describe_bodies(app: FastAPI) -> None:

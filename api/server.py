@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import uvicorn
 
 from api.app import create_app
@@ -21,7 +23,7 @@ def serve(settings: Settings, host: str, port: int) -> None:
         Where to listen; port 0 takes a free one and logs it.
     """
     uvicorn.run(
-        create_app(settings),
+        create_app(settings, when_ready=_settle),
         host=host,
         port=port,
         http=guarded(settings.arrival_seconds, settings.max_header_bytes),
@@ -31,3 +33,9 @@ def serve(settings: Settings, host: str, port: int) -> None:
         server_header=False,
         timeout_graceful_shutdown=settings.stop_seconds,
     )
+
+
+def _settle() -> None:
+    """Take what was loaded out of the collector's sight: to look through it all takes a tenth of a second each time."""
+    gc.collect()
+    gc.freeze()
