@@ -23,4 +23,4 @@ def points_of(found: BoundedResponse, versions: tuple[str, ...]) -> list[Point]:
     """Answers of one restitution, one by one."""
     columns = [getattr(found, name).ravel().tolist() for name in Point._fields[:-1]]
     version = versions[0] if versions else None
-    return [Point(*row, version if row[-1] == "cube" else None) for row in zip(*columns, strict=True)]
+    return [Point._make((*row, version if row[-1] == "cube" else None)) for row in zip(*columns, strict=True)]

@@ -115,7 +115,7 @@ class Workshop:
         answer = asyncio.wrap_future(future)
         gone = None if request is None else asyncio.create_task(_gone(request))
         try:
-            waited_for = {answer} if gone is None else {answer, gone}
+            waited_for: set[asyncio.Future[Any]] = {answer} if gone is None else {answer, gone}
             await asyncio.wait(waited_for, timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED)
             if answer.done():
                 return answer.result()
