@@ -201,7 +201,7 @@ def response_answer(question: ResponseQuestion, point: Point) -> ResponseAnswer:
         note = "the block overturns: there is no peak"
     elif math.isinf(point.error_bound):
         note = "the fate changes within the rounding of the question: there is no bound"
-    return ResponseAnswer.model_construct(
+    return ResponseAnswer(
         query=question,
         peak_rotation=finite(point.peak_rotation),
         overturned=overturned,

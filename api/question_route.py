@@ -10,6 +10,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Coroutine
 from typing import Any, get_type_hints
+from urllib.parse import parse_qsl
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
@@ -61,7 +62,7 @@ def single_parameters(request: Request) -> dict[str, str]:
     InvalidArgumentError
         If one is given more than once.
     """
-    given = request.query_params.multi_items()
+    given = parse_qsl(request.scope["query_string"].decode("latin-1"), keep_blank_values=True)
     parameters = dict(given)
     if len(parameters) < len(given):
         for name in parameters:

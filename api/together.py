@@ -8,6 +8,7 @@ differ in the block only are asked together. Nobody notices but the clock.
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Hashable, Sequence
 
 import anyio.to_thread
@@ -19,6 +20,9 @@ from rocking.lookup_atlas import Atlas
 
 MOST = 256
 """Blocks of one call [-]: a few milliseconds at the very most, in which nothing else is answered."""
+
+A_MOMENT = 1.0
+"""How long an open data set needs no second look [s]."""
 
 Asked = tuple[ResponseQuestion, "asyncio.Future[Point]"]
 
@@ -35,6 +39,7 @@ class Together:
     def __init__(self, atlas: Atlas) -> None:
         self._atlas = atlas
         self._waiting: dict[Hashable, list[Asked]] = {}
+        self._open: dict[tuple[str, float], float] = {}
         self._reading: set[asyncio.Task[None]] = set()
 
     async def ask(self, question: ResponseQuestion) -> Point:
@@ -63,7 +68,7 @@ class Together:
         questions = [question for question, _ in group]
         first = questions[0]
         try:
-            at_once = first.method == "solver" or self._atlas.is_open(first.pulse, first.restitution)
+            at_once = first.method == "solver" or self._is_open(first.pulse, first.restitution)
         except Exception as error:  # noqa: BLE001  (nobody may wait for ever)
             _tell(group, [error] * len(group))
             return
@@ -73,6 +78,17 @@ class Together:
             task = asyncio.create_task(self._answer_from_file(group, questions))
             self._reading.add(task)
             task.add_done_callback(self._reading.discard)
+
+    def _is_open(self, pulse: str, restitution: float) -> bool:
+        """As the atlas says, which looks at the folder for it; what was open a moment ago is open still."""
+        now = time.monotonic()
+        known = self._open.get((pulse, restitution), 0.0) > now - A_MOMENT
+        if known or not self._atlas.is_open(pulse, restitution):
+            return known
+        if len(self._open) > MOST:
+            self._open.clear()
+        self._open[pulse, restitution] = now
+        return True
 
     async def _answer_from_file(self, group: list[Asked], questions: list[ResponseQuestion]) -> None:
         """In a thread: a data set has to be read first."""
