@@ -84,14 +84,16 @@ def level_weights(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], ND
     exact = levels[np.minimum(above, levels.size - 1)] == value
     count = min(STENCIL, levels.size)
     first = np.where(exact, above, np.clip(above - count // 2, 0, levels.size - count))
-    nodes = levels[np.minimum(first[..., None] + np.arange(count), levels.size - 1)]
     weights = np.zeros((*value.shape, STENCIL))
-    for k in range(count):
-        others = [m for m in range(count) if m != k]
-        with np.errstate(divide="ignore", invalid="ignore"):  # on a level the nodes run off the end
-            basis = [(value - nodes[..., m]) / (nodes[..., k] - nodes[..., m]) for m in others]
-            weights[..., k] = np.prod(basis, axis=0)
-    weights[exact] = (1.0, 0.0, 0.0, 0.0)
+    weights[exact, 0] = 1.0
+    between = ~exact
+    if between.any():
+        x = value[between]
+        nodes = levels[first[between][:, None] + np.arange(count)]
+        for k in range(count):
+            others = [m for m in range(count) if m != k]
+            basis = [(x - nodes[:, m]) / (nodes[:, k] - nodes[:, m]) for m in others]
+            weights[between, k] = np.prod(basis, axis=0)
     return np.where(exact, -1, above - 1), first, weights
 
 

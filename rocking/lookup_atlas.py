@@ -38,12 +38,21 @@ class Atlas:
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
         self._cubes: dict[str, tuple[Stamp, Level | DatasetError]] = {}
+        self._levels: dict[Path, tuple[int, list[float]]] = {}
         self._checked: dict[str, tuple[Stamp, str | None]] = {}
 
     def levels(self, pulse: str) -> list[float]:
         """Restitutions for which a cube of the pulse lies there, ascending."""
         folder = self.catalogue.results / "spectra" / pulse.removeprefix("-")
-        return sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
+        try:
+            changed = folder.stat().st_mtime_ns
+        except OSError:
+            return []
+        known = self._levels.get(folder)
+        if known is None or known[0] != changed:
+            found = sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
+            known = self._levels[folder] = (changed, found)
+        return known[1]
 
     def level(self, pulse: str, restitution: float) -> Level | None:
         """The cube of a pulse and a restitution, None if there is none.
