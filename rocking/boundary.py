@@ -8,72 +8,18 @@ safe band far narrower than a cell still shows, as the gap between the outlines 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from contourpy import LineType, contour_generator
 from numpy.typing import NDArray
-from scipy.optimize.elementwise import find_root
 
+from rocking.boundary_points import Codes, Floats, classifier, fates_along, shrink
 from rocking.errors import in_range
-from rocking.fate_margin import fate_margin
 from rocking.pulses import AbstractPulse
-from rocking.response import Outcome, Response
-from rocking.solve import as_pulse, peak_response
-
-RESOLUTION = 1e-12
-"""Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
-
-Floats = NDArray[np.float64]
-Codes = NDArray[np.int64]
-Classify = Callable[[Floats, Floats], tuple[Codes, Floats]]
-"""From 1/a and log omega to the way in which a block ends, and its margin to another."""
-
-
-def fate_code(response: Response) -> Codes:
-    """One integer for the way a block ends: 0 if it stands, else impacts before overturning x 4 + outcome."""
-    code = response.impacts.astype(np.int64) * 4 + response.outcome
-    return np.where(response.overturned, code, 0)
-
-
-def shrink(inside: Floats, outside: Floats, code: Codes, classify: Classify) -> tuple[Floats, Floats]:
-    """Shrink brackets (points, 2) in (1/a, log omega) to `RESOLUTION`; `code` holds at `inside` only.
-
-    Chandrupatla's method: the fate alone decides on which side a point lies; the margin in energy, which is continuous
-    through the change of fate as a rule, makes it a third of the work of bisection.
-    """
-    widest = float(np.max(np.abs(outside - inside), initial=0.0))
-    if widest == 0.0:
-        return inside, outside
-
-    def side(t: Floats, *ends: Any) -> Floats:
-        s, log_omega, ds, dw, own = ends
-        met, margin = classify(s + t * ds, log_omega + t * dw)
-        distance = np.abs(margin) / (1.0 + np.abs(margin)) + 1e-300
-        return np.where(met == own, distance, -distance)
-
-    found = find_root(
-        side,
-        (np.zeros(len(code)), np.ones(len(code))),
-        args=(*inside.T, *(outside - inside).T, code),
-        tolerances={"xatol": RESOLUTION / widest, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
-    )
-    first, last = (inside + t[:, None] * (outside - inside) for t in found.bracket)
-    return first, last
-
-
-def _classifier(pulse: AbstractPulse, restitution: float, alpha: float | None) -> Classify:
-    def classify(slenderness: Floats, log_omega: Floats) -> tuple[Codes, Floats]:
-        found = peak_response(
-            pulse, slenderness=slenderness, frequency_ratio=np.exp(log_omega), restitution=restitution, alpha=alpha
-        )
-        eta, angle = np.asarray(restitution, float), np.asarray(alpha or 0.0)
-        return fate_code(found), fate_margin(found.end_rotation, found.end_velocity, eta, angle)
-
-    return classify
+from rocking.response import Outcome
+from rocking.solve import as_pulse
 
 
 @dataclass(frozen=True)
@@ -129,22 +75,10 @@ def critical_amplitude(
     """
     in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
     log_omega = np.log(float(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
-    classify = _classifier(as_pulse(pulse), restitution, alpha)
+    classify = classifier(as_pulse(pulse), restitution, alpha)
     lowest = 1.0 / highest_amplitude
-    grid = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    codes, _ = classify(grid, np.full(grid.size, log_omega))
-    for _ in range(32):
-        edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
-        if edge.size == 0:
-            break
-        # where the fate at the left end stops; a third fate met there becomes a node, and a new edge
-        ends = np.stack(np.broadcast_arrays(grid[[edge, edge + 1]], log_omega), axis=-1)
-        inside, outside = shrink(ends[0], ends[1], codes[edge], classify)
-        met, _ = classify(outside[:, 0], outside[:, 1])
-        grid = np.concatenate([grid, inside[:, 0], outside[:, 0]])
-        codes = np.concatenate([codes, codes[edge], met])
-        grid, kept = np.unique(grid, return_index=True)
-        codes = codes[kept]
+    nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
+    grid, codes = fates_along(0, log_omega, nodes, classify)
     edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
     above = codes[edge] > 0  # 1/a falls as the amplitude rises
     falls = np.where(above, edge, edge + 1)
@@ -194,7 +128,7 @@ def overturning_boundary(
     bottom, top = (float(in_range("slenderness", x, 0.0, 1.0, closed="right")) for x in slenderness)
     in_range("slenderness[1]", top, bottom, 1.0, closed="right")
     made = as_pulse(pulse)
-    classify = _classifier(made, restitution, alpha)
+    classify = classifier(made, restitution, alpha)
     axes = _spaced(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
     codes, _ = classify(*np.meshgrid(*axes, indexing="ij"))
 

@@ -12,19 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.boundary import RESOLUTION, fate_code, shrink
+from rocking.boundary_points import Floats, classifier, fates_along
 from rocking.errors import InvalidArgumentError, in_range
-from rocking.fate_margin import fate_margin
 from rocking.pulses import AbstractPulse
-from rocking.solve import FREQUENCY_RATIOS, as_pulse, peak_response
+from rocking.solve import FREQUENCY_RATIOS, as_pulse
 
 NODES_PER_DECADE = 1000
 """Nodes on which fates are looked for, before their changes are refined [-]."""
 
-ROUNDS = 32
-"""Times that brackets are shrunk: each may uncover a further fate between the two at its ends."""
-
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
@@ -80,28 +75,8 @@ def critical_frequency_ratio(
     if not low < high <= 1e4 * low:
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
-    def classify(s: Floats, log_omega: Floats) -> tuple[NDArray[np.int64], Floats]:
-        omega = np.clip(np.exp(log_omega), low, high)  # rounding must not lead out of the window
-        found = peak_response(made, slenderness=s, frequency_ratio=omega, restitution=restitution, alpha=alpha)
-        margin = fate_margin(
-            found.end_rotation, found.end_velocity, np.asarray(restitution, float), np.asarray(alpha or 0.0)
-        )
-        return fate_code(found), margin
-
-    grid = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    codes, _ = classify(np.full(grid.size, slenderness), grid)
-    for _ in range(ROUNDS):
-        edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
-        if edge.size == 0:
-            break
-        # where the fate at the left end stops; a third fate met there becomes a node, and a new edge
-        left, right = (np.stack(np.broadcast_arrays(slenderness, grid[k]), axis=-1) for k in (edge, edge + 1))
-        inside, outside = shrink(left, right, codes[edge], classify)
-        met, _ = classify(outside[:, 0], outside[:, 1])
-        grid = np.concatenate([grid, inside[:, 1], outside[:, 1]])
-        codes = np.concatenate([codes, codes[edge], met])
-        grid, kept = np.unique(grid, return_index=True)
-        codes = codes[kept]
+    nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
+    grid, codes = fates_along(1, slenderness, nodes, classifier(made, restitution, alpha))
     falls = codes > 0
     edge = np.flatnonzero(falls[1:] != falls[:-1])
     above = falls[edge + 1]

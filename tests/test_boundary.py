@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from rocking import Outcome, closed_form
-from rocking.boundary import RESOLUTION, fate_code
+from rocking.boundary_points import RESOLUTION, fate_code
 
 
 def curves(boundary):

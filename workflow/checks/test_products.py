@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary import RESOLUTION, fate_code
 from rocking.boundary_curves import curves_at
+from rocking.boundary_points import RESOLUTION, fate_code
 from rocking.closed_form import overturning_amplitudes
 from rocking.cube import read_dataset, read_spectrum
 from rocking.response import Outcome

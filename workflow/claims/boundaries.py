@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from rocking.boundary import RESOLUTION
+from rocking.boundary_points import RESOLUTION
 from rocking.closed_form import case_2_amplitude, limit_amplitude, overturning_amplitudes
 from rocking.response import Outcome
 from rocking.solve import peak_response

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from rocking.boundary import RESOLUTION, overturning_boundary
+from rocking.boundary import overturning_boundary
 from rocking.boundary_curves import join_curves
+from rocking.boundary_points import RESOLUTION
 from rocking.closed_form import overturning_amplitudes
 from rocking.cube import AXES, MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
 from rocking.response import Outcome
