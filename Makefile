@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce test browser serve bench fuzz lock environment FORCE
+.PHONY: help reproduce test browser serve bench stress fuzz lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -41,6 +41,9 @@ bench: .venv/project ## time per cell against error beside general integrators, 
 	@echo; echo 'Rigid cells ...'; python -m benchmarks.rigid_cell
 	@echo; echo 'Tolerance ...'; python -m benchmarks.tolerance
 	@echo; echo 'Service ...'; python -m benchmarks.service
+
+stress: .venv/project ## thousands of hard cases against 192-bit answers: fates, errors over conditioning, symmetries; a minute
+	python -m stress
 
 fuzz: .venv/project ## ask the service 5,000 questions that a machine makes up; three minutes (SEED= for others)
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/service/test_api_fuzz.py

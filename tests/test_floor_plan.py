@@ -26,7 +26,7 @@ FLOORS = (
     ("units",),
     ("cli*",),
 )
-FRONT_DOORS = ("rocking.cli", "api", "workflow", "tests", "benchmarks")
+FRONT_DOORS = ("rocking.cli", "api", "workflow", "tests", "benchmarks", "stress")
 # What the service may use: it asks for answers and opens no solver.
 OF_THE_SERVICE = (
     *("lookup*", "cube", "boundary*", "history*", "bounded_response", "solve*"),
@@ -35,7 +35,7 @@ OF_THE_SERVICE = (
 
 MODULES = {
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
-    for folder in ("rocking", "api", "workflow", "benchmarks")
+    for folder in ("rocking", "api", "workflow", "benchmarks", "stress")
     for path in sorted((ROOT / folder).rglob("*.py"))
 }
 INSIDE = [name for name in MODULES if name.startswith("rocking.")]
@@ -88,7 +88,7 @@ def test_no_circle_inside_a_room() -> None:
 @pytest.mark.parametrize("module", [m for m in MODULES if m.split(".")[0] == "api"])
 def test_the_service_opens_no_solver(module: str) -> None:
     for name in imported(MODULES[module]):
-        assert not name.startswith(("workflow", "tests", "benchmarks"))
+        assert not name.startswith(("workflow", "tests", "benchmarks", "stress"))
         if name.startswith("rocking."):
             assert matches(name, OF_THE_SERVICE), f"{module} imports {name}"
 
@@ -98,8 +98,9 @@ def test_the_workflow_knows_no_service(module: str) -> None:
     assert not any(name.startswith(("api", "rocking.cli", "rocking.lookup")) for name in imported(MODULES[module]))
 
 
-@pytest.mark.parametrize(
-    "module", [m for m in MODULES if not m.startswith(("workflow.figures", "benchmarks.tolerance_figure"))]
-)
+PLOTTERS = ("workflow.figures", "benchmarks.tolerance_figure", "stress.figure")
+
+
+@pytest.mark.parametrize("module", [m for m in MODULES if not m.startswith(PLOTTERS)])
 def test_only_figures_plot(module: str) -> None:
     assert not any(name.split(".")[0] == "matplotlib" for name in imported(MODULES[module]))

@@ -68,6 +68,7 @@ class _Integration:
     def run(self) -> ExactResponse:
         answer = self.answer
         while self._wait_for_uplift():
+            answer.uplifts += 1
             if answer.uplift_time is None:
                 answer.uplift_time = self.tau
             fate = self._rock()
@@ -190,6 +191,9 @@ class _Integration:
         if answer.first_impact_time is None:
             answer.first_impact_time = (self.tau - answer.uplift_time).mid()
             answer.first_impact_velocity = (self.side * self.v).mid()
+        answer.last_impact_time = self.tau
+        if answer.slowest_impact is None or abs(self.v) < answer.slowest_impact:
+            answer.slowest_impact = abs(self.v)
         self.side, self.z, self.v = -self.side, arb(0), abs(eta * self.v).mid()
         ground = self.motion.ground(self.tau)
         if abs(ground) > 1:

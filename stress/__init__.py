@@ -1,0 +1,1 @@
+"""Stress tests of numerical stability: `python -m stress`, or `make stress`; see docs/stress.md."""

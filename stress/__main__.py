@@ -1,0 +1,54 @@
+"""All hard cases against their truth: `python -m stress`, or `make stress`; tells which promises are not kept."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.measure import progress, save, versions
+from stress.examine import examined
+from stress.families import BY_NAME
+from stress.figure import draw
+from stress.report import broken, markdown, relative_times
+from stress.truth import read
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("results/stress/stress.json"))
+    out = parser.parse_args().out
+    records: dict[str, dict[str, Any]] = {}
+    parts: dict[str, dict[str, NDArray[Any]]] = {}
+    for count, name in enumerate(BY_NAME, start=1):
+        progress(f"{count} of {len(BY_NAME)}: {name}")
+        records[name], parts[name] = examined(read(name))
+    times = relative_times(parts)
+    for name, record in records.items():
+        slowest = int(np.argmax(times[name]))
+        record["time"] = {
+            "median": float(np.median(times[name])),
+            "slowest": float(times[name][slowest]),
+            "slowest_cell": read(name).cell(slowest),
+        }
+    promises = broken(records)
+    save({"families": records, "broken": promises, "versions": versions("numpy", "numba")}, out)
+    table = markdown(records)
+    out.with_suffix(".md").write_text(table)
+    draw(
+        {name: part["error"] for name, part in parts.items()},
+        times,
+        {name: part["rigid"] for name, part in parts.items()},
+        out,
+    )
+    print(table)
+    print("\n".join(promises) or "all promises kept")
+    print(f"\nwritten to {out}, with .md, .png and .svg beside it")
+
+
+if __name__ == "__main__":
+    main()

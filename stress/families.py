@@ -1,0 +1,109 @@
+"""The families of hard cases, each with the reason why it is hard."""
+
+from __future__ import annotations
+
+from stress.cells import Draw, Family
+from stress.edges import ALPHA, END, FATE, GRAZE, ISLAND, EdgeFamily
+
+TWICE_PUSHED = ("cosine", "c1", "c2", "ricker", "ricker_antisymmetric", "mavroeidis_papageorgiou")
+"""Pulses that push to one side, back, and to the first side again."""
+
+SEVERAL_LOBES = ("sine", *TWICE_PUSHED)
+
+
+def _ordinary(draw: Draw) -> tuple[float, float, float]:
+    return draw.uniform(0.05, 0.95), draw.log(0.3, 12.0), draw.uniform(0.3, 1.0)
+
+
+def _onset(draw: Draw) -> tuple[float, float, float]:
+    return 1.0 - draw.log(1e-12, 1e-2), draw.log(0.3, 12.0), draw.uniform(0.0, 0.95)
+
+
+def _chatter(draw: Draw) -> tuple[float, float, float]:
+    return 1.0 - draw.log(1e-6, 0.1), draw.log(0.02, 2.0), draw.uniform(0.8, 0.98)
+
+
+def _again(draw: Draw) -> tuple[float, float, float]:
+    return 1.0 - draw.log(1e-4, 0.2), draw.log(0.3, 12.0), draw.uniform(0.0, 0.6)
+
+
+def _strong(draw: Draw) -> tuple[float, float, float]:
+    slenderness = draw.log(1e-4, 1e-1)
+    return slenderness, min(draw.log(0.3, 30.0) / slenderness, 1e4), draw.uniform(0.0, 1.0)
+
+
+def _impulse(draw: Draw) -> tuple[float, float, float]:
+    return draw.uniform(0.02, 0.98), draw.log(1e2, 1e4), draw.uniform(0.0, 1.0)
+
+
+def _slow(draw: Draw) -> tuple[float, float, float]:
+    """Two in three close to onset, since a slow pulse overturns whatever it lifts in earnest."""
+    omega = draw.log(1e-4, 1e-1)
+    gap = omega * omega * draw.log(1e-2, 10.0)
+    return draw.one_of(1.0 - gap, 1.0 - gap, draw.uniform(0.05, 0.95)), omega, draw.uniform(0.0, 0.9)
+
+
+def _restitution(draw: Draw) -> tuple[float, float, float]:
+    return draw.uniform(0.1, 0.95), draw.log(0.5, 12.0), draw.one_of(0.0, 1e-3, 1.0 - 1e-12, 1.0)
+
+
+def _elastic(draw: Draw) -> tuple[float, float, float]:
+    return 1.0 - draw.log(5e-5, 1e-3), draw.log(0.02, 0.1), draw.one_of(0.9999, 1.0 - 1e-6, 1.0 - 1e-12, 1.0)
+
+
+def _line(draw: Draw) -> tuple[float, float, float]:
+    return 0.0, draw.log(0.5, 12.0), draw.uniform(0.5, 1.0)
+
+
+def _island_line(draw: Draw) -> tuple[float, float, float]:
+    return 0.0, draw.uniform(0.3, 1.2), draw.uniform(0.8, 1.0)
+
+
+def _extreme_angle(draw: Draw) -> float:
+    return draw.one_of(draw.log(1e-8, 1e-2), draw.uniform(0.8, 1.55))
+
+
+FAMILIES: tuple[Family | EdgeFamily, ...] = (
+    Family("ordinary", "nothing: cells at random, for comparison", _ordinary),
+    Family("onset", "1/a = 1 - 1e-2 to 1 - 1e-12: the push is the small difference of large numbers", _onset),
+    Family(
+        "chatter", "100 impacts and more", _chatter, pulses=SEVERAL_LOBES, accept=lambda r: r.impacts >= 100, size=168
+    ),
+    Family(
+        "uplift-again",
+        "at rest during the pulse, and lifted again",
+        _again,
+        pulses=SEVERAL_LOBES,
+        accept=lambda r: r.uplifts >= 2,
+    ),
+    EdgeFamily("grazing", "an impact of next to no velocity, or just none", _line, GRAZE, pulses=TWICE_PUSHED),
+    EdgeFamily("touching-alpha", "the peak is just below or above alpha, and comes back", _line, ALPHA, edges=60),
+    EdgeFamily("pulse-end", "the last impact just before or after the end of the pulse, as in (3.31)", _line, END),
+    EdgeFamily("separatrix", "1e-3 to 1e-12 from another fate", _line, FATE),
+    EdgeFamily(
+        "islands",
+        "1e-3 to 1e-12 from overturning after three, five and more impacts",
+        _island_line,
+        ISLAND,
+        line=(0.85, 0.9995, 32),
+        edges=60,
+    ),
+    EdgeFamily(
+        "last-bits", "1e-12 to 1e-16 from another fate: the input decides", _line, FATE, nearest=1e-16, farthest=1e-12
+    ),
+    Family("strong", "1/a down to 1e-4", _strong),
+    Family("impulse", "omega up to 1e4: flights of a ten-thousandth", _impulse),
+    Family("quasi-static", "omega down to 1e-4: e^(p T) would overflow", _slow),
+    Family("restitution", "eta of 0, 1e-3, 1 - 1e-12, 1", _restitution),
+    Family("angles", "alpha of 1e-8 to 1.55 rad", _ordinary, angle=_extreme_angle, rigid=(True,)),
+    Family(
+        "nearly-elastic",
+        "eta from 0.9999 under slow pulses: thousands of impacts without rest",
+        _elastic,
+        pulses=("sine", "half_sine", "c1"),
+        accept=lambda r: 2_000 <= r.impacts <= 60_000,
+        size=18,
+    ),
+)
+
+BY_NAME = {family.name: family for family in FAMILIES}

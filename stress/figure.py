@@ -1,0 +1,59 @@
+"""The errors of every family in units of the conditioning, and the time of its cells beside an ordinary one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH
+
+FLOOR = 1e-3
+"""Smaller errors, 0 among them, are drawn here [units of the conditioning]."""
+
+SPREAD = 0.28
+"""Half the height over which the dots of one family are spread."""
+
+
+def draw(
+    errors: Mapping[str, NDArray[np.float64]],
+    times: Mapping[str, NDArray[np.float64]],
+    rigid: Mapping[str, NDArray[np.bool_]],
+    path: Path,
+) -> None:
+    """Write the figure as .png and .svg: per family (cells,) errors over conditioning, times over the ordinary."""
+    figure, axes = plt.subplots(1, 2, sharey=True, figsize=(WIDTH, 0.27 * len(errors) + 0.9), width_ratios=(3, 2))
+    for row, name in enumerate(errors):
+        for ax, values, floor in ((axes[0], errors[name], FLOOR), (axes[1], times[name], 1e-2)):
+            _strip(ax, row, np.maximum(values, floor), rigid[name])
+    for label, colour in (("slender", BLUE), ("rigid", VERMILION)):
+        axes[0].plot([], [], "o", color=colour, markersize=3, label=label)
+    axes[0].plot([], [], "|", color=BLACK, markersize=9, markeredgewidth=1.5, label="median")
+    for ax in axes:
+        ax.axvline(1.0, color=GREY, linewidth=0.8, zorder=0)
+        ax.set(xscale="log")
+        ax.tick_params(axis="y", length=0)
+    axes[0].set(yticks=range(len(errors)), yticklabels=list(errors), ylim=(len(errors) - 0.5, -0.5))
+    axes[0].set_xlabel("error of the peak over what one ulp of the input explains [-]")
+    axes[1].set_xlabel("time over the median ordinary cell [-]")
+    axes[1].axvline(100.0, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    for suffix in (".png", ".svg"):
+        figure.savefig(path.with_suffix(suffix))
+    plt.close(figure)
+
+
+def _strip(ax: Axes, row: int, values: NDArray[np.float64], rigid: NDArray[Any]) -> None:
+    """Dots side by side in their order, slender above rigid, and the median."""
+    for part, centre, colour in ((~rigid, row - 0.16, BLUE), (rigid, row + 0.16, VERMILION)):
+        some = values[part & np.isfinite(values)]
+        height = centre + SPREAD * (np.arange(len(some)) / max(len(some), 1) - 0.5)
+        ax.plot(some, height, ".", color=colour, markersize=2.0, alpha=0.6, rasterized=True)
+    known = values[np.isfinite(values)]
+    if len(known) > 0:
+        ax.plot(np.median(known), row, "|", color=BLACK, markersize=11, markeredgewidth=1.5)
