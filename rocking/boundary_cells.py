@@ -27,16 +27,15 @@ def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Arra
     alpha : float
         Slenderness angle [rad], 0 for the slender limit.
     rows, columns : float arrays (n,), (m,)
-        slenderness, uniformly spaced, and frequency_ratio, uniformly in its logarithm.
+        slenderness and frequency_ratio.
 
     Returns
     -------
     bool array (n - 1, m - 1)
     """
     curves = curves_at(boundary, alpha)
-    row = (curves["slenderness"].values - rows[0]) / (rows[-1] - rows[0]) * (rows.size - 1)
-    logs = np.log(curves["frequency_ratio"].values / columns[0])
-    column = logs / np.log(columns[-1] / columns[0]) * (columns.size - 1)
+    row = _index(rows, curves["slenderness"].values)
+    column = _index(np.log(columns), np.log(curves["frequency_ratio"].values))
     ends = np.cumsum(curves["row_size"].values)
     inner = np.ones(row.size, dtype=bool)
     inner[ends - 1] = False  # no chord from the last point of a curve
@@ -54,3 +53,9 @@ def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Arra
             inside = (i >= 0) & (j >= 0) & (i < crossed.shape[0]) & (j < crossed.shape[1])
             crossed[i[inside], j[inside]] = True
     return crossed
+
+
+def _index(axis: Array, value: Array) -> Array:
+    """Fractional index on an axis, carried on beyond its ends as the outermost cells go."""
+    cell = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
+    return cell + (value - axis[cell]) / (axis[cell + 1] - axis[cell])

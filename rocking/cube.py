@@ -9,8 +9,8 @@ impacts               i4   impacts before the pulse ends, and the one after it u
 exceeded_alpha        i1   1 where |theta| passed alpha at some time
 peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
 stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
-interpolation_error   f4   largest error of that, measured at points of the cell
-restitution_error     f4   error of interpolating to the middle before the next restitution, at the cell's centre
+interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
+restitution_error     f4   the same of interpolating to the middle before the next restitution, at the cells' centres
 alpha_error           f4   the same before the next angle
 ====================  ===  =====================================================================================
 
@@ -87,23 +87,24 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     ),
     "interpolation_error": (
         "f4",
-        {"long_name": "largest measured error of interpolated peak_rotation in the cell above the node",
+        {"long_name": "largest measured error of interpolated peak_rotation around the cell above the node",
          "equation": "3.2",
-         "comment": "against the solver at five points; 0 where all overturn alike, missing where stencil is -1"},
+         "comment": "against the solver, in the cell and those around it, at two points of each and at five where "
+                    "they differ; 0 where all overturn alike, missing where no bound is known"},
     ),
     "restitution_error": (
         "f4",
         {"long_name": "measured error of peak_rotation interpolated to the middle before the next restitution",
          "equation": "3.2",
-         "comment": "at the centre of the cell above the node, by four-point Lagrange over the files of the pulse; "
-                    "missing where they differ in kind"},
+         "comment": "at the centres of the cell above the node and of those around it, by four-point Lagrange over "
+                    "the files of the pulse; missing where they differ in fate"},
     ),
     "alpha_error": (
         "f4",
         {"long_name": "measured error of peak_rotation interpolated to the middle before the next alpha",
          "equation": "3.2",
-         "comment": "at the centre of the cell above the node, by four-point Lagrange in the square of alpha; "
-                    "missing where the layers differ in kind"},
+         "comment": "at the centres of the cell above the node and of those around it, by four-point Lagrange in the "
+                    "square of alpha; missing where the layers differ in fate"},
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube."""

@@ -1,15 +1,18 @@
-"""Interpolation of a cube: where a value lies on the axes, which nodes serve a cell, and with which weights.
+"""Interpolation of a cube: which nodes serve a cell, and with which weights.
 
-Rows are slenderness, spaced uniformly; columns are frequency_ratio, spaced uniformly in its logarithm. Cell (i, j)
-lies between the nodes (i, j) and (i + 1, j + 1). It is interpolated from 4 x 4 nodes that hold it: those around it if
-all of them may serve, else a block shifted by one to a side, so that cells next to a boundary keep the full order.
+Rows are slenderness, columns the logarithm of frequency_ratio; both may be spaced unevenly. Cell (i, j) lies between
+the nodes (i, j) and (i + 1, j + 1). It is interpolated from 4 x 4 nodes that hold it: those around it, or a block
+shifted by one to a side, so that cells next to a boundary keep the full order.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.compilation import Vector, kernel
 from rocking.errors import InvalidArgumentError
 
 STENCIL = 4
@@ -20,44 +23,86 @@ SHIFTS = ((1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)
 
 Array = NDArray[np.float64]
 
+_ROW_SHIFT, _COLUMN_SHIFT = np.array(SHIFTS).T.copy()
 
-def uniform_index(axis: Array, value: ArrayLike) -> Array:
-    """Fractional index of `value` on a uniformly spaced ascending axis; nan outside the axis.
 
-    Parameters
+class Mesh(NamedTuple):
+    """The nodes of a cube: what its cells are interpolated over.
+
+    Attributes
     ----------
-    axis : float array, shape (n,), n >= 4
-    value : array_like, any shape
-        In the unit of the axis.
+    rows, columns : float arrays (n,), (m,)
+        slenderness and the logarithm of frequency_ratio, ascending.
+    row_products, column_products : float arrays (n - 3, 4), (m - 3, 4)
+        Denominators of the weights of the four nodes from each on.
     """
-    value = np.asarray(value, dtype=np.float64)
-    inside = (value >= axis[0]) & (value <= axis[-1])  # by value: rounding of the index must not lose the end nodes
-    position = (np.where(inside, value, axis[0]) - axis[0]) / (axis[-1] - axis[0]) * (axis.size - 1)
-    return np.where(inside, np.clip(position, 0.0, axis.size - 1), np.nan)
+
+    rows: Array
+    columns: Array
+    row_products: Array
+    column_products: Array
+
+    @classmethod
+    def of(cls, slenderness: Array, frequency_ratio: Array) -> Mesh:
+        """From the axes of a cube.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If an axis has fewer than four nodes.
+        """
+        shape = slenderness.size, frequency_ratio.size
+        if min(shape) < STENCIL:
+            raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL} nodes")
+        logs = np.log(frequency_ratio)
+        return cls(slenderness, logs, _products(slenderness), _products(logs))
+
+    def within(self, cells: tuple[NDArray[np.intp], ...], place: tuple[float, float]) -> tuple[Array, Array]:
+        """Row and column coordinates of a place in [0, 1]^2 within each of several cells."""
+        (i, j), (up, along) = cells, place
+        return (
+            self.rows[i] + up * (self.rows[i + 1] - self.rows[i]),
+            self.columns[j] + along * (self.columns[j + 1] - self.columns[j]),
+        )
 
 
-def log_index(axis: Array, value: ArrayLike) -> Array:
-    """Fractional index of `value` > 0 on an axis uniformly spaced in the logarithm; nan outside the axis."""
+def _products(axis: Array) -> Array:
+    """Products of (x_k - x_m), m != k, for the four nodes from each on."""
+    nodes = [axis[k : axis.size - 3 + k] for k in range(STENCIL)]
+    return np.stack(
+        [np.prod([nodes[k] - nodes[m] for m in range(STENCIL) if m != k], axis=0) for k in range(STENCIL)], axis=-1
+    )
+
+
+def cell_of(axis: Array, value: ArrayLike) -> NDArray[np.intp]:
+    """Cell along an ascending axis that holds each value; the last node ends the last cell, -1 is outside."""
     value = np.asarray(value, dtype=np.float64)
     inside = (value >= axis[0]) & (value <= axis[-1])
-    log = np.log(np.where(inside, value, axis[0]))
-    position = (log - np.log(axis[0])) / np.log(axis[-1] / axis[0]) * (axis.size - 1)
-    return np.where(inside, np.clip(position, 0.0, axis.size - 1), np.nan)
+    return np.where(inside, np.minimum(np.searchsorted(axis, value, side="right") - 1, axis.size - 2), -1)
 
 
-def cell_index(position: Array, nodes: int) -> NDArray[np.intp]:
-    """Cell along one axis of `nodes` nodes that holds a fractional index in [0, nodes - 1]; the last node ends it."""
-    return np.minimum(position.astype(np.intp), nodes - 2)
+@kernel
+def weights(axis: Vector, products: Vector, first: int, x: float) -> tuple[float, float, float, float]:
+    """Lagrange's weights at x of the four nodes of an axis from `first` on."""
+    d0, d1, d2, d3 = x - axis[first], x - axis[first + 1], x - axis[first + 2], x - axis[first + 3]
+    below = products[first]
+    return d1 * d2 * d3 / below[0], d0 * d2 * d3 / below[1], d0 * d1 * d3 / below[2], d0 * d1 * d2 / below[3]
 
 
-def lagrange_weights(local: ArrayLike) -> Array:
-    """Weights of the nodes 0, 1, 2, 3 for a point at `local` in [0, 3]; shape (..., 4), they add up to 1.
-
-    Lagrange's basis polynomials l_k(t) = prod over m != k of (t - m)/(k - m).
-    """
-    t0 = np.asarray(local, dtype=np.float64)
-    t1, t2, t3 = t0 - 1.0, t0 - 2.0, t0 - 3.0
-    return np.stack([-t1 * t2 * t3 / 6.0, t0 * t2 * t3 / 2.0, -t0 * t1 * t3 / 2.0, t0 * t1 * t2 / 6.0], axis=-1)
+@kernel
+def in_cell(values: Vector, i: int, j: int, shift: int, squared: bool, x: float, y: float, mesh: Mesh) -> float:
+    """Interpolated within cell (i, j), at the coordinates x and y: node values, or (1 - value)^2 if `squared`."""
+    row, column = i - _ROW_SHIFT[shift], j - _COLUMN_SHIFT[shift]
+    by_row = weights(mesh.rows, mesh.row_products, row, x)
+    by_column = weights(mesh.columns, mesh.column_products, column, y)
+    total = 0.0
+    for p in range(4):
+        along = 0.0
+        for q in range(4):
+            value = values[row + p, column + q]
+            along += by_column[q] * ((1.0 - value) * (1.0 - value) if squared else value)
+        total += by_row[p] * along
+    return total
 
 
 def level_weights(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
@@ -110,8 +155,6 @@ def stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:
     int8 array, shape (n - 1, m - 1)
     """
     n, m = serves.shape
-    if min(n, m) < STENCIL:
-        raise InvalidArgumentError("nodes", (n, m), f"axes of at least {STENCIL} nodes")
     rows = serves[:, :-3] & serves[:, 1:-2] & serves[:, 2:-1] & serves[:, 3:]
     whole = rows[:-3] & rows[1:-2] & rows[2:-1] & rows[3:]
     i, j = np.arange(n - 1)[:, None], np.arange(m - 1)
@@ -122,29 +165,3 @@ def stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:
         fits = inside & whole[np.clip(row, 0, n - 4), np.clip(column, 0, m - 4)]
         found[fits] = code
     return found
-
-
-def interpolate(
-    values: Array, cells: tuple[NDArray[np.intp], ...], codes: NDArray[np.int8], at: tuple[float, float]
-) -> Array:
-    """Interpolate at one place within each of several cells.
-
-    Parameters
-    ----------
-    values : float array, shape (n, m)
-        Node values.
-    cells : two int arrays, shape (cells,)
-        Row and column of each cell.
-    codes : int8 array, shape (cells,)
-        Stencil of each, as of `stencils`.
-    at : two floats in [0, 1]
-        Row and column of the place within the cell.
-    """
-    shifts = np.array(SHIFTS)[codes]
-    row, column = cells[0] - shifts[:, 0], cells[1] - shifts[:, 1]
-    by_row, by_column = lagrange_weights(at[0] + shifts[:, 0]), lagrange_weights(at[1] + shifts[:, 1])
-    total = np.zeros(row.size)
-    for p in range(STENCIL):
-        for q in range(STENCIL):
-            total += by_row[:, p] * by_column[:, q] * values[row + p, column + q]
-    return total

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
-from rocking.interpolation import level_weights, log_index, uniform_index
+from rocking.interpolation import cell_of, level_weights
 from rocking.lookup_kernel import interpolate_many
 from rocking.lookup_level import FIELDS, Level
 
@@ -241,8 +241,11 @@ def _interpolate(
     angle_gap, angle_first, angle_weights = level_weights(squares, np.where(inside, points.alpha, first.alpha[0]) ** 2)
     part = np.zeros(index.size, FOUND)
     interpolate_many(
-        uniform_index(first.slenderness, points.slenderness),
-        log_index(first.frequency_ratio, points.frequency_ratio),
+        cell_of(first.slenderness, points.slenderness),
+        cell_of(first.frequency_ratio, points.frequency_ratio),
+        points.slenderness,
+        np.log(points.frequency_ratio),
+        first.mesh,
         gap,
         weights,
         angle_gap,

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.compilation import Record, Vector, kernel
 from rocking.cube import OVERTURNS, SQUARED
-from rocking.interpolation import SHIFTS
+from rocking.interpolation import Mesh, in_cell
 from rocking.response import Outcome
 
 UNKNOWN = -1
@@ -16,37 +16,7 @@ GAP_SHARE = 0.5
 """Weight of the errors between levels beside those within cells [-]: they are measured where they are largest, in the
 middle of the gap, and the safety factor is made for those within cells, which creases can pass by."""
 
-_ROW_SHIFT, _COLUMN_SHIFT = np.array(SHIFTS).T.copy()
 _OVERTURNED = int(Outcome.OVERTURNED_DIRECTLY)
-
-
-@kernel
-def weight(local: float, k: int) -> float:
-    """Lagrange's weight of the k-th of the nodes 0, 1, 2, 3 at `local`."""
-    if k == 0:
-        return -(local - 1.0) * (local - 2.0) * (local - 3.0) / 6.0
-    if k == 1:
-        return local * (local - 2.0) * (local - 3.0) / 2.0
-    if k == 2:
-        return -local * (local - 1.0) * (local - 3.0) / 2.0
-    return local * (local - 1.0) * (local - 2.0) / 6.0
-
-
-@kernel
-def in_cell(peaks: Vector, layer: int, i: int, j: int, code: int, row: float, column: float) -> float:
-    """What is interpolated in a cell of a layer, the peak or (1 - peak)^2, at the fractional indices of the grid."""
-    squared = code >= SQUARED
-    shift = code - SQUARED if squared else code
-    first_row, first_column = i - _ROW_SHIFT[shift], j - _COLUMN_SHIFT[shift]
-    total = 0.0
-    for p in range(4):
-        along = 0.0
-        for q in range(4):
-            peak = peaks[layer, first_row + p, first_column + q]
-            value = (1.0 - peak) * (1.0 - peak) if squared else peak
-            along += weight(column - first_column, q) * value
-        total += weight(row - first_row, p) * along
-    return total
 
 
 @kernel
@@ -65,6 +35,9 @@ def common_impacts(cubes: Record, layer: int, e: int, i: int, j: int, before: in
 def interpolate_many(
     row: Vector,
     column: Vector,
+    x: Vector,
+    y: Vector,
+    mesh: Mesh,
     eta_gap: Vector,
     eta_weights: Vector,
     angle_gap: Vector,
@@ -77,8 +50,12 @@ def interpolate_many(
 
     Parameters
     ----------
-    row, column : float arrays (points,)
-        Fractional indices of slenderness and log(frequency_ratio); nan outside.
+    row, column : int arrays (points,)
+        The cell that holds each point; -1 outside.
+    x, y : float arrays (points,)
+        slenderness and log(frequency_ratio).
+    mesh : Mesh
+        The nodes.
     eta_gap : int array (points,)
         Which of the four cubes the restitution lies above; -1 where it is that of the first.
     eta_weights : float array (points, 4)
@@ -93,11 +70,11 @@ def interpolate_many(
         `known` is set where there is an answer.
     """
     for point in range(len(row)):
-        if np.isnan(row[point]) or np.isnan(column[point]) or angle_first[point] < 0:
+        i, j = row[point], column[point]
+        if i < 0 or j < 0 or angle_first[point] < 0:
             continue
-        n, m = cubes.peak_rotation[0].shape[1:]
-        i, j = min(int(row[point]), n - 2), min(int(column[point]), m - 2)
-        kind, value, impacts = 0, 0.0, -2
+        kind, impacts = 0, -2
+        peak, value, squares, forms = 0.0, 0.0, 0, 0
         in_cells, between_etas, between_angles = 0.0, 0.0, 0.0
         agree = True
         for e in range(4):
@@ -111,7 +88,7 @@ def interpolate_many(
                 if code == OVERTURNS:
                     here = -(4 * cubes.impacts[e][layer, i, j] + cubes.outcome[e][layer, i, j])
                 else:
-                    here = 0 if code < 0 else (2 if code >= SQUARED else 1)
+                    here = 0 if code < 0 else 1
                 agree = here != 0 and (kind == 0 or kind == here)
                 if not agree:
                     continue
@@ -127,11 +104,12 @@ def interpolate_many(
                 agree = not np.isnan(in_cells + between_etas + between_angles)
                 impacts = common_impacts(cubes, layer, e, i, j, impacts)
                 if kind > 0:
-                    value += (
-                        by_eta
-                        * by_angle
-                        * in_cell(cubes.peak_rotation[e], layer, i, j, code, row[point], column[point])
-                    )
+                    squared = code >= SQUARED
+                    shift = code - SQUARED if squared else code
+                    here_value = in_cell(cubes.peak_rotation[e][layer], i, j, shift, squared, x[point], y[point], mesh)
+                    value += by_eta * by_angle * here_value
+                    peak += by_eta * by_angle * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
+                    squares, forms = squares + int(squared), forms + 1
         if not agree:
             continue
         found = answers[point]
@@ -140,4 +118,4 @@ def interpolate_many(
         found.impacts = impacts
         found.overturned = kind < 0
         found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1
-        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if kind == 2 else value
+        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if 0 < squares == forms else peak  # as `sweep_layer.gap_error`

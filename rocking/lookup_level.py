@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.cube import AXES, read_spectrum
-from rocking.errors import DatasetError
+from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.interpolation import Mesh
 
 ERRORS = ("interpolation_error", "restitution_error", "alpha_error")
 """Measured errors of interpolation."""
@@ -36,6 +37,8 @@ class Level:
         eta [-] of this cube and of the next one made with it; nan if there is none.
     alpha, slenderness, frequency_ratio : float arrays
         The axes [rad], [-], [-].
+    mesh : Mesh
+        Of the latter two.
     sha256 : str
         Of the file: the version of the data.
     """
@@ -46,6 +49,7 @@ class Level:
     alpha: Array
     slenderness: Array
     frequency_ratio: Array
+    mesh: Mesh
     sha256: str
     peak_rotation: Array
     outcome: NDArray[np.int8]
@@ -69,36 +73,21 @@ def open_level(path: Path | str) -> Level:
         If the file is missing, damaged, or not a spectrum cube.
     """
     cube = read_spectrum(path)
-    rows, columns = cube["slenderness"].values, cube["frequency_ratio"].values
-    for name, steps in (("slenderness", np.diff(rows)), ("frequency_ratio", np.diff(np.log(columns)))):
-        if steps.size < 3 or not np.allclose(steps, steps.mean(), rtol=1e-6, atol=0.0):
-            raise DatasetError(f"{path}: axis `{name}` is not evenly spaced over 4 nodes or more; build it again")
     axes: dict[str, Any] = {name: cube[name].values for name in AXES}
     fields: dict[str, Any] = {name: np.ascontiguousarray(cube[name].values) for name in FIELDS}
-    for name in ERRORS:
-        fields[name] = largest_around(fields[name])
+    try:
+        mesh = Mesh.of(axes["slenderness"], axes["frequency_ratio"])
+    except InvalidArgumentError as error:
+        raise DatasetError(f"{path}: {error}; build it again") from error
     return Level(
         pulse=str(cube["pulse"].attrs["pulse_name"]),
         restitution=float(cube["restitution"]),
         next_restitution=float(cube.attrs.get("next_restitution", np.nan)),
+        mesh=mesh,
         sha256=hashlib.sha256(Path(path).read_bytes()).hexdigest(),
         **axes,
         **fields,
     )
-
-
-def largest_around(errors: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The largest of the errors of a cell and the eight around it; nan stays nan, and only there.
-
-    A crease of the peak that only cuts a corner of a cell passes the probes of its neighbours.
-    """
-    n, m = errors.shape[1:]
-    around = np.pad(errors, ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
-    largest = errors.copy()
-    for i in range(3):
-        for j in range(3):
-            np.fmax(largest, around[:, i : i + n, j : j + m], out=largest, where=~np.isnan(errors))
-    return largest
 
 
 def fetch_level(address: str) -> Level:

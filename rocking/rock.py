@@ -19,7 +19,7 @@ from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_arc, turn
 from rocking.taylor_flight import fly_steps
 
-IMPACT_LIMIT = 20_000
+IMPACT_LIMIT = 200_000
 """Impacts after which a block that neither rests nor overturns is declared at rest, and flagged as chattering."""
 
 LOBES = 65536

@@ -87,9 +87,11 @@ def locate(flight: Record, order: int, falling: bool, lo: float, hi: float, gues
             else:
                 value, slope, curve = bend, third, 0.0  # only the sign of w is used there
             step = -value / slope
-            step -= 0.5 * curve / slope * step * step
-            if abs(step) <= 2e-5 * min(reach, centre + delta):
-                # the error left behind goes with the cube of the step: rounding
+            bow = 0.5 * curve / slope * step
+            step -= bow * step
+            if abs(step) <= 2e-5 * min(reach, centre + delta) and abs(step) * bow * bow <= 1e-16 * (centre + delta):
+                # the error left behind goes with the cube of the step, times the square of bow/step near a double zero:
+                # rounding
                 root = centre + delta + step
                 if centre > 0.0 and root <= reach:
                     delta += step

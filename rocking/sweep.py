@@ -15,11 +15,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking.cube import NO_STENCIL, OVERTURNS, build_spectrum_dataset
 from rocking.errors import in_range
+from rocking.interpolation import Mesh
 from rocking.response import Response
 from rocking.solve import peak_response
-from rocking.sweep_layer import CENTRE, PROBES, Layer, cell_error, fate_codes, gap_error
+from rocking.stencil_choice import choose_stencils
+from rocking.sweep_layer import CENTRE, DIRECT, Cells, Gap, Layer, fate_codes, largest_around
 
 Array = NDArray[np.float64]
+
+PROBES = (CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
+"""Rows and columns within a cell where interpolation is compared with the solver [-]. No two share a row or a column,
+so that no crease along one passes between them, and errors of rows and of columns cannot cancel at all of them."""
+
+FIRST = 2
+"""Probes in every cell: the error of a smooth function has one shape along rows and one along columns."""
+
+TAME = 1e-6
+"""Error at the first probes above which the others and the other stencils are tried, there and next to it [-]."""
 
 PROBE_TOLERANCE = 1e-9
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
@@ -52,9 +64,9 @@ def spectra(
     restitution : array_like, shape (l,)
         eta [-], [0, 1], ascending.
     slenderness : array_like, shape (n,), n >= 4
-        1/a [-], > 0, ascending and uniformly spaced.
+        1/a [-], > 0, ascending.
     frequency_ratio : array_like, shape (m,), m >= 4
-        omega [-], > 0, ascending and uniformly spaced in its logarithm.
+        omega [-], > 0, ascending.
     alpha : array_like, shape (k,)
         Slenderness angles [rad], ascending; 0 for the slender limit.
     barred : bool array, shape (l, k, n - 1, m - 1), optional
@@ -71,26 +83,26 @@ def spectra(
     columns = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     angles = in_range("alpha", alpha, 0.0, np.pi / 2, closed="left", unit="rad")
     etas = in_range("restitution", restitution, 0.0, 1.0)
-    grid = _Grid(pulse, rows, columns, threads)
+    grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads)
     layers: list[list[Layer]] = [[] for _ in etas]
-    errors = np.full((3, etas.size, angles.size, rows.size - 1, columns.size - 1), np.nan, dtype=np.float32)
+    errors = np.full((3, etas.size, angles.size, rows.size - 1, columns.size - 1), np.nan)
     for a, angle in enumerate(angles):
         for first in range(0, etas.size, TOGETHER):
             some = etas[first : first + TOGETHER]
             nodes = grid.nodes(some, angle)
             for k in range(some.size):
-                layers[first + k].append(Layer.of(nodes, k, None if barred is None else barred[first + k, a]))
+                bars = None if barred is None else barred[first + k, a]
+                layers[first + k].append(Layer.of(grid.mesh, nodes, k, bars))
             made = [layers[first + k][a] for k in range(some.size)]
             errors[0, first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
+    middles = 0.5 * (etas[1:] + etas[:-1])
     for a, angle in enumerate(angles):
-        between = 0.5 * (etas[1:] + etas[:-1])
-        found = grid.centres(between, angle)
-        for gap, eta in enumerate(between):
-            errors[1, gap, a] = gap_error([row[a] for row in layers], etas, eta, *found[gap])
-    for gap, angle in enumerate(0.5 * (angles[1:] + angles[:-1])):
+        gaps = [Gap.of([row[a] for row in layers], etas, eta) for eta in middles]
+        errors[1, :-1, a] = grid.errors_between(gaps, middles, angle, known=DIRECT)
+    for a, angle in enumerate(0.5 * (angles[1:] + angles[:-1])):
         # the equation of motion knows the sign of alpha only in its square
-        for k, (peak, fate) in enumerate(grid.centres(etas, angle)):
-            errors[2, k, gap] = gap_error(layers[k], angles**2, angle**2, peak, fate)
+        gaps = [Gap.of(row, angles**2, angle**2) for row in layers]
+        errors[2, :, a] = grid.errors_between(gaps, etas, angle)
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
     for k, eta in enumerate(etas):
         above = etas[k + 1] if k + 1 < etas.size else np.nan
@@ -102,42 +114,67 @@ class _Grid:
     """The pulse and the plane of control on which it is solved."""
 
     pulse: str
-    rows: Array
+    mesh: Mesh
     columns: Array
     threads: int | None
 
     def nodes(self, etas: Array, angle: float) -> Response:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
-        return self._solve(self.rows[:, None], self.columns, etas, angle)
+        return self._solve(self.mesh.rows[:, None], self.columns, etas, angle)
 
-    def centres(self, etas: Array, angle: float) -> list[tuple[Array, NDArray[np.int64]]]:
-        """Peak and fate at the centres of all cells, for each restitution."""
-        cells = np.indices((self.rows.size - 1, self.columns.size - 1))
-        found = self._solve(*self._places(CENTRE, *cells), etas, angle, PROBE_TOLERANCE)
+    def errors_between(self, gaps: Sequence[Gap], etas: Array, angle: float, known: int | None = None) -> Array:
+        """Errors at the centres of cells, for each of some gaps, at whose middles the restitutions and the angle lie.
+
+        nan where the layers of a gap differ; 0 without asking the solver where their kind is `known` to hold between.
+        """
+        shape = self.mesh.rows.size - 1, self.mesh.columns.size - 1
+        kinds = np.array([gap.kind for gap in gaps]).reshape(len(gaps), *shape)
+        errors = np.where(kinds == known, 0.0, np.nan)
+        wanted = (kinds != 0) & (kinds != known)
+        cells = np.nonzero(wanted.any(axis=0))
+        x, y = self.mesh.within(cells, CENTRE)
+        found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
         fates = fate_codes(found.outcome, found.impacts)
-        return [(found.peak_rotation[..., k], fates[..., k]) for k in range(len(etas))]
-
-    def errors_in_cells(self, layers: Sequence[Layer], etas: Array, angle: float) -> Array:
-        """Largest error at the probes of each cell, for each restitution; 0 where it overturns alike, or nan."""
-        errors = np.array([np.where(layer.stencil == OVERTURNS, 0.0, np.nan) for layer in layers])
-        smooth = np.array([layer.smooth for layer in layers])
-        errors[smooth] = 0.0
-        wanted = np.nonzero(smooth.any(axis=0))
-        for place in PROBES:
-            found = self._solve(*self._places(place, *wanted), etas, angle, PROBE_TOLERANCE)
-            for k, layer in enumerate(layers):
-                mine = smooth[k][wanted]
-                cells = wanted[0][mine], wanted[1][mine]
-                # a nan among them, an overturned block inside the cell, stays
-                errors[k][cells] = np.maximum(
-                    errors[k][cells], cell_error(layer, cells, place, found.peak_rotation[mine, k])
-                )
+        for k, gap in enumerate(gaps):
+            mine = wanted[k][cells]
+            own = cells[0][mine], cells[1][mine]
+            errors[k][own] = gap.error(own, found.peak_rotation[mine, k], fates[mine, k])
         return errors
 
-    def _places(self, place: tuple[float, float], i: NDArray[np.intp], j: NDArray[np.intp]) -> tuple[Array, Array]:
-        rows = self.rows[i] + place[0] * (self.rows[i + 1] - self.rows[i])
-        logs = np.log(self.columns)
-        return rows, np.exp(logs[j] + place[1] * (logs[j + 1] - logs[j]))
+    def errors_in_cells(self, layers: Sequence[Layer], etas: Array, angle: float) -> Array:
+        """Largest error at the probes of each cell, for each restitution; 0 where it overturns alike, or nan.
+
+        Where it is large the layers are given the stencil that has the least.
+        """
+        errors = np.array([np.where(layer.stencil == OVERTURNS, 0.0, np.nan) for layer in layers])
+        smooth = np.array([layer.smooth for layer in layers])
+        cells = np.nonzero(smooth.any(axis=0))
+        peaks = self._probe(PROBES[:FIRST], cells, etas, angle)
+        for k, layer in enumerate(layers):
+            mine = smooth[k][cells]
+            own = cells[0][mine], cells[1][mine]
+            found = [layer.peak_at(own, place) - peaks[p, mine, k] for p, place in enumerate(PROBES[:FIRST])]
+            errors[k][own] = np.abs(found).max(axis=0)  # nan, an overturned block inside the cell, stays
+        wild = smooth & ~(largest_around(np.where(np.isnan(errors), 1.0, errors)) <= TAME)
+        for k, layer in enumerate(layers):
+            mine = wild[k][cells]
+            own = cells[0][mine], cells[1][mine]
+            # one restitution at a time: these blocks strike often, and hardly two layers have them in the same cells
+            more = self._probe(PROBES[FIRST:], own, etas[k : k + 1], angle)
+            truth = np.concatenate([peaks[:, mine, k], more[..., 0]])
+            x, y = (np.array(axis) for axis in zip(*(self.mesh.within(own, place) for place in PROBES), strict=True))
+            codes, least = layer.stencil[own], np.empty(own[0].size)
+            choose_stencils(layer.peak_rotation, *own, x, y, truth, self.mesh, codes, least)
+            layer.stencil[own], errors[k][own] = codes, least
+        return errors
+
+    def _probe(self, places: Sequence[tuple[float, float]], cells: Cells, etas: Array, angle: float) -> Array:
+        """The solver's peaks at places within cells, for each restitution: shape (places, cells, restitutions)."""
+        peaks = np.empty((len(places), cells[0].size, etas.size))
+        for k, place in enumerate(places):
+            x, y = self.mesh.within(cells, place)
+            peaks[k] = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE).peak_rotation
+        return peaks
 
     def _solve(
         self, slenderness: Array, frequency_ratio: Array, etas: Array, angle: float, tolerance: float | None = None
@@ -153,9 +190,7 @@ class _Grid:
         )
 
 
-def _cube(
-    pulse: str, eta: float, axes: Mapping[str, Array], layers: Sequence[Layer], errors: NDArray[np.float32]
-) -> xr.Dataset:
+def _cube(pulse: str, eta: float, axes: Mapping[str, Array], layers: Sequence[Layer], errors: Array) -> xr.Dataset:
     """Assemble the layers of one restitution; cells stand at their lower corner."""
     names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha", "peak_mode")
     variables = {name: np.stack([getattr(layer, name) for layer in layers]) for name in names}
@@ -165,7 +200,9 @@ def _cube(
 
     variables["stencil"] = at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
     for name, error in zip(("interpolation_error", "restitution_error", "alpha_error"), errors, strict=True):
+        largest = largest_around(error)
+        single = largest.astype(np.float32)
         # up to the next single: what is stored is still a bound
-        above = np.where(error > 0.0, np.nextafter(error, np.float32(np.inf)), error)
+        above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
         variables[name] = at_corner(above, np.nan)
     return build_spectrum_dataset(variables, pulse=pulse, restitution=eta, axes=axes)

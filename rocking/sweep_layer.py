@@ -13,18 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.cube import NO_STENCIL, OVERTURNS, SQUARED
-from rocking.interpolation import interpolate, level_weights, stencils
+from rocking.interpolation import Mesh, level_weights, stencils
 from rocking.response import Outcome, Response
+from rocking.stencil_choice import interpolate_cells
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Cells = tuple[NDArray[np.intp], ...]
 
 CENTRE = (0.5, 0.5)
 
-PROBES = (CENTRE, (0.2, 0.2), (0.2, 0.8), (0.8, 0.2), (0.8, 0.8))
-"""Rows and columns within a cell where interpolation is compared with the solver; the middle is the worst place of a
-smooth function, the others catch what happens near the corners [-]."""
-
+DIRECT = -int(Outcome.OVERTURNED_DIRECTLY)
+"""Kind of a cell in which all overturn without an impact: they do so for every restitution."""
 
 FEW_IMPACTS = 1
 """Impacts up to which the ways of overturning fill regions with boundaries that are traced one by one."""
@@ -34,6 +34,7 @@ FEW_IMPACTS = 1
 class Layer:
     """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `cube`."""
 
+    mesh: Mesh
     peak_rotation: Array
     outcome: NDArray[np.int8]
     impacts: NDArray[np.int32]
@@ -42,7 +43,7 @@ class Layer:
     stencil: NDArray[np.int8]
 
     @classmethod
-    def of(cls, nodes: Response, k: int, barred: Flags | None) -> Layer:
+    def of(cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None) -> Layer:
         """The k-th restitution of solved nodes (n, m, restitutions); `barred` cells (n - 1, m - 1) are not used."""
         outcome, impacts, mode = nodes.outcome[..., k], nodes.impacts[..., k], nodes.peak_mode[..., k]
         safe = outcome == Outcome.SAFE
@@ -51,29 +52,30 @@ class Layer:
         codes = np.where(_overturn_alike(fate_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
-        return cls(
-            nodes.peak_rotation[..., k], outcome, impacts, nodes.exceeded_alpha[..., k], mode, codes.astype(np.int8)
-        )
+        peak = np.ascontiguousarray(nodes.peak_rotation[..., k])
+        return cls(mesh, peak, outcome, impacts, nodes.exceeded_alpha[..., k], mode, codes.astype(np.int8))
 
     @property
     def smooth(self) -> Flags:
         """Cells that are interpolated."""
         return (self.stencil >= 0) & (self.stencil < OVERTURNS)
 
-    def at(self, cells: tuple[NDArray[np.intp], ...], place: tuple[float, float]) -> Array:
+    def at(self, cells: Cells, place: tuple[float, float]) -> Array:
         """What is interpolated, E or the peak, at one place within each of some smooth cells."""
-        codes = self.stencil[cells]
-        values, squared = np.empty(codes.size), codes >= SQUARED
-        for form, tabled in ((squared, (1.0 - self.peak_rotation) ** 2), (~squared, self.peak_rotation)):
-            chosen = cells[0][form], cells[1][form]
-            values[form] = interpolate(tabled, chosen, codes[form] % SQUARED, place)
+        values = np.empty(cells[0].size)
+        interpolate_cells(
+            self.peak_rotation, *cells, self.stencil[cells], *self.mesh.within(cells, place), self.mesh, values
+        )
         return values
 
+    def peak_at(self, cells: Cells, place: tuple[float, float]) -> Array:
+        """The interpolated peak at one place within each of some smooth cells."""
+        return peak_of(self.at(cells, place), self.stencil[cells] >= SQUARED)
+
     def kinds(self) -> NDArray[np.int64]:
-        """What is known of each cell: 0 nothing, 1 a peak, 2 a peak by E, below 0 the way in which it overturns."""
-        forms = np.where(self.smooth, 1 + (self.stencil >= SQUARED), 0)
+        """What is known of each cell: 0 nothing, 1 a peak, below 0 the way in which it overturns."""
         ways = fate_codes(self.outcome, self.impacts)[:-1, :-1]
-        return np.where(self.stencil == OVERTURNS, ways, forms)
+        return np.where(self.stencil == OVERTURNS, ways, self.smooth.astype(np.int64))
 
 
 def fate_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDArray[np.int64]:
@@ -86,39 +88,61 @@ def peak_of(value: Array, squared: Flags) -> Array:
     return np.where(squared, 1.0 - np.sqrt(np.maximum(value, 0.0)), value)
 
 
-def cell_error(layer: Layer, cells: tuple[NDArray[np.intp], ...], place: tuple[float, float], truth: Array) -> Array:
-    """|interpolated - true| at one place of each of some smooth cells; nan where the block overturns there."""
-    return np.abs(peak_of(layer.at(cells, place), layer.stencil[cells] >= SQUARED) - truth)
+@dataclass(frozen=True)
+class Gap:
+    """The middle between two levels of restitution or alpha: the layers that serve it, each with its weight.
 
-
-def gap_error(layers: Sequence[Layer], levels: Array, level: float, peak: Array, fate: NDArray[np.int64]) -> Array:
-    """Error at the centres of all cells of interpolating between levels of restitution or alpha.
-
-    Parameters
+    Attributes
     ----------
-    layers : sequence of Layer
-        One for each level.
-    levels : float array
-        Ascending.
-    level : float
-        Where to interpolate.
-    peak, fate : arrays (n - 1, m - 1)
-        The solver's peak there, and its fate as `fate_codes`.
-
-    Returns
-    -------
-    float array (n - 1, m - 1)
-        nan where it cannot be interpolated: not everywhere the same form, or overturning in the same way.
+    kind : int array (n - 1, m - 1)
+        What is known of each cell, as `Layer.kinds`; 0 also where the layers differ.
     """
-    _, first, weights = level_weights(levels, level)
-    used = [layers[int(first) + k] for k in range(weights.size) if weights[k] != 0.0]
-    kinds = [layer.kinds() for layer in used]
-    kind = np.where(np.all([other == kinds[0] for other in kinds], axis=0), kinds[0], 0)
-    error = np.where((kind < 0) & (fate == kind), 0.0, np.nan)
-    cells = np.nonzero((kind > 0) & (fate == 1))
-    value = sum(weight * layer.at(cells, CENTRE) for weight, layer in zip(weights, used, strict=False))
-    error[cells] = np.abs(peak_of(np.asarray(value), kind[cells] == 2) - peak[cells])
-    return error
+
+    layers: Sequence[Layer]
+    weights: Sequence[float]
+    kind: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, layers: Sequence[Layer], levels: Array, level: float) -> Gap:
+        """Of all layers, at ascending levels, those that serve `level`."""
+        _, first, weights = level_weights(levels, level)
+        used = np.flatnonzero(weights).tolist()
+        serving = [layers[int(first) + k] for k in used]
+        kinds = [layer.kinds() for layer in serving]
+        alike = np.all([kind == kinds[0] for kind in kinds], axis=0)
+        return cls(serving, weights[used].tolist(), np.where(alike, kinds[0], 0))
+
+    def error(self, cells: Cells, peak: Array, fate: NDArray[np.int64]) -> Array:
+        """Error at the centres of some cells, where the solver has that peak and that fate, as `fate_codes`.
+
+        nan where it cannot be interpolated: the fates differ.
+        """
+        kind = self.kind[cells]
+        error = np.where((kind < 0) & (fate == kind), 0.0, np.nan)
+        safe = (kind > 0) & (fate == 1)
+        own = cells[0][safe], cells[1][safe]
+        found = [(layer.at(own, CENTRE), layer.stencil[own] >= SQUARED) for layer in self.layers]
+        squared = np.all([form for _, form in found], axis=0)
+        # E where all of them interpolate it, else the peaks
+        of_form = np.sum([w * value for w, (value, _) in zip(self.weights, found, strict=True)], axis=0)
+        of_peak = np.sum([w * peak_of(*one) for w, one in zip(self.weights, found, strict=True)], axis=0)
+        error[safe] = np.abs(np.where(squared, peak_of(of_form, squared), of_peak) - peak[safe])
+        return error
+
+
+def largest_around(errors: Array) -> Array:
+    """The largest of the errors (..., n, m) of a cell and the eight around it; nan stays nan, and only there.
+
+    A crease of the peak that only cuts a corner of a cell passes the points of its neighbours.
+    """
+    n, m = errors.shape[-2:]
+    outside = [(0, 0)] * (errors.ndim - 2) + [(1, 1), (1, 1)]
+    around = np.pad(errors, outside, constant_values=np.nan)
+    largest = errors.copy()
+    for i in range(3):
+        for j in range(3):
+            np.fmax(largest, around[..., i : i + n, j : j + m], out=largest, where=~np.isnan(errors))
+    return largest
 
 
 def _overturn_alike(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Flags:

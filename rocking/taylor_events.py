@@ -34,6 +34,16 @@ def value_and_slope(series: Series, lane: int, top: int, h: float) -> tuple[floa
 
 
 @kernel
+def bend_before(series: Series, lane: int, top: int, h: float) -> float:
+    """Bound of the second derivative of the series of degree `top` on [0, h]."""
+    bend = 0.0
+    for i in range(top - 1):
+        n = top - i
+        bend = bend * h + abs(series[n, lane]) * (n * (n - 1.0))
+    return bend
+
+
+@kernel
 def polish(
     series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, deflated: bool, guess: float
 ) -> tuple[float, float]:

@@ -12,7 +12,7 @@ import math
 
 from rocking.compilation import Record, kernel
 from rocking.scratch import FALLEN, IMPACT, PULSE_END, UNDERWAY
-from rocking.taylor_events import evaluate, first_crossing, polish
+from rocking.taylor_events import bend_before, evaluate, first_crossing, polish
 from rocking.taylor_step import set_block, take_step
 
 
@@ -86,7 +86,10 @@ def highest(steps: Record, lane: int, start: float, h: float, z1: float, w1: flo
     start = max(start, 0.0)
     if w0 >= 0.0 > w1:
         top, slope = polish(steps.rate, lane, steps.order - 1, start, h, True, False, h * w0 / (w0 - w1))
-        if 2.0 * abs(slope) > bend * max(top - start, h - top):  # |w - slope (t - top)| <= bend (t - top)^2/2
+        reach = max(top - start, h - top)
+        if 2.0 * abs(slope) <= bend * reach:  # the bound of the whole step, too large for an early impact
+            bend = bend_before(steps.rate, lane, steps.order - 1, h)
+        if 2.0 * abs(slope) > bend * reach:  # |w - slope (t - top)| <= bend (t - top)^2/2
             return evaluate(steps.z, lane, steps.order, top)
     largest = 0.0
     while start < h:

@@ -190,7 +190,7 @@ def test_interpolation_error_marks_smooth_cells_only(cube: xr.Dataset) -> None:
     omega = FREQUENCY_RATIO[j] * (FREQUENCY_RATIO[1] / FREQUENCY_RATIO[0]) ** v
     central = np.isin(cube.stencil.values[0][i, j], (0, SQUARED))  # the 16 nodes around the cell
     squared = cube.stencil.values[0][i, j] == SQUARED
-    assert central.mean() > 0.5
+    assert central.mean() > 0.25
     assert squared.any()
     solved = peak_response("sine", slenderness=s, frequency_ratio=omega, restitution=0.85)
     weights = [lagrange(u), lagrange(v)]

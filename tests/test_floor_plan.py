@@ -16,7 +16,7 @@ FLOORS = (
     ("block", "pulses", "orientation", "response"),
     ("scratch",),
     ("free_rocking", "fate_margin", "lane_sines", "contact", "cuts", "groups", "cube", "interpolation", "scale_law"),
-    ("chatter",),
+    ("chatter", "stencil_choice"),
     ("slender*", "taylor*", "closed_form*"),
     ("rock",),
     ("rock_many",),

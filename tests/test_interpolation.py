@@ -3,23 +3,29 @@
 import numpy as np
 import pytest
 
+from rocking.cube import SQUARED
 from rocking.errors import InvalidArgumentError
-from rocking.interpolation import (
-    SHIFTS,
-    cell_index,
-    interpolate,
-    lagrange_weights,
-    level_weights,
-    log_index,
-    stencils,
-    uniform_index,
-)
+from rocking.interpolation import SHIFTS, Mesh, cell_of, level_weights, stencils, weights
+from rocking.stencil_choice import choose_stencils, interpolate_cells
+
+UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0.1])
+
+
+def interpolate(values, mesh, cells, codes, place):
+    """At one place within each of some cells."""
+    found = np.empty(cells[0].size)
+    interpolate_cells(values, *cells, codes, *mesh.within(cells, place), mesh, found)
+    return found
 
 
 def test_weights_add_up_to_one_and_pick_the_nodes():
-    local = np.linspace(0.0, 3.0, 31)
-    np.testing.assert_allclose(lagrange_weights(local).sum(axis=-1), 1.0, atol=1e-15)
-    np.testing.assert_array_equal(lagrange_weights([0.0, 1.0, 2.0, 3.0]), np.eye(4))
+    mesh = Mesh.of(UNEVEN, UNEVEN)
+    for first in range(UNEVEN.size - 3):
+        for x in np.linspace(UNEVEN[first], UNEVEN[first + 3], 31):
+            assert sum(weights(mesh.rows, mesh.row_products, first, x)) == pytest.approx(1.0, abs=1e-14)
+        for k in range(4):
+            at_node = weights(mesh.rows, mesh.row_products, first, UNEVEN[first + k])
+            np.testing.assert_array_equal(at_node, np.eye(4)[k])
 
 
 def cubic(x, y):
@@ -28,38 +34,74 @@ def cubic(x, y):
 
 def test_cubics_are_interpolated_exactly_whichever_nodes_serve():
     rng = np.random.default_rng(1)
-    values = cubic(np.arange(10.0)[:, None], np.arange(7.0))
-    serves = rng.random((10, 7)) < 0.95
+    mesh = Mesh.of(UNEVEN, np.exp(UNEVEN[:9]))
+    values = cubic(mesh.rows[:, None], mesh.columns)
+    serves = rng.random(values.shape) < 0.93
     codes = stencils(serves)
     values[~serves] = np.nan
     assert len(np.unique(codes)) == len(SHIFTS) + 1  # each of them, and none
     cells = np.nonzero(codes >= 0)
     for place in ((0.0, 0.0), (0.3, 0.9), (1.0, 0.5)):
-        found = interpolate(values, cells, codes[cells], place)
-        np.testing.assert_allclose(found, cubic(cells[0] + place[0], cells[1] + place[1]), rtol=1e-12, atol=1e-12)
+        found = interpolate(values, mesh, cells, codes[cells], place)
+        np.testing.assert_allclose(found, cubic(*mesh.within(cells, place)), rtol=1e-12, atol=1e-12)
 
 
-def test_error_falls_with_the_fourth_power_of_the_step():
+def test_error_falls_with_the_fourth_power_of_the_step_on_uneven_axes_too():
     errors = []
-    for n in (21, 41, 81):
-        rows, columns = np.linspace(0.1, 0.9, n), np.linspace(0.0, 2.0, n)
-        codes = stencils(np.ones((n, n), dtype=bool))
-        cells = np.nonzero(codes >= 0)
-        found = interpolate(np.sin(3 * rows)[:, None] * np.cos(2 * columns), cells, codes[cells], (0.5, 0.5))
-        middle = [axis[:-1] + 0.5 * (axis[1] - axis[0]) for axis in (rows, columns)]
-        true = np.sin(3 * middle[0])[:, None] * np.cos(2 * middle[1])
-        errors.append(np.abs(found.reshape(true.shape) - true).max())
-    order = np.polyfit(np.log([21 - 1, 41 - 1, 81 - 1]), np.log(errors), 1)[0]
-    assert order == pytest.approx(-4.0, abs=0.3)
+    counts = np.array([20, 40, 80])
+    for n in counts:
+        axis = 0.1 + 0.8 * np.linspace(0.0, 1.0, n + 1) ** 1.5
+        mesh = Mesh.of(axis, np.exp(axis))
+        cells = tuple(index.ravel() for index in np.indices((n, n)))
+        codes = stencils(np.ones((n + 1, n + 1), dtype=bool))[cells]
+        found = interpolate(np.sin(3 * axis)[:, None] * np.cos(2 * axis), mesh, cells, codes, (0.5, 0.5))
+        x, y = mesh.within(cells, (0.5, 0.5))
+        errors.append(np.abs(found - np.sin(3 * x) * np.cos(2 * y)).max())
+    assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-4.0, abs=0.3)
 
 
-def test_fractional_index_keeps_the_end_nodes_and_refuses_what_lies_outside():
-    rows, columns = np.linspace(0.02, 0.85, 84), np.geomspace(0.5, 12.0, 97)
-    np.testing.assert_allclose(uniform_index(rows, rows), np.arange(84), atol=1e-11)
-    np.testing.assert_allclose(log_index(columns, columns), np.arange(97), atol=1e-11)
-    assert np.isnan(uniform_index(rows, [np.nextafter(0.02, 0), 0.86, np.nan])).all()
-    assert np.isnan(log_index(columns, [0.49, np.nextafter(12.0, 13), -1.0, np.nan])).all()
-    np.testing.assert_array_equal(cell_index(np.array([0.0, 0.9, 1.0, 5.5, 6.0, 6.9, 7.0]), 8), [0, 0, 1, 5, 6, 6, 6])
+def test_cells_hold_their_nodes_and_nothing_outside():
+    np.testing.assert_array_equal(cell_of(UNEVEN, UNEVEN), [*range(11), 10])
+    np.testing.assert_array_equal(cell_of(UNEVEN, 0.5 * (UNEVEN[1:] + UNEVEN[:-1])), np.arange(11))
+    outside = [np.nextafter(UNEVEN[0], 0), np.nextafter(UNEVEN[-1], 9), -1.0, np.nan, np.inf]
+    np.testing.assert_array_equal(cell_of(UNEVEN, outside), -1)
+
+
+@pytest.mark.parametrize("form", ["peak", "squared"])
+def test_beside_a_crease_the_stencil_on_the_same_side_is_chosen(form):
+    """The crease lies on a row: stencils that do not cross it are exact, as each side is a cubic in what is best."""
+    axis = np.arange(12.0) / 12
+    mesh = Mesh.of(axis, np.exp(axis))
+
+    def value(x, y):
+        smooth = np.where(x < axis[6], 0.2 + 0.1 * x * y, 0.2 + 0.1 * axis[6] * y + 0.5 * (x - axis[6]))
+        return smooth if form == "peak" else 1.0 - np.sqrt(smooth)
+
+    values = value(axis[:, None], axis)
+    i, j = (index.ravel() for index in np.indices((11, 11)))
+    places = ((0.5, 0.5), (0.2, 0.3), (0.7, 0.9))
+    x, y = (np.array(parts) for parts in zip(*(mesh.within((i, j), place) for place in places), strict=True))
+    codes, errors = stencils(np.ones(values.shape, dtype=bool))[i, j], np.empty(i.size)
+    choose_stencils(values, i, j, x, y, value(x, y), mesh, codes, errors)
+    assert errors.max() < 1e-14
+    expected = value(*mesh.within((i, j), (0.4, 0.6)))
+    squared = codes >= SQUARED
+    assert form == "peak" or squared.all()
+    found = interpolate(values, mesh, (i, j), codes, (0.4, 0.6))
+    np.testing.assert_allclose(found, np.where(squared, (1.0 - expected) ** 2, expected), rtol=1e-12)
+
+
+def test_a_block_that_overturns_within_a_cell_leaves_it_without_a_promise():
+    axis = np.arange(6.0)
+    mesh = Mesh.of(axis, np.exp(axis))
+    values = np.ones((6, 6))
+    values[0, 0] = np.nan
+    i = j = np.array([0, 1, 2, 4])
+    x, y = (part[None] for part in mesh.within((i, j), (0.5, 0.5)))
+    truth = np.array([[1.0, 1.0, np.nan, 1.25]])
+    codes, errors = np.zeros(4, dtype=np.int8), np.empty(4)
+    choose_stencils(values, i, j, x, y, truth, mesh, codes, errors)
+    np.testing.assert_array_equal(errors, [np.nan, 0.0, np.nan, 0.25])
 
 
 def test_stencils_against_a_plain_loop():
@@ -77,7 +119,7 @@ def test_stencils_against_a_plain_loop():
 
 def test_a_grid_too_small_for_a_stencil_is_refused():
     with pytest.raises(InvalidArgumentError, match="at least 4 nodes"):
-        stencils(np.ones((3, 5), dtype=bool))
+        Mesh.of(UNEVEN[:3], UNEVEN)
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 7])

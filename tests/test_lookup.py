@@ -15,11 +15,11 @@ from rocking.bounded_response import SOLVER_ERROR, solve_with_bound
 from rocking.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
 from rocking.lookup import SAFETY
-from rocking.lookup_level import largest_around
 from rocking.lookup_open import open_cube
 from rocking.response import Outcome
 from rocking.solve import peak_response
 from rocking.sweep import spectra, spectrum
+from rocking.sweep_layer import largest_around
 
 ETA = 0.85
 GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomspace(0.5, 12.0, 91)}
@@ -137,7 +137,7 @@ def test_no_cell_that_a_boundary_crosses_is_interpolated(path):
 
 
 def test_largest_around_spreads_errors_and_keeps_what_is_unknown():
-    errors = np.zeros((1, 5, 6), dtype=np.float32)
+    errors = np.zeros((1, 5, 6))
     errors[0, 2, 3], errors[0, 2, 4] = 7.0, np.nan
     found = largest_around(errors)[0]
     assert np.isnan(found[2, 4])
@@ -262,7 +262,7 @@ def test_solver_bound_grows_beside_a_separatrix():
 
 def test_bound_is_the_measured_error_times_the_safety_factor(cube, path):
     stored = read_spectrum(path)
-    error = largest_around(stored["interpolation_error"].values)[0]
+    error = stored["interpolation_error"].values[0]
     i, j = np.argwhere(error > 0.0)[100]
     s, w = (stored[name].values for name in ("slenderness", "frequency_ratio"))
     found = cube.response(slenderness=s[i : i + 2].mean(), frequency_ratio=np.sqrt(w[j] * w[j + 1]), tolerance=1.0)
@@ -270,13 +270,26 @@ def test_bound_is_the_measured_error_times_the_safety_factor(cube, path):
     assert found.error_bound == pytest.approx(SAFETY * float(error[i, j]) + SOLVER_ERROR, rel=1e-12)
 
 
-def test_uneven_axis_is_refused(tmp_path):
-    uneven = spectrum(
-        "sine", restitution=ETA, slenderness=[0.1, 0.2, 0.3, 0.5], frequency_ratio=np.geomspace(1.0, 8.0, 4)
-    )
-    write_dataset(uneven, tmp_path / "uneven.nc")
-    with pytest.raises(DatasetError, match="slenderness"):
-        open_cube(tmp_path / "uneven.nc")
+def test_too_few_nodes_are_refused(tmp_path, path):
+    short = read_spectrum(path).isel(slenderness=slice(3))
+    write_dataset(short, tmp_path / "short.nc")
+    with pytest.raises(DatasetError, match="at least 4 nodes"):
+        open_cube(tmp_path / "short.nc")
+
+
+def test_axes_may_be_spaced_unevenly(tmp_path):
+    rows = np.r_[np.linspace(0.3, 0.6, 16), np.linspace(0.6, 0.7, 21)[1:]]
+    made = spectrum("sine", restitution=ETA, slenderness=rows, frequency_ratio=np.r_[6.0:9.0:0.1, 9.0:12.0:0.2])
+    write_dataset(made, tmp_path / "uneven.nc")
+    rng = np.random.default_rng(2)
+    asked = {"slenderness": rng.uniform(0.3, 0.7, 2000), "frequency_ratio": rng.uniform(6.0, 11.8, 2000)}
+    found = open_cube(tmp_path / "uneven.nc").response(**asked)
+    truth = peak_response("sine", **asked, restitution=ETA)
+    from_cube = found.source == "cube"
+    assert from_cube.mean() > 0.7
+    np.testing.assert_array_equal(found.outcome, truth.outcome)
+    error = np.abs(found.peak_rotation - truth.peak_rotation)[~truth.overturned]
+    assert (error <= found.error_bound[~truth.overturned]).all()
 
 
 def test_missing_and_damaged_files_say_so(tmp_path, path):

@@ -135,7 +135,9 @@ def test_unknown_key_is_refused_by_name(place: tuple[str, ...], key: str, tmp_pa
         ({"grid": GRID | {"alpha_deg": [20]}}, "need the slender limit"),
         ({"grid": GRID | {"alpha_deg": [20, 0]}}, "has to ascend"),
         ({"grid": GRID | {"alpha_deg": [0, 90]}}, "90 is greater than or equal to the maximum of 90"),
-        ({"grid": GRID | {"slenderness": {"low": 0.05, "high": 0.95, "points": 74}}}, "is not a node"),
+        ({"grid": GRID | {"slenderness": {"breaks": [0.05, 0.95], "steps": [0.018]}}}, "is not a node"),
+        ({"grid": GRID | {"slenderness": {"breaks": [0.05, 0.95], "steps": [0.4]}}}, "no multiple of the step"),
+        ({"grid": GRID | {"slenderness": {"breaks": [0.05, 0.95], "steps": [0.1, 0.1]}}}, "2 steps for 1 stretch"),
         ({"pulses": ["sine", "triangle"]}, "'triangle' is not one of"),
     ],
 )

@@ -9,6 +9,7 @@ sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
 from rocking.provenance import code_digest, settings_digest
+from workflow.scripts.axes import stepped
 
 from snakemake.exceptions import WorkflowError
 
@@ -50,7 +51,11 @@ def check_configuration():
     for eta, name in zip(config["restitution"], ETAS):
         if float(name) != eta:
             raise WorkflowError(f"restitution {eta}: two decimals at most, they name the files")
-    angles, rows = config["grid"]["alpha_deg"], config["grid"]["slenderness"]
+    angles = config["grid"]["alpha_deg"]
+    try:
+        rows = stepped(**config["grid"]["slenderness"])
+    except ValueError as error:
+        raise WorkflowError(f"slenderness: {error}") from error
     if 0 not in angles:
         raise WorkflowError(f"alpha_deg {angles}: figures and claims need the slender limit, 0")
     if angles != sorted(angles):
@@ -66,9 +71,8 @@ def check_configuration():
         if angle not in angles:
             raise WorkflowError(f"{figure} asks for alpha_deg {angle}, which is not among {angles}")
         for slenderness in chosen(figure).get("slenderness", []):
-            node = (slenderness - rows["low"]) / (rows["high"] - rows["low"]) * (rows["points"] - 1)
-            if abs(node - round(node)) > 1e-6 or not 0 <= round(node) < rows["points"]:
-                raise WorkflowError(f"{figure} asks for slenderness {slenderness}, which is not a node of {rows}")
+            if abs(rows - slenderness).min() > 1e-9:
+                raise WorkflowError(f"{figure} asks for slenderness {slenderness}, which is not a node of the grid")
 
 
 check_configuration()

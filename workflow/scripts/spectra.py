@@ -10,6 +10,7 @@ import numpy as np
 from rocking.boundary_cells import crossed_cells
 from rocking.cube import describe, read_dataset, write_dataset
 from rocking.sweep import spectra
+from workflow.scripts.axes import stepped
 from workflow.scripts.job import run
 
 
@@ -26,10 +27,9 @@ def main(
 
     Cells that the overturning boundaries cross, read from `boundaries`, are marked as not to be interpolated.
     """
-    rows, columns = grid["slenderness"], grid["frequency_ratio"]
+    columns = grid["frequency_ratio"]
     axes: dict[str, Any] = {
-        # rounded so that a step of 0.0025 gives 0.9 and not 0.9000000000000001
-        "slenderness": np.round(np.linspace(rows["low"], rows["high"], rows["points"]), 12),
+        "slenderness": stepped(**grid["slenderness"]),
         "frequency_ratio": np.geomspace(columns["low"], columns["high"], columns["points"]),
         "alpha": [math.radians(angle) for angle in grid["alpha_deg"]],
     }
