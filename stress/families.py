@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from argparse import ArgumentParser
+
 from stress.cells import Draw, Family
 from stress.edges import ALPHA, END, FATE, GRAZE, ISLAND, EdgeFamily
 
@@ -107,3 +109,10 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
 )
 
 BY_NAME = {family.name: family for family in FAMILIES}
+
+
+def known(names: list[str], parser: ArgumentParser) -> list[str]:
+    """The families of these names, all if there are none; a name that is none ends the command."""
+    if wrong := sorted(set(names) - set(BY_NAME)):
+        parser.error(f"no such family: {', '.join(wrong)}")
+    return names or list(BY_NAME)
