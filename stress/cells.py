@@ -10,6 +10,7 @@ from zlib import crc32
 
 import numpy as np
 
+from tests.tools.conditioning import MOST_IMPACTS
 from tests.tools.exact_pulses import PULSES
 from tests.tools.exact_response import ExactResponse, working_precision
 from tests.tools.multiprecision import integrate
@@ -38,10 +39,10 @@ class Draw:
         return float(self.random.choice(values))
 
 
-def look(cell: Cell, **changed: Any) -> ExactResponse:
+def look(cell: Cell, most_impacts: int = MOST_IMPACTS, **changed: Any) -> ExactResponse:
     """The response of a cell in multi-precision arithmetic, to see what happens."""
     with working_precision(BITS):
-        return integrate(**(cell | changed), most_impacts=100_000)
+        return integrate(**(cell | changed), most_impacts=most_impacts)
 
 
 def any_angle(draw: Draw) -> float:

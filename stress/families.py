@@ -58,7 +58,7 @@ def _line(draw: Draw) -> tuple[float, float, float]:
 
 
 def _island_line(draw: Draw) -> tuple[float, float, float]:
-    return 0.0, draw.uniform(0.3, 1.2), draw.uniform(0.8, 1.0)
+    return 0.0, draw.uniform(0.45, 1.2), draw.uniform(0.8, 1.0)
 
 
 def _extreme_angle(draw: Draw) -> float:
@@ -87,8 +87,10 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "1e-3 to 1e-12 from overturning after three, five and more impacts",
         _island_line,
         ISLAND,
-        line=(0.85, 0.9995, 32),
-        edges=60,
+        line=(0.86, 0.98, 16),
+        pulses=SEVERAL_LOBES,
+        edges=54,
+        most_impacts=60,
     ),
     EdgeFamily(
         "last-bits", "1e-12 to 1e-16 from another fate: the input decides", _line, FATE, nearest=1e-16, farthest=1e-12
