@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -48,8 +49,9 @@ def main() -> None:
         out,
     )
     print(table)
-    print("\n".join(promises) or "all promises kept")
-    print(f"\nwritten to {out}, with .md, .png and .svg beside it")
+    print(f"written to {out}, with .md, .png and .svg beside it")
+    if promises:
+        sys.exit("\n".join(["not kept:", *promises]))
 
 
 if __name__ == "__main__":

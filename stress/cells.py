@@ -18,6 +18,9 @@ from tests.tools.multiprecision import integrate
 Cell = dict[str, Any]
 """A question to the solver: pulse, slenderness, frequency_ratio, restitution [-]; alpha [rad] if it is rigid."""
 
+PROMISES = ("fates", "digits", "bounds", "times")
+"""No wrong fate that one ulp does not explain; few digits lost beyond the conditioning; error bounds; no slow cell."""
+
 BITS = 128
 """Precision at which cells are looked for; their answers are computed anew at 192."""
 
@@ -72,6 +75,8 @@ class Family:
         (False, True), or (True,) where the slender block has no part in it.
     size : int
         Number of cells.
+    promises : tuple of str
+        What is held against the answers: see `report.broken`.
     """
 
     name: str
@@ -82,6 +87,7 @@ class Family:
     angle: Callable[[Draw], float] = any_angle
     rigid: tuple[bool, ...] = (False, True)
     size: int = 252
+    promises: tuple[str, ...] = PROMISES
 
     def cells(self) -> Iterator[Cell]:
         """All of them, in order."""

@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from typing import NamedTuple
 
 import numpy as np
 from flint import arb
 
-from stress.cells import BITS, Cell, Draw, any_angle, drawn, look
+from stress.cells import BITS, PROMISES, Cell, Draw, any_angle, drawn, look
 from tests.tools.conditioning import MOST_IMPACTS
 from tests.tools.exact_pulses import PULSES
 from tests.tools.exact_response import CAPPED, ExactResponse, working_precision
@@ -26,15 +27,11 @@ MOST_LINES = 4000
 """Lines searched at most for one family."""
 
 
-class Kind:
+class Kind(NamedTuple):
     """What changes at an edge: a `key` of the response, and whether a change of it is of the kind that is meant."""
 
-    def __init__(
-        self,
-        key: Callable[[ExactResponse], object],
-        confirm: Callable[[ExactResponse, ExactResponse], bool],
-    ) -> None:
-        self.key, self.confirm = key, confirm
+    key: Callable[[ExactResponse], object]
+    confirm: Callable[[ExactResponse, ExactResponse], bool]
 
 
 def _same_fate_other_count(one: ExactResponse, other: ExactResponse) -> bool:
@@ -108,6 +105,7 @@ class EdgeFamily:
     farthest: float = 1e-3
     edges: int = 72
     most_impacts: int = MOST_IMPACTS
+    promises: tuple[str, ...] = PROMISES
 
     def cells(self) -> Iterator[Cell]:
         """All of them, in order; the slenderness that `groups` draws is not used."""

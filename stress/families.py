@@ -12,6 +12,9 @@ TWICE_PUSHED = ("cosine", "c1", "c2", "ricker", "ricker_antisymmetric", "mavroei
 
 SEVERAL_LOBES = ("sine", *TWICE_PUSHED)
 
+FOLLOWED = 20_000
+"""Impacts that the package follows, then it declares rest."""
+
 
 def _ordinary(draw: Draw) -> tuple[float, float, float]:
     return draw.uniform(0.05, 0.95), draw.log(0.3, 12.0), draw.uniform(0.3, 1.0)
@@ -51,6 +54,10 @@ def _restitution(draw: Draw) -> tuple[float, float, float]:
 
 def _elastic(draw: Draw) -> tuple[float, float, float]:
     return 1.0 - draw.log(5e-5, 1e-3), draw.log(0.02, 0.1), draw.one_of(0.9999, 1.0 - 1e-6, 1.0 - 1e-12, 1.0)
+
+
+def _unending(draw: Draw) -> tuple[float, float, float]:
+    return 1.0 - draw.log(5e-5, 2e-4), draw.log(0.01, 0.03), draw.one_of(0.9998, 0.9999, 0.99995)
 
 
 def _line(draw: Draw) -> tuple[float, float, float]:
@@ -93,7 +100,13 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         most_impacts=60,
     ),
     EdgeFamily(
-        "last-bits", "1e-12 to 1e-16 from another fate: the input decides", _line, FATE, nearest=1e-16, farthest=1e-12
+        "last-bits",
+        "1e-12 to 1e-16 from another fate: the input decides",
+        _line,
+        FATE,
+        nearest=1e-16,
+        farthest=1e-12,
+        promises=("digits", "bounds", "times"),
     ),
     Family("strong", "1/a down to 1e-4", _strong),
     Family("impulse", "omega up to 1e4: flights of a ten-thousandth", _impulse),
@@ -105,8 +118,18 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "eta from 0.9999 under slow pulses: thousands of impacts without rest",
         _elastic,
         pulses=("sine", "half_sine", "c1"),
-        accept=lambda r: 2_000 <= r.impacts <= 60_000,
-        size=18,
+        accept=lambda r: 2_000 <= r.impacts < FOLLOWED,
+        size=24,
+        promises=("fates", "digits", "bounds"),
+    ),
+    Family(
+        "unending",
+        "the same beyond the impacts that the package follows: its answer is another one",
+        _unending,
+        pulses=("sine",),
+        accept=lambda r: FOLLOWED < r.impacts <= 60_000,
+        size=6,
+        promises=(),
     ),
 )
 

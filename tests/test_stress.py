@@ -11,15 +11,14 @@ import pytest
 
 from stress.examine import beyond_promised_bound
 from stress.families import BY_NAME
-from stress.report import EXACT_SYMMETRIES, UNDECIDED, broken
+from stress.report import EXACT_SYMMETRIES, broken
 from stress.solver import errors, solve, ulps_that_explain, wrong_events, wrong_fates
 from stress.symmetries import symmetries
 from stress.truth import COLUMNS, INPUTS, Table, answered, read
 from tests.tools.conditioning import integrate_with_conditioning
 
 ROOT = Path(__file__).parents[1]
-JUDGED = [name for name in BY_NAME if name not in UNDECIDED]
-LARGEST_IN_ULPS = dict.fromkeys(BY_NAME, 20.0) | {"strong": 2e3, "grazing": 2e3, "chatter": 2e3, "nearly-elastic": 2e3}
+HARMLESS = dict.fromkeys(BY_NAME, 20.0) | {"strong": 1000.0, "grazing": 100.0, "nearly-elastic": 1000.0}
 """Bounds on the error of the peak over what one unit in the last place of an input explains."""
 
 
@@ -28,27 +27,39 @@ def table(request: pytest.FixtureRequest) -> Table:
     return read(request.param)
 
 
+def promised(table: Table, promise: str) -> None:
+    if table.family == "grazing" and promise != "fates":
+        pytest.xfail("slender arcs lose digits at impacts that nearly graze")
+    if promise not in BY_NAME[table.family].promises:
+        pytest.skip(f"{table.family} cells are told, not judged")
+
+
 def test_fates_and_events_are_right(table: Table) -> None:
+    promised(table, "fates")
     found = solve(table)
     wrong = wrong_fates(table, found) | wrong_events(table, found)
-    if table.family in UNDECIDED:
-        decided = np.abs(table["margin"]) > 20 * table["margin_per_ulp"]
-        assert decided.mean() > 0.5
-        assert not wrong[decided].any()
-    else:
-        assert not wrong.any(), table.cell(int(np.argmax(wrong)))
+    assert not wrong.any(), table.cell(int(np.argmax(wrong)))
+
+
+def test_fates_are_right_up_to_the_last_bits() -> None:
+    table = read("last-bits")
+    decided = np.abs(table["margin"]) > 20 * table["margin_per_ulp"]
+    assert 0.5 < decided.mean() < 1.0
+    assert not wrong_fates(table, solve(table))[decided].any()
 
 
 def test_errors_are_what_the_last_bits_explain(table: Table) -> None:
+    promised(table, "digits")
     error = errors(table, solve(table))
     worst = int(np.argmax(np.nan_to_num(error.peak_in_ulps)))
-    assert np.nanmax(error.peak_in_ulps) <= LARGEST_IN_ULPS[table.family], table.cell(worst)
+    assert np.nanmax(error.peak_in_ulps) <= HARMLESS[table.family], table.cell(worst)
     assert np.nanmedian(error.peak_in_ulps) <= 3.0
-    assert np.nanmax(error.uplift_time_in_ulps, initial=0.0) <= 20.0
-    assert np.nanmax(error.impact_time_in_ulps, initial=0.0) <= 2e3
+    assert np.nanmax(error.uplift_time_in_ulps) <= 20.0
+    assert np.nanmax(error.impact_time_in_ulps, initial=0.0) <= 100.0
 
 
 def test_no_error_is_beyond_the_bound_that_is_promised(table: Table) -> None:
+    promised(table, "bounds")
     assert beyond_promised_bound(table) == 0
 
 
@@ -56,15 +67,15 @@ def test_symmetries_hold_to_the_last_bit_or_to_rounding(table: Table) -> None:
     found = symmetries(table, solve(table))
     for symmetry in EXACT_SYMMETRIES:
         assert found[symmetry]["identical"] == found[symmetry]["cells"] == len(table), symmetry
-    for symmetry in ("size_3.7", "units_mm_ms"):
-        if table.family not in UNDECIDED:
+    for symmetry in ("size_3.7", "units_mm_ms"):  # the groups themselves differ by some ulps
+        if "fates" in BY_NAME[table.family].promises:
             assert found[symmetry]["other_fates"] == 0
-        assert found[symmetry]["largest_in_ulps"] <= LARGEST_IN_ULPS[table.family]
+        assert found[symmetry]["largest_in_ulps"] <= 5 * HARMLESS[table.family]
 
 
 def test_every_family_has_both_equations_signs_and_its_pulses(table: Table) -> None:
     family = BY_NAME[table.family]
-    assert len(table) >= (18 if table.family == "nearly-elastic" else 150)
+    assert len(table) >= {"nearly-elastic": 24, "unending": 6}.get(table.family, 150)
     assert set(table["alpha"] > 0.0) == set(family.rigid)
     assert {name.startswith("-") for name in table.pulse} == {False, True}
     assert {name.removeprefix("-") for name in table.pulse} <= set(family.pulses)
@@ -97,6 +108,7 @@ def test_the_tables_are_what_their_generator_writes(name: str) -> None:
 def test_a_wrong_fate_is_found_and_its_explanation_sought() -> None:
     """The answers of neighbours one ulp away explain themselves; those of other cells do not."""
     table = read("last-bits")
+    table = table.chosen(np.flatnonzero((table["alpha"] == 0.0) & (table["impacts"] < 5)))  # quick ones
     closest = int(np.argmin(np.abs(table["margin"]) / table["margin_per_ulp"]))
     here = table.chosen(np.array([closest]))
     fallen = here["outcome"][0] >= 2
