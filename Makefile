@@ -36,14 +36,8 @@ browser: .venv/project ## a Chromium for the tests of the page, fetched if there
 serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results
 
-bench: .venv/project ## time per cell against error beside general integrators, error against tolerance; some minutes
-	@echo 'Slender cells ...'; python -m benchmarks.slender_cell
-	@echo; echo 'Rigid cells ...'; python -m benchmarks.rigid_cell
-	@echo; echo 'Tolerance ...'; python -m benchmarks.tolerance
-	@echo; echo 'Service ...'; python -m benchmarks.service
-
-stress: .venv/project ## thousands of hard cases against 192-bit answers: fates, errors over conditioning, symmetries; a minute
-	python -m stress
+bench: .venv/project ## time and error beside other integrators, cost, interpolation: results/benchmarks/; ten minutes
+	snakemake $(if $(CONFIG),--configfile $(CONFIG)) bench
 
 fuzz: .venv/project ## ask the service 5,000 questions that a machine makes up; three minutes (SEED= for others)
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/service/test_api_fuzz.py

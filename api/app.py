@@ -15,6 +15,7 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddle
 from api.answers import VERSION
 from api.observer import Observer
 from api.problems import RESPONSES, Problem, add_handlers
+from api.question_route import QuestionRoute
 from api.questions import BatchQuestion
 from api.routes import (
     blocks,
@@ -31,6 +32,7 @@ from api.routes import (
 )
 from api.service import Service
 from api.settings import Settings
+from api.short_way import ShortWay
 from api.zarr_view import ZarrViews
 from rocking.lookup_atlas import Atlas
 
@@ -65,6 +67,8 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
+    short = [route for route in response.router.routes if isinstance(route, QuestionRoute)]
+    app.add_middleware(ShortWay, routes=short)
     if settings.cors_origins:
         app.add_middleware(
             CORSMiddleware,

@@ -11,7 +11,6 @@ from api.answers import BatchAnswer, arrays_of, columns_of
 from api.ask import ask
 from api.batch import Batch
 from api.formats import Form, csv_stream, dataset_of, json_response, netcdf_response
-from api.workshop import Leave
 from rocking.bounded_response import BoundedResponse
 from rocking.lookup_atlas import Atlas
 
@@ -19,20 +18,17 @@ PIECE = 50_000
 """Points between two looks at the clock [-]: some hundredths of a second."""
 
 
-def answer_batch(atlas: Atlas, batch: Batch, leave: Leave) -> tuple[BoundedResponse, tuple[str, ...]]:
+def answer_batch(atlas: Atlas, batch: Batch) -> tuple[BoundedResponse, tuple[str, ...]]:
     """Responses of all points, and the sha256 of each data set that gave some of them.
 
     Raises
     ------
-    TimeLimitError, ClientDisconnect
-        When `leave` is taken back.
     InvalidArgumentError, DatasetError
         As `Atlas.response`.
     """
     parts = []
     versions: dict[str, None] = {}
     for start in range(0, max(batch.points, 1), PIECE):
-        leave.ask()
         piece = {name: values[start : start + PIECE] for name, values in batch.groups.items()}
         part, met = ask(atlas, batch.options, **piece)
         parts.append(part)

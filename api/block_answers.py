@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic_core import PydanticCustomError
 
 from api.answers import VERSION, ResponseAnswer
 from api.questions import Method, PulseName, Question, Tolerance
@@ -25,6 +26,17 @@ def _quantity(name: str, text: str, **more: Any) -> Any:
     return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
 
 
+def _housner_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
+    """One message about both, not one about each."""
+    try:
+        return read(value)
+    except ValidationError:
+        raise PydanticCustomError("restitution", "housner, or a number in [0, 1] [-]") from None
+
+
+HousnerOrNumber = Annotated[Literal["housner"] | float, WrapValidator(_housner_or_number)]
+
+
 class BlockQuestion(Question):
     """A block and a pulse in SI units."""
 
@@ -33,7 +45,7 @@ class BlockQuestion(Question):
     half_height: float = _quantity("half_height", "h", examples=[0.8])
     peak_acceleration: float = _quantity("peak_acceleration", "a_g", examples=[4.0])
     pulse_period: float = _quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
-    restitution: Literal["housner"] | float = Field("housner", description="eta [-], or housner: (2.4)")
+    restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4)")
     gravity: float = _quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
     tolerance: Tolerance = 1e-4

@@ -37,11 +37,12 @@ def revalidated(request: Request, response: Response) -> Response:
     is an error, or is sent piece by piece.
     """
     body = getattr(response, "body", None)
-    if body is None or response.status_code != 200 or "cache-control" in response.headers:
+    controlled = any(name == b"cache-control" for name, _ in response.raw_headers)
+    if body is None or response.status_code != 200 or controlled:
         return response
     digest = hashlib.sha256(body).hexdigest()
     unchanged = not_modified(request, digest, SHORT)
     if unchanged is None:
-        response.headers.update(validators(digest, SHORT))
+        response.raw_headers += [(b"etag", f'"{digest}"'.encode()), (b"cache-control", SHORT.encode())]
         return response
     return unchanged

@@ -30,6 +30,7 @@ def guarded(seconds: float, header_bytes: int) -> type[HttpToolsProtocol]:
         """One connection."""
 
         _timer: asyncio.TimerHandle | None = None
+        _arriving = False
         _header_bytes = 0
 
         def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
@@ -40,8 +41,14 @@ def guarded(seconds: float, header_bytes: int) -> type[HttpToolsProtocol]:
             self._stop_waiting()
             super().connection_lost(exc)
 
+        def data_received(self, data: bytes) -> None:
+            super().data_received(data)
+            if self._arriving and self._timer is None:  # headers that arrive in one piece need no timer
+                self._wait()
+
         def on_message_begin(self) -> None:
-            self._wait()
+            self._stop_waiting()
+            self._arriving = True
             self._header_bytes = 0
             super().on_message_begin()
 
@@ -55,6 +62,7 @@ def guarded(seconds: float, header_bytes: int) -> type[HttpToolsProtocol]:
 
         def on_headers_complete(self) -> None:
             self._stop_waiting()
+            self._arriving = False
             super().on_headers_complete()
 
         def _wait(self) -> None:

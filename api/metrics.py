@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 from prometheus_client.process_collector import ProcessCollector
 
@@ -34,6 +36,8 @@ class Metrics:
             buckets=BUCKETS,
             registry=self.registry,
         )
+        self._request = cache(self._requests.labels)  # to find them again costs more than to count
+        self._time = cache(self._seconds.labels)
         self._points = Counter(
             "rocking_points", "Blocks answered, by a data set or by the solver.", ["source"], registry=self.registry
         )
@@ -45,8 +49,8 @@ class Metrics:
 
     def request(self, method: str, route: str, status: int, seconds: float) -> None:
         """Count a request; `route` is its pattern, so that names of data sets do not make series of their own."""
-        self._requests.labels(method, route, status).inc()
-        self._seconds.labels(route).observe(seconds)
+        self._request(method, route, status).inc()
+        self._time(route).observe(seconds)
 
     def points(self, source: str, count: int) -> None:
         """Count blocks that "cube" or "solver" answered."""

@@ -7,12 +7,11 @@ log, where an error of the service leaves its traceback.
 from __future__ import annotations
 
 import logging
+import random
 import re
-import secrets
 import time
 from typing import Any
 
-from starlette.datastructures import MutableHeaders
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -23,6 +22,9 @@ ACCESS = logging.getLogger("rocking.access")
 ERRORS = logging.getLogger("rocking.service")
 
 METHODS = {"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH"}
+
+_RANDOM = random.Random()
+"""Of this process; an id is no secret."""
 
 _SANE = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
@@ -57,8 +59,7 @@ class Observer:
             nonlocal status, sent
             if message["type"] == "http.response.start":
                 status = message["status"]
-                message.setdefault("headers", [])
-                MutableHeaders(scope=message)["X-Request-ID"] = request_id
+                message["headers"] = [*message.get("headers", ()), (b"x-request-id", request_id.encode())]
             else:
                 sent += len(message.get("body", b""))
             await send(message)
@@ -68,7 +69,9 @@ class Observer:
         except ClientDisconnect:
             status = 499  # nobody reads it; the log's usual word for it
         except Exception:
-            ERRORS.exception("error of the service", extra={"request_id": request_id, "path": scope["path"]})
+            ERRORS.exception(
+                "error of the service", extra={"fields": {"request_id": request_id, "path": scope["path"]}}
+            )
             if status:
                 raise  # too late to say so; the server closes the connection
             await internal_error()(scope, receive, watched)
@@ -78,14 +81,14 @@ class Observer:
             method = scope["method"] if scope["method"] in METHODS else "other"
             self._metrics.request(method, route, status or 500, seconds)
             if self._access_log:
-                ACCESS.info("request", extra=_line(scope, request_id, status, sent, seconds))
+                ACCESS.info("request", extra={"fields": _line(scope, request_id, status, sent, seconds)})
 
 
 def _request_id(scope: Scope) -> str:
     for name, value in scope["headers"]:
         if name == b"x-request-id" and _SANE.fullmatch(value):
             return str(value.decode())
-    return secrets.token_hex(8)
+    return f"{_RANDOM.getrandbits(64):016x}"
 
 
 def _line(scope: Scope, request_id: str, status: int, sent: int, seconds: float) -> dict[str, Any]:

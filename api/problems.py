@@ -95,11 +95,12 @@ def internal_error() -> Response:
 def add_handlers(app: FastAPI) -> None:
     """Answer every exception by its line in the table; what is not in it the observer logs and answers."""
     for kind in STATUS:
-        app.add_exception_handler(kind, _handle)
+        app.add_exception_handler(kind, answer_problem)
     app.add_exception_handler(HTTPException, _handle_http)
 
 
-async def _handle(_: Request, error: Exception) -> Response:
+async def answer_problem(_: Request, error: Exception) -> Response:
+    """The answer to an exception of the table."""
     status = next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
     headers = HEADERS.get(type(error))
     if isinstance(error, RequestValidationError):

@@ -14,7 +14,7 @@ from api.inspection import Inspection
 from api.metrics import Metrics
 from api.settings import Settings
 from api.together import Together
-from api.workshop import Leave, Workshop
+from api.workshop import Workshop
 from api.zarr_view import ZarrViews
 from rocking.lookup_atlas import Atlas
 
@@ -42,12 +42,8 @@ class Service:
         self.inspection = Inspection(self.atlas)
         self.reader = CapacityLimiter(settings.max_workers)
 
-    async def off_loop(self, work: Callable[[], T]) -> T:
-        """Have heavy work done that cannot be stopped half-way, see `Workshop.run`."""
-        return await self.workshop.run(lambda _: work())
-
-    async def in_pieces(self, work: Callable[[Leave], T], request: Request) -> T:
-        """Have heavy work done that asks between its pieces whether to go on."""
+    async def off_loop(self, work: Callable[[], T], request: Request) -> T:
+        """Have heavy work done for a request, its body read, see `Workshop.run`."""
         return await self.workshop.run(work, request)
 
     async def reading(self, work: Callable[[], T]) -> T:

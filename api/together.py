@@ -38,6 +38,7 @@ class Together:
 
     def __init__(self, atlas: Atlas) -> None:
         self._atlas = atlas
+        self._loop: asyncio.AbstractEventLoop
         self._waiting: dict[Hashable, list[Asked]] = {}
         self._open: dict[tuple[str, float], float] = {}
         self._reading: set[asyncio.Task[None]] = set()
@@ -50,11 +51,11 @@ class Together:
         InvalidArgumentError, DatasetError
             As `Atlas.response`.
         """
-        loop = asyncio.get_running_loop()
         check_point(question)  # one that is out of range must not spoil the call of the others
         if not self._waiting:
-            loop.call_soon(self._answer_all)
-        answer: asyncio.Future[Point] = loop.create_future()
+            self._loop = asyncio.get_running_loop()  # asks the operating system who runs: once is enough
+            self._loop.call_soon(self._answer_all)
+        answer: asyncio.Future[Point] = self._loop.create_future()
         self._waiting.setdefault(_kind(question), []).append((question, answer))
         return await answer
 

@@ -1,16 +1,18 @@
 """Heavy work beside the event loop: a few threads, a short queue before them, and an end to everything.
 
-Work that comes in pieces asks its `Leave` between them, and stops when its time is up or nobody waits any more. What
-cannot be stopped is answered 504 at the end of its time and keeps its place until it is done, so that there is never
-more work than threads.
+Work stops when its time is up or nobody waits any more: whenever it enters a function of the package its `Leave` is
+asked, which the functions themselves need not know. What does not come to such a place is answered 504 at the end of
+its time and keeps its place until it is done, so that there is never more work than threads.
 """
 
 from __future__ import annotations
 
 import asyncio
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from types import FrameType
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -94,7 +96,7 @@ class Workshop:
         """Requests in the queue."""
         return max(0, len(self._inside) - self._workers)
 
-    async def run(self, work: Callable[[Leave], T], request: Request | None = None) -> T:
+    async def run(self, work: Callable[[], T], request: Request | None = None) -> T:
         """Have work done in a thread; given the request, its body read, stop when its client goes away.
 
         Raises
@@ -109,7 +111,7 @@ class Workshop:
         if len(self._inside) >= self._places:
             raise BusyError("all places for heavy work are taken; ask again in a moment")
         leave = Leave(self._seconds)
-        future = self._pool.submit(work, leave)
+        future = self._pool.submit(_watched, work, leave)
         self._inside.add(future)
         future.add_done_callback(self._inside.discard)
         answer = asyncio.wrap_future(future)
@@ -131,6 +133,20 @@ class Workshop:
     def close(self) -> None:
         """Begin nothing more; what runs comes to its end."""
         self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _watched(work: Callable[[], T], leave: Leave) -> T:
+    """Work in this thread that asks for leave with each function of the package that it enters."""
+
+    def look(frame: FrameType, event: str, _: Any) -> None:
+        if event == "call" and frame.f_globals.get("__name__", "").startswith("rocking."):
+            leave.ask()
+
+    sys.setprofile(look)
+    try:
+        return work()
+    finally:
+        sys.setprofile(None)
 
 
 async def _gone(request: Request) -> None:

@@ -1,4 +1,4 @@
-"""The block under a sine by the classical Runge-Kutta method with fixed steps, compiled: what most scripts do.
+"""The block under a pulse by the classical Runge-Kutta method with fixed steps, compiled: what most scripts do.
 
 Impacts and peaks are found by shortening the step in which they fall, so that they are as accurate as the steps; by
 false position (Illinois), since plain bisection would take most of the time where the steps are few.
@@ -6,15 +6,13 @@ false position (Illinois), since plain bisection would take most of the time whe
 
 from __future__ import annotations
 
-import math
-
-from benchmarks.one_sine import Block, acceleration, beyond_return, compiled, ground
+from benchmarks.one_pulse import Block, acceleration, beyond_return, compiled, duration, ground
 
 
 @compiled
 def flight(steps: int, block: Block, side: float, tau: float, v: float) -> tuple[float, float, float, float, bool]:
-    """One flight, see `one_sine`, with so many steps to the pulse."""
-    end = 2.0 * math.pi / block[1]
+    """One flight, see `one_pulse`, with so many steps to the pulse."""
+    end = duration(block)
     z, highest = 0.0, 0.0
     while tau < end:
         h = min(end / steps, end - tau)

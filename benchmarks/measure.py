@@ -3,36 +3,48 @@
 from __future__ import annotations
 
 import json
+import math
 import platform
 import sys
 import time
 from collections.abc import Callable, Hashable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Name = TypeVar("Name", bound=Hashable)
 
-
-def microseconds(task: Callable[[], Any], cells: int) -> tuple[float, float]:
-    """Processor and wall-clock time per cell [us]."""
-    processor, wall = time.process_time(), time.perf_counter()
-    task()
-    return 1e6 * (time.process_time() - processor) / cells, 1e6 * (time.perf_counter() - wall) / cells
+SHORTEST = 0.02
+"""Processor time that is measured at least [s]."""
 
 
-def in_rounds(tasks: Mapping[Name, tuple[Callable[[], Any], int]], rounds: int) -> dict[Name, dict[str, list[float]]]:
-    """Times per cell [us] of tasks, each with its number of cells, in rounds: a busy machine hurts all alike."""
-    times: dict[Name, dict[str, list[float]]] = {name: {"processor": [], "wall": []} for name in tasks}
+class Task(NamedTuple):
+    """A call that answers so many cells; `every` says in which rounds it takes part, the first one included."""
+
+    call: Callable[[], Any]
+    cells: int
+    every: int = 1
+
+
+def microseconds(task: Task) -> float:
+    """Processor time per cell [us], of as many calls as it takes to see them on the clock."""
+    start, calls = time.process_time(), 0
+    while calls == 0 or time.process_time() - start < SHORTEST:
+        task.call()
+        calls += 1
+    return 1e6 * (time.process_time() - start) / (calls * task.cells)
+
+
+def in_rounds(tasks: Mapping[Name, Task], rounds: int, title: str) -> dict[Name, list[float]]:
+    """Processor times per cell [us] (rounds,) of tasks, nan where one paused: a busy machine hurts all alike."""
+    times: dict[Name, list[float]] = {name: [] for name in tasks}
     for k in range(rounds):
-        for name, (task, cells) in tasks.items():
-            processor, wall = microseconds(task, cells)
-            times[name]["processor"].append(processor)
-            times[name]["wall"].append(wall)
-        progress(f"round {k + 1} of {rounds}")
+        for name, task in tasks.items():
+            times[name].append(microseconds(task) if k % task.every == 0 else math.nan)
+        progress(f"{title}: round {k + 1} of {rounds}")
     return times
 
 
@@ -41,9 +53,13 @@ def progress(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def spread(values: list[float]) -> dict[str, float]:
-    """Median, smallest and largest."""
-    return {"median": float(np.median(values)), "smallest": min(values), "largest": max(values)}
+def spread(values: ArrayLike) -> dict[str, float]:
+    """Median, smallest and largest of those that are known."""
+    return {
+        "median": float(np.nanmedian(values)),
+        "smallest": float(np.nanmin(values)),
+        "largest": float(np.nanmax(values)),
+    }
 
 
 def relative_error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""The block under a sine by numbalsoda 0.3, compiled: its DOP853 with events, its LSODA without.
+"""The block under a pulse by numbalsoda 0.3, compiled: its DOP853 with events, its LSODA without.
 
 numbalsoda is no dependency of the project. It is built from source, with a C++ and a Fortran compiler; where it cannot
 be imported the benchmark leaves these peers out.
@@ -16,13 +16,13 @@ import numba
 import numpy as np
 from numbalsoda import lsoda, lsoda_sig, solve_ivp
 
-from benchmarks.one_sine import Block, Vector, acceleration, beyond_return, compiled, first_step, ground
+from benchmarks.one_pulse import Block, Vector, acceleration, beyond_return, compiled, duration, first_step, ground
 
-WINDOWS, TIMES = 2, 48
-"""For LSODA, windows to a pulse and times to a window: the fastest of those tried with events still sharp."""
+WINDOW, TIMES = math.pi, 48
+"""For LSODA, phase of a window [rad] and times to a window: the fastest of those tried with events still sharp."""
 
-FEWEST_STEPS = 16.0
-"""For DOP853, steps to a pulse at least: a longer one may hold two events of a kind, and lose both."""
+LONGEST_STEP = math.pi / 8.0
+"""For DOP853, in phase [rad]: a longer one may hold two events of a kind, and lose both."""
 
 RISING = 1e-6
 """More than the velocity of a peak that is found to 1e-8 in time [-]."""
@@ -31,17 +31,17 @@ RISING = 1e-6
 @numba.cfunc(lsoda_sig)
 def motion(tau, y, rate, parameters):  # type: ignore[no-untyped-def]  # numba gives the types
     """(2.2) or (3.1) in z, z'."""
-    p = numba.carray(parameters, 5)
-    block = (p[0], p[1], p[2], p[3])
-    rate[0], rate[1] = y[1], acceleration(block, p[4], ground(block, tau), y[0])
+    p = numba.carray(parameters, 6)
+    block = (p[0], p[1], p[2], p[3], p[4])
+    rate[0], rate[1] = y[1], acceleration(block, p[5], ground(block, tau), y[0])
 
 
 @numba.cfunc(lsoda_sig)
 def events(_tau, y, value, parameters):  # type: ignore[no-untyped-def]  # numba gives the types
     """Peak, impact, fall. The first in this order is reported, so that a step cannot hide a peak behind its impact."""
-    p = numba.carray(parameters, 5)
+    p = numba.carray(parameters, 6)
     value[0] = y[1] if y[0] >= 0.0 else -1.0  # what turns beyond the impact is no peak
-    value[1], value[2] = y[0], beyond_return((p[0], p[1], p[2], p[3]), y[0], y[1])
+    value[1], value[2] = y[0], beyond_return((p[0], p[1], p[2], p[3], p[4]), y[0], y[1])
 
 
 MOTION, EVENTS = motion.address, events.address
@@ -51,10 +51,10 @@ MOTION, EVENTS = motion.address, events.address
 def dop853_flight(
     rtol: float, block: Block, side: float, tau: float, v: float
 ) -> tuple[float, float, float, float, bool]:
-    """One flight, see `one_sine`."""
+    """One flight, see `one_pulse`."""
     parameters = np.array((*block, side))
-    end = 2.0 * math.pi / block[1]
-    z, highest, longest = 0.0, 0.0, end / FEWEST_STEPS
+    end = duration(block)
+    z, highest, longest = 0.0, 0.0, LONGEST_STEP / block[1]
     while True:
         ended = solve_ivp(
             MOTION,
@@ -94,12 +94,12 @@ def dop853_flight(
 def lsoda_flight(
     rtol: float, block: Block, side: float, tau: float, v: float
 ) -> tuple[float, float, float, float, bool]:
-    """One flight, see `one_sine`."""
+    """One flight, see `one_pulse`."""
     parameters = np.array((*block, side))
-    end = 2.0 * math.pi / block[1]
+    end = duration(block)
     state, highest = np.array((0.0, v)), 0.0
     while tau < end:
-        last = min(tau + end / WINDOWS, end)
+        last = min(tau + WINDOW / block[1], end)
         if end - last < 1e-6 * end:
             last = end
         times = np.linspace(tau, last, TIMES)

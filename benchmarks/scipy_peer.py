@@ -1,4 +1,4 @@
-"""The block under a sine as a careful script with scipy would do it: `solve_ivp` with terminal impact events.
+"""The block under a pulse as a careful script with scipy would do it: `solve_ivp` with terminal impact events.
 
 Written for a fair comparison: the event of z = |theta|/alpha has one direction, the first step lies inside the expected
 flight so that no impact is skipped, and the right-hand sides are as lean as Python allows.
@@ -12,31 +12,18 @@ from typing import Any
 
 from scipy.integrate import solve_ivp
 
-from benchmarks.one_sine import Block, beyond_return, first_step, rock
+from benchmarks.one_pulse import HALF_WINDOW, SINE, Block, beyond_return, duration, first_step
 
 
-def peak_rotation(
-    slenderness: float,
-    frequency_ratio: float,
-    restitution: float,
-    rtol: float = 1e-9,
-    *,
-    alpha: float = 0.0,
-    method: str = "DOP853",
-) -> float:
-    """Largest |theta|/alpha under one full sine (3.2), slender for alpha = 0 [rad]; nan if the block overturns."""
-    return float(rock.py_func(_flight, (method, rtol), slenderness, frequency_ratio, restitution, alpha))
-
-
-def _flight(
+def flight(
     setting: tuple[Any, float], block: Block, side: float, tau: float, v: float
 ) -> tuple[float, float, float, float, bool]:
-    """One flight, see `one_sine`."""
+    """One flight, see `one_pulse`."""
     method, rtol = setting
     impact = _event(lambda _t, y: y[0], terminal=True)
     top = _event(lambda _t, y: y[1], terminal=False)
     lost = _event(lambda _t, y: beyond_return(block, y[0], y[1]), terminal=True, direction=1.0)
-    end = 2.0 * math.pi / block[1]
+    end = duration(block)
     solution: Any = solve_ivp(
         _motion(block, side),
         (tau, end),
@@ -55,17 +42,26 @@ def _flight(
 
 def _motion(block: Block, side: float) -> Callable[[float, Any], tuple[float, float]]:
     """Right-hand side in z, z'."""
-    a, omega, alpha, lean = block
+    a, omega, alpha, lean, _ = block
+    ground = _sine if block[4] == SINE else _ricker
     sin, cos = math.sin, math.cos
     if alpha == 0.0:
-        return lambda t, y: (y[1], y[0] - 1.0 - side * a * sin(omega * t))  # (3.1)
+        return lambda t, y: (y[1], y[0] - 1.0 - side * a * ground(omega * t))  # (3.1)
     push = side * a * lean
 
     def rigid(t: float, y: Any) -> tuple[float, float]:  # (2.2)
         angle = alpha * (1.0 - y[0])
-        return y[1], -sin(angle) / alpha - push * sin(omega * t) * cos(angle)
+        return y[1], -sin(angle) / alpha - push * ground(omega * t) * cos(angle)
 
     return rigid
+
+
+_sine = math.sin
+
+
+def _ricker(phase: float) -> float:
+    square = (phase - HALF_WINDOW) ** 2
+    return (1.0 - 0.5 * square) * math.exp(-0.25 * square)
 
 
 def _event(function: Callable[[float, Any], float], *, terminal: bool, direction: float = -1.0) -> Any:

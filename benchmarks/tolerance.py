@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
+from benchmarks.cells import Cells, read
+from benchmarks.figures.tolerance import draw
 from benchmarks.measure import progress, relative_error, save, versions
-from benchmarks.tolerance_figure import draw
-from benchmarks.truth import Cells, read
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 14))
 EPS = float(np.finfo(float).eps)

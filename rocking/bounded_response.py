@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.response import Outcome
+from rocking.rock import IMPACT_LIMIT
 from rocking.solve import peak_response
 
 SOLVER_ERROR = 1e-12
@@ -85,6 +86,7 @@ def solve_with_bound(
 
     The bound is `SOLVER_ERROR` of the peak, plus three times the change of the peak when the three groups change by a
     share `SOLVER_ERROR` together: rounding errors act like such changes, and beside a fate boundary they are amplified.
+    It is infinite where a block was not followed to the end, as it had struck `rock.IMPACT_LIMIT` times.
 
     Parameters
     ----------
@@ -108,7 +110,7 @@ def solve_with_bound(
     with np.errstate(invalid="ignore"):
         change = np.abs(found.peak_rotation[1] - peak)
     bound = np.asarray(SOLVER_ERROR * peak + 3.0 * change)
-    bound[found.overturned.any(axis=0)] = np.inf
+    bound[found.overturned.any(axis=0) | (found.impacts.max(axis=0) >= IMPACT_LIMIT)] = np.inf
     bound[found.overturned[0]] = np.nan
     bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
     return BoundedResponse(

@@ -11,16 +11,18 @@ from __future__ import annotations
 from collections import namedtuple
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
-from rocking.interpolation import cell_of, level_weights
+from rocking.interpolation import cell_of
 from rocking.lookup_kernel import interpolate_many
 from rocking.lookup_level import FIELDS, Level
+from rocking.lookup_points import Points
+from rocking.lookup_weights import weights_on
 
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
@@ -45,44 +47,7 @@ _Fields = namedtuple("_Fields", list(FIELDS))  # type: ignore[misc]  # numba tak
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Points:
-    """Questions, all arrays (points,); alpha in rad, 0 the slender limit."""
-
-    slenderness: Array
-    frequency_ratio: Array
-    restitution: Array
-    alpha: Array
-
-    @classmethod
-    def of(
-        cls, slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
-    ) -> tuple[Points, tuple[int, ...]]:
-        """Checked, broadcast and flattened; and the broadcast shape.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is out of range, or the shapes do not broadcast.
-        """
-        groups = (
-            in_range("slenderness", slenderness, 0.0, np.inf, closed="neither"),
-            in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither"),
-            in_range("restitution", restitution, 0.0, 1.0),
-            in_range("alpha", 0.0 if alpha is None else alpha, 0.0, np.pi / 2, closed="left", unit="rad"),
-        )
-        try:
-            full = np.broadcast_arrays(*groups)
-        except ValueError:
-            shapes = tuple(group.shape for group in groups)
-            names = "slenderness, frequency_ratio, restitution, alpha"
-            raise InvalidArgumentError(names, shapes, "shapes that broadcast against each other") from None
-        return cls(*(np.ascontiguousarray(group).ravel() for group in full)), full[0].shape
-
-    def __getitem__(self, index: Any) -> Points:
-        return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
+Index = slice | NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -159,7 +124,7 @@ class Cube:
 
     def used(self, restitution: Array) -> list[int]:
         """Indices of the cubes that serve some of the restitutions."""
-        _, first, weights = level_weights(self.restitutions, restitution)
+        _, first, weights = weights_on(self.restitutions, restitution)
         points, offset = np.nonzero(weights)
         return [int(k) for k in np.flatnonzero(np.bincount(first[points] + offset))]
 
@@ -167,7 +132,9 @@ class Cube:
         """Where the cubes keep to the limit (points,), and what they answer there."""
         found = np.zeros(points.slenderness.size, FOUND)
         for index, levels, gap, weights in self._groups(points.restitution):
-            _interpolate(levels, points[index], gap, weights, found, index)
+            part = found[index]
+            _interpolate(levels, points[index], gap, weights, part)
+            found[index] = part
         bound = np.where(found["overturned"], 0.0, SAFETY * found["error"] + SOLVER_ERROR)
         # a safe block passes alpha exactly if its peak does; a peak within its bound of alpha leaves that open
         open_ = ~found["overturned"] & (np.abs(found["peak"] - 1.0) <= bound)
@@ -183,24 +150,29 @@ class Cube:
             np.full(kept.size, "cube"),
         )
 
-    def _groups(self, restitution: Array) -> Iterator[tuple[NDArray[np.intp], list[Level], NDArray[np.intp], Array]]:
+    def _groups(self, restitution: Array) -> Iterator[tuple[Index, list[Level], NDArray[np.intp], Array]]:
         """Points that the same four cubes serve: which, the cubes, the gap among them, their weights."""
         etas = self.restitutions
-        inside = (
-            np.flatnonzero((restitution >= etas[0]) & (restitution <= etas[-1])) if etas.size else np.array([], int)
-        )
-        gap, first, weights = level_weights(etas, restitution[inside])
-        between = gap >= 0
-        group = 2 * first + between
-        for start, several in (divmod(int(one), 2) for one in np.unique(group)):
-            mine = group == 2 * start + several
-            opened = [self.level(start + k) for k in range(min(4, etas.size - start) if several else 1)]
-            levels = [one for one in opened if one is not None]
-            whole = len(levels) == len(opened) and all(one.fits(levels[0]) for one in levels)
-            # the errors between restitutions were measured with these neighbours
-            if whole and all(one.next_restitution == etas[start + k + 1] for k, one in enumerate(levels[:-1])):
-                local = np.where(gap[mine] >= 0, gap[mine] - start, -1)
-                yield inside[mine], levels + levels[-1:] * (4 - len(levels)), local, weights[mine]
+        if not etas.size:
+            return
+        inside = (restitution >= etas[0]) & (restitution <= etas[-1])
+        gap, first, weights = weights_on(etas, np.where(inside, restitution, etas[0]))
+        for label, index in _parts(np.where(inside, 2 * first + (gap >= 0), -1)):
+            start, several = divmod(label, 2)
+            levels = self._serving(start, min(4, etas.size - start) if several else 1) if label >= 0 else []
+            if levels:
+                yield index, levels, gap[index] - start, weights[index]  # on a level the gap stays negative
+
+    def _serving(self, start: int, count: int) -> list[Level]:
+        """The cubes from `start` on, the last one repeated to make four; none if they do not belong together."""
+        opened = [self.level(start + k) for k in range(count)]
+        levels = [one for one in opened if one is not None]
+        whole = len(levels) == count and all(one.fits(levels[0]) for one in levels[1:])
+        # the errors between restitutions were measured with these neighbours
+        etas = self.restitutions[start + 1 :]
+        if whole and all(one.next_restitution == eta for one, eta in zip(levels[:-1], etas, strict=False)):
+            return levels + levels[-1:] * (4 - count)
+        return []
 
     def _refuse(self, point: Points, limit: float) -> None:
         """Say why the cubes cannot answer a point."""
@@ -226,20 +198,23 @@ class Cube:
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, where fates or modes of response meet")
 
 
+def _parts(labels: NDArray[np.intp]) -> Iterator[tuple[int, Index]]:
+    """Each label and where it stands: everywhere, as a rule."""
+    if labels.size and (labels == labels[0]).all():
+        yield int(labels[0]), slice(None)
+    else:
+        for label in np.unique(labels):
+            yield int(label), np.flatnonzero(labels == label)
+
+
 def _interpolate(
-    levels: list[Level],
-    points: Points,
-    gap: NDArray[np.intp],
-    weights: Array,
-    found: NDArray[np.void],
-    index: NDArray[np.intp],
+    levels: list[Level], points: Points, gap: NDArray[np.intp], weights: Array, found: NDArray[np.void]
 ) -> None:
-    """Fill `found[index]` from four cubes."""
+    """Fill `found` (points,) from four cubes."""
     first = levels[0]
     squares = first.alpha**2  # the equation of motion knows the sign of alpha only in its square
     inside = (points.alpha >= first.alpha[0]) & (points.alpha <= first.alpha[-1])
-    angle_gap, angle_first, angle_weights = level_weights(squares, np.where(inside, points.alpha, first.alpha[0]) ** 2)
-    part = np.zeros(index.size, FOUND)
+    angle_gap, angle_first, angle_weights = weights_on(squares, np.where(inside, points.alpha, first.alpha[0]) ** 2)
     interpolate_many(
         cell_of(first.slenderness, points.slenderness),
         cell_of(first.frequency_ratio, points.frequency_ratio),
@@ -252,9 +227,8 @@ def _interpolate(
         np.where(inside, angle_first, -1),
         angle_weights,
         _Fields(*(tuple(getattr(level, name) for level in levels) for name in FIELDS)),
-        part,
+        found,
     )
-    found[index] = part
 
 
 def _solve(pulse: str, points: Points) -> BoundedResponse:

@@ -20,6 +20,9 @@ from rocking.lookup_level import Level, open_level
 from rocking.pulses import get_pulse
 from rocking.response import Outcome
 
+Opened = tuple[Path, Stamp, Level | DatasetError]
+"""The file of a cube, the version of it that was read, and the cube or what is wrong with it."""
+
 
 class Atlas:
     """The spectrum cubes below a results folder.
@@ -37,22 +40,23 @@ class Atlas:
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
-        self._cubes: dict[str, tuple[Stamp, Level | DatasetError]] = {}
-        self._levels: dict[Path, tuple[int, list[float]]] = {}
+        self._cubes: dict[tuple[str, float], Opened] = {}
+        self._levels: dict[str, tuple[Path, int, list[float]]] = {}
         self._checked: dict[str, tuple[Stamp, str | None]] = {}
 
     def levels(self, pulse: str) -> list[float]:
         """Restitutions for which a cube of the pulse lies there, ascending."""
-        folder = self.catalogue.results / "spectra" / pulse.removeprefix("-")
+        key = pulse.removeprefix("-")
+        known = self._levels.get(key)
+        folder = known[0] if known else self.catalogue.results / "spectra" / key
         try:
             changed = folder.stat().st_mtime_ns
         except OSError:
             return []
-        known = self._levels.get(folder)
-        if known is None or known[0] != changed:
+        if known is None or known[1] != changed:
             found = sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
-            known = self._levels[folder] = (changed, found)
-        return known[1]
+            known = self._levels[key] = folder, changed, found
+        return known[2]
 
     def level(self, pulse: str, restitution: float) -> Level | None:
         """The cube of a pulse and a restitution, None if there is none.
@@ -64,19 +68,26 @@ class Atlas:
         DatasetError
             If the file is damaged or holds something else than its name says.
         """
-        name = _cube_name(pulse, restitution)
+        key = pulse.removeprefix("-"), restitution
+        known = self._cubes.get(key)
+        try:
+            if known is None or known[1] != stamp_of(known[0]):
+                known = self._read(key)
+        except (UnknownDatasetError, FileNotFoundError):
+            return None
+        if isinstance(known[2], DatasetError):
+            raise known[2]
+        return known[2]
+
+    def _read(self, key: tuple[str, float]) -> Opened:
+        """The cube of a pulse and a restitution, from its file unless another thread has just read it."""
         with self.catalogue.lock:
-            try:
-                path = self.catalogue.path(name)
-                stamp = stamp_of(path)
-            except (UnknownDatasetError, FileNotFoundError):
-                return None
-            known = self._cubes.get(name)
-            if known is None or known[0] != stamp:
-                known = self._cubes[name] = (stamp, _open(path, pulse.removeprefix("-"), restitution))
-        if isinstance(known[1], DatasetError):
-            raise known[1]
-        return known[1]
+            path = self.catalogue.path(_cube_name(*key))
+            stamp = stamp_of(path)
+            known = self._cubes.get(key)
+            if known is None or known[1] != stamp:
+                known = self._cubes[key] = path, stamp, _open(path, *key)
+            return known
 
     def cube(self, pulse: str, method: str = "auto") -> Cube:
         """The cubes of a pulse as one; each is opened when first asked.
@@ -101,7 +112,7 @@ class Atlas:
         if not levels or not levels[0] <= restitution <= levels[-1]:
             return True
         used = Cube(pulse, np.array(levels), lambda _: None).used(np.array([restitution]))
-        return all(_cube_name(pulse, levels[k]) in self._cubes for k in used)
+        return all((pulse.removeprefix("-"), levels[k]) in self._cubes for k in used)
 
     def problems(self) -> dict[str, str]:
         """Read and check every data set, once per version of the file; what is wrong with it, by name.
@@ -163,9 +174,10 @@ class Atlas:
             tolerance=tolerance,
             method=method,
         )
-        eta = np.broadcast_to(np.asarray(restitution, dtype=np.float64), answer.source.shape)
+        eta = np.asarray(restitution, dtype=np.float64)
         rocked = (answer.source == "cube") & (answer.outcome != Outcome.NO_UPLIFT)
-        used = [cube.level(k) for k in cube.used(eta[rocked])] if rocked.any() else []
+        served = np.broadcast_to(eta, rocked.shape)[rocked] if eta.ndim else eta.reshape(1)
+        used = [cube.level(k) for k in cube.used(served)] if rocked.any() else []
         return answer, tuple(level.sha256 for level in used if level is not None)
 
     def problem(self, name: str) -> str | None:

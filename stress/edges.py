@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from typing import NamedTuple
 
 import numpy as np
 from flint import arb
 
-from stress.cells import BITS, Cell, Draw, any_angle, drawn, look
+from stress.cells import BITS, PROMISES, Cell, Draw, any_angle, drawn, look
+from tests.tools.conditioning import MOST_IMPACTS
 from tests.tools.exact_pulses import PULSES
-from tests.tools.exact_response import ExactResponse, working_precision
+from tests.tools.exact_response import CAPPED, ExactResponse, working_precision
 
 WIDTH = 2.0**-70
 """Relative width at which a bisection ends."""
@@ -25,15 +27,11 @@ MOST_LINES = 4000
 """Lines searched at most for one family."""
 
 
-class Kind:
+class Kind(NamedTuple):
     """What changes at an edge: a `key` of the response, and whether a change of it is of the kind that is meant."""
 
-    def __init__(
-        self,
-        key: Callable[[ExactResponse], object],
-        confirm: Callable[[ExactResponse, ExactResponse], bool],
-    ) -> None:
-        self.key, self.confirm = key, confirm
+    key: Callable[[ExactResponse], object]
+    confirm: Callable[[ExactResponse, ExactResponse], bool]
 
 
 def _same_fate_other_count(one: ExactResponse, other: ExactResponse) -> bool:
@@ -91,6 +89,8 @@ class EdgeFamily:
         Relative distances of the cells from the edge, uniform in the logarithm.
     edges : int
         Number of edges, with two cells on each side.
+    most_impacts : int
+        Lines are not followed through more of them.
     """
 
     name: str
@@ -104,6 +104,8 @@ class EdgeFamily:
     nearest: float = 1e-12
     farthest: float = 1e-3
     edges: int = 72
+    most_impacts: int = MOST_IMPACTS
+    promises: tuple[str, ...] = PROMISES
 
     def cells(self) -> Iterator[Cell]:
         """All of them, in order; the slenderness that `groups` draws is not used."""
@@ -124,23 +126,26 @@ class EdgeFamily:
     def _first_on(self, cell: Cell) -> arb | None:
         """The first edge on a line that is of the kind that is meant; no line shall fill the family."""
         points = [float(s) for s in np.geomspace(*self.line)]
-        responses = [look(cell, slenderness=s) for s in points]
+        responses = [self._at(cell, s) for s in points]
         for (left, one), (right, other) in pairwise(zip(points, responses, strict=True)):
             if self.kind.key(one) != self.kind.key(other):
                 edge, *beside = self._bisected(cell, left, right)
-                if self.kind.confirm(*beside):
+                if CAPPED not in {response.outcome for response in beside} and self.kind.confirm(*beside):
                     return edge
         return None
+
+    def _at(self, cell: Cell, slenderness: arb | float) -> ExactResponse:
+        return look(cell, self.most_impacts, slenderness=slenderness)
 
     def _bisected(self, cell: Cell, first: float, second: float) -> tuple[arb, ExactResponse, ExactResponse]:
         """An edge between two slendernesses, and the responses on its sides."""
         with working_precision(BITS):
             left, right = arb(first), arb(second)
-            one, other = look(cell, slenderness=left), look(cell, slenderness=right)
+            one, other = self._at(cell, left), self._at(cell, right)
             kept = self.kind.key(one)
             while right - left > WIDTH * right:
                 middle = ((left + right) / 2).mid()
-                response = look(cell, slenderness=middle)
+                response = self._at(cell, middle)
                 if self.kind.key(response) == kept:
                     left, one = middle, response
                 else:

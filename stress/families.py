@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from argparse import ArgumentParser
+
 from stress.cells import Draw, Family
 from stress.edges import ALPHA, END, FATE, GRAZE, ISLAND, EdgeFamily
 
@@ -9,6 +11,9 @@ TWICE_PUSHED = ("cosine", "c1", "c2", "ricker", "ricker_antisymmetric", "mavroei
 """Pulses that push to one side, back, and to the first side again."""
 
 SEVERAL_LOBES = ("sine", *TWICE_PUSHED)
+
+FOLLOWED = 20_000
+"""Impacts that the package follows, then it declares rest."""
 
 
 def _ordinary(draw: Draw) -> tuple[float, float, float]:
@@ -51,12 +56,16 @@ def _elastic(draw: Draw) -> tuple[float, float, float]:
     return 1.0 - draw.log(5e-5, 1e-3), draw.log(0.02, 0.1), draw.one_of(0.9999, 1.0 - 1e-6, 1.0 - 1e-12, 1.0)
 
 
+def _unending(draw: Draw) -> tuple[float, float, float]:
+    return 1.0 - draw.log(5e-5, 2e-4), draw.log(0.01, 0.03), draw.one_of(0.9998, 0.9999, 0.99995)
+
+
 def _line(draw: Draw) -> tuple[float, float, float]:
     return 0.0, draw.log(0.5, 12.0), draw.uniform(0.5, 1.0)
 
 
 def _island_line(draw: Draw) -> tuple[float, float, float]:
-    return 0.0, draw.uniform(0.3, 1.2), draw.uniform(0.8, 1.0)
+    return 0.0, draw.uniform(0.45, 1.2), draw.uniform(0.8, 1.0)
 
 
 def _extreme_angle(draw: Draw) -> float:
@@ -85,11 +94,19 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "1e-3 to 1e-12 from overturning after three, five and more impacts",
         _island_line,
         ISLAND,
-        line=(0.85, 0.9995, 32),
-        edges=60,
+        line=(0.86, 0.98, 16),
+        pulses=SEVERAL_LOBES,
+        edges=54,
+        most_impacts=60,
     ),
     EdgeFamily(
-        "last-bits", "1e-12 to 1e-16 from another fate: the input decides", _line, FATE, nearest=1e-16, farthest=1e-12
+        "last-bits",
+        "1e-12 to 1e-16 from another fate: the input decides",
+        _line,
+        FATE,
+        nearest=1e-16,
+        farthest=1e-12,
+        promises=("digits", "bounds", "times"),
     ),
     Family("strong", "1/a down to 1e-4", _strong),
     Family("impulse", "omega up to 1e4: flights of a ten-thousandth", _impulse),
@@ -101,9 +118,26 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "eta from 0.9999 under slow pulses: thousands of impacts without rest",
         _elastic,
         pulses=("sine", "half_sine", "c1"),
-        accept=lambda r: 2_000 <= r.impacts <= 60_000,
-        size=18,
+        accept=lambda r: 2_000 <= r.impacts < FOLLOWED,
+        size=24,
+        promises=("fates", "digits", "bounds"),
+    ),
+    Family(
+        "unending",
+        "the same beyond the impacts that the package follows: its answer is another one",
+        _unending,
+        pulses=("sine",),
+        accept=lambda r: FOLLOWED < r.impacts <= 60_000,
+        size=6,
+        promises=(),
     ),
 )
 
 BY_NAME = {family.name: family for family in FAMILIES}
+
+
+def known(names: list[str], parser: ArgumentParser) -> list[str]:
+    """The families of these names, all if there are none; a name that is none ends the command."""
+    if wrong := sorted(set(names) - set(BY_NAME)):
+        parser.error(f"no such family: {', '.join(wrong)}")
+    return names or list(BY_NAME)

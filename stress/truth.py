@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stress.cells import Cell
-from stress.families import BY_NAME
+from stress.families import BY_NAME, known
 from tests.tools.make_truth import solved_row
 
 DATA = Path(__file__).parent / "data"
@@ -94,10 +94,7 @@ def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("family", nargs="*", help=", ".join(BY_NAME))
-    wanted = parser.parse_args().family or list(BY_NAME)
-    if unknown := set(wanted) - set(BY_NAME):
-        parser.error(f"no such family: {', '.join(sorted(unknown))}")
-    for name in wanted:
+    for name in known(parser.parse_args().family, parser):
         write(name)
 
 

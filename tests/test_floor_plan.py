@@ -98,7 +98,7 @@ def test_the_workflow_knows_no_service(module: str) -> None:
     assert not any(name.startswith(("api", "rocking.cli", "rocking.lookup")) for name in imported(MODULES[module]))
 
 
-PLOTTERS = ("workflow.figures", "benchmarks.tolerance_figure", "stress.figure")
+PLOTTERS = ("workflow.figures", "benchmarks.figures", "stress.figure")
 
 
 @pytest.mark.parametrize("module", [m for m in MODULES if not m.startswith(PLOTTERS)])

@@ -7,7 +7,7 @@ from typing import Annotated
 from urllib.parse import urlencode
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 
 from api.answers import ResponseAnswer, finite, response_answer
 from api.ask import ask
@@ -34,9 +34,9 @@ HIGHEST_AMPLITUDE = 100.0
 
 
 @router.get("/response", summary="A block in SI units")
-async def get_block(question: Annotated[BlockQuestion, Query()], service: ServiceDep) -> BlockAnswer:
+async def get_block(question: Annotated[BlockQuestion, Query()], request: Request, service: ServiceDep) -> BlockAnswer:
     """Fate, rotation in degrees, displacement in metres, distance to another fate, friction, by (2.2)."""
-    return await service.off_loop(lambda: _block(service, question))
+    return await service.off_loop(lambda: _block(service, question), request)
 
 
 def _block(service: Service, question: BlockQuestion) -> BlockAnswer:

@@ -81,7 +81,7 @@ class MapAnswer(BaseModel):
 async def get_map(question: Annotated[MapQuestion, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; the solver always answers, and without error bounds."""
     form = form_of(request, question.format)
-    answer = await service.off_loop(lambda: _map(service, question, form))
+    answer = await service.off_loop(lambda: _map(service, question, form), request)
     digest = hashlib.sha256(answer.body).hexdigest()
     known = not_modified(request, digest)
     response = answer if known is None else known

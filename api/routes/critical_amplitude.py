@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 
 from api.answers import VERSION
@@ -57,10 +57,10 @@ class AmplitudeAnswer(BaseModel):
 
 @router.get("/critical_amplitude", summary="Amplitudes at which the fate of a block changes")
 async def get_critical_amplitude(
-    question: Annotated[AmplitudeQuestion, Query()], service: ServiceDep
+    question: Annotated[AmplitudeQuestion, Query()], request: Request, service: ServiceDep
 ) -> AmplitudeAnswer:
     """Every threshold between standing and falling; the solver always answers, each good to 1e-12 in 1/a."""
-    return await service.off_loop(lambda: _answer(question))
+    return await service.off_loop(lambda: _answer(question), request)
 
 
 def _answer(question: AmplitudeQuestion) -> AmplitudeAnswer:

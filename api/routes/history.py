@@ -29,7 +29,7 @@ async def get_history(question: Annotated[HistoryQuestion, Query()], request: Re
     if question.samples > service.settings.max_samples:
         raise TooLargeError("samples", question.samples, f"at most {service.settings.max_samples}")
     form = form_of(request, question.format)
-    return await service.off_loop(lambda: _history(question, form))
+    return await service.off_loop(lambda: _history(question, form), request)
 
 
 def _history(question: HistoryQuestion, form: str) -> Response:

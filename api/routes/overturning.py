@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
@@ -25,14 +26,17 @@ router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
 NODES = 201
 """Grid on which curves are looked for on request: half as fine as the workflow's, seconds for the wavelets [-]."""
 
+KEPT = 64
+"""Questions whose traced curves are kept [-]: some tens of kB each."""
+
 
 @router.get("/overturning", summary="Boundary curves", response_model=OverturningAnswer, responses=CONTENT)
 async def get_overturning(
     question: Annotated[OverturningQuestion, Query()], request: Request, service: ServiceDep
 ) -> Response:
-    """The curves of the workflow; where there are none for this restitution, they are traced for this request."""
+    """The curves of the workflow; where there are none for this restitution, they are traced, once for all who ask."""
     form = form_of(request, question.format)
-    return await service.off_loop(lambda: _overturning(service, question, form))
+    return await service.off_loop(lambda: _overturning(service, question, form), request)
 
 
 def _overturning(service: Service, question: OverturningQuestion, form: str) -> Response:
@@ -40,9 +44,7 @@ def _overturning(service: Service, question: OverturningQuestion, form: str) -> 
     in_range("restitution", question.restitution, 0.0, 1.0)
     curves, version = _read(service, question)
     if curves is None:
-        curves = overturning_boundary(
-            question.pulse, restitution=question.restitution, alpha=alpha_of(question.alpha_deg), nodes=NODES
-        )
+        curves = _traced(question.pulse, question.restitution, alpha_of(question.alpha_deg))
     if form == "nc":
         return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
     if form == "csv":
@@ -73,6 +75,12 @@ def _read(service: Service, question: OverturningQuestion) -> tuple[xr.Dataset |
     if float(stored["restitution"]) != question.restitution or not found.sizes["curve"]:
         return None, None
     return found, version
+
+
+@lru_cache(maxsize=KEPT)
+def _traced(pulse: str, restitution: float, alpha: float | None) -> xr.Dataset:
+    """Curves for which there is no data set; whoever moves a slider back and forth does not trace them again."""
+    return overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=NODES)
 
 
 def _names(curves: xr.Dataset) -> NDArray[np.str_]:

@@ -13,7 +13,6 @@ from api.formats import CONTENT, MEDIA_TYPES, Form, form_of
 from api.question_route import QuestionRoute, single_parameters
 from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
-from api.workshop import Leave
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
 
@@ -54,15 +53,14 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     settings = service.settings
     body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds)
 
-    def work(leave: Leave) -> Response:
-        batch = read_batch(body, given, parameters, settings.max_points)
-        return _answered(service, batch, form, leave)
+    def work() -> Response:
+        return _answered(service, read_batch(body, given, parameters, settings.max_points), form)
 
-    return await service.in_pieces(work, request)
+    return await service.off_loop(work, request)
 
 
-def _answered(service: Service, batch: Batch, form: Form, leave: Leave) -> Response:
-    found, versions = answer_batch(service.atlas, batch, leave)
+def _answered(service: Service, batch: Batch, form: Form) -> Response:
+    found, versions = answer_batch(service.atlas, batch)
     from_cubes = int((found.source == "cube").sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)

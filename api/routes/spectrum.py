@@ -27,7 +27,7 @@ async def get_spectrum(
 ) -> Response:
     """Blocks of one slenderness over a window of the frequency ratio."""
     form = form_of(request, question.format)
-    return await service.off_loop(lambda: _spectrum(service, question, form))
+    return await service.off_loop(lambda: _spectrum(service, question, form), request)
 
 
 def _spectrum(service: Service, question: SpectrumQuestion, form: str) -> Response:

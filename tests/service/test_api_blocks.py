@@ -123,6 +123,13 @@ def test_bad_input(client, changes, parameter):
     assert_problem(ask(client, **changes), 422, parameter)
 
 
+@pytest.mark.parametrize("odd", ["bouncy", "", "nan", "Housner"])
+def test_a_restitution_may_be_housner_or_a_number(client, odd):
+    problem = assert_problem(ask(client, restitution=odd), 422, "restitution")
+    assert "[0, 1]" in problem["allowed"]
+    assert odd == "nan" or "housner" in problem["allowed"]
+
+
 def overturned(client, **changes):
     return ask(client, method="solver", **changes).json()["overturned"]
 

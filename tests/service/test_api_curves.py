@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import api.routes.overturning
 from rocking.boundary import overturning_boundary
 from rocking.boundary_curves import join_curves
 from rocking.cube import read_dataset, write_dataset
@@ -54,6 +55,23 @@ def test_the_three_forms_of_a_spectrum_agree(client):
         stored["peak_rotation"], [np.nan if peak is None else peak for peak in answer["peak_rotation"]]
     )
     assert stored.attrs["slenderness"] == 0.6
+
+
+def test_curves_are_traced_once_for_all_who_ask(client, monkeypatch):
+    traced = []
+
+    def trace(*args, **kwargs):
+        traced.append(args)
+        return overturning_boundary(*args, **kwargs)
+
+    monkeypatch.setattr(api.routes.overturning, "overturning_boundary", trace)
+    question = {"pulse": "half_sine", "restitution": 0.8765}
+    answers = [client.get("/v1/overturning", params=question | more) for more in ({}, {"alpha_deg": 0}, {})]
+    assert len(traced) == 1
+    assert answers[0].headers["etag"] == answers[2].headers["etag"]
+    assert answers[0].json()["curves"] == answers[1].json()["curves"]
+    known = client.get("/v1/overturning", params=question, headers={"If-None-Match": answers[0].headers["etag"]})
+    assert known.status_code == 304
 
 
 def test_overturning_reads_the_curves_of_the_workflow(client, results):

@@ -11,6 +11,7 @@ from starlette.requests import ClientDisconnect
 
 import api.batch_answer
 from api.workshop import BusyError, Leave, TimeLimitError, Workshop
+from rocking.errors import in_range
 from tests.service.conftest import assert_problem, client_of
 from tests.service.test_api_observed import metrics_of
 
@@ -61,14 +62,14 @@ def test_work_that_cannot_be_stopped_keeps_its_place_after_its_time():
     asyncio.run(scenario())
 
 
-def test_work_in_pieces_stops_when_its_time_is_up():
+def test_work_of_the_package_stops_when_its_time_is_up():
     async def scenario():
         ended = threading.Event()
 
-        def work(leave):
+        def work():
             try:
                 while True:
-                    leave.ask()
+                    in_range("any", 1.0, 0.0, 2.0)
                     time.sleep(0.001)
             finally:
                 ended.set()
@@ -89,10 +90,10 @@ def test_work_stops_when_its_client_goes_away():
     async def scenario():
         stopped = threading.Event()
 
-        def work(leave):
+        def work():
             try:
                 while True:
-                    leave.ask()
+                    in_range("any", 1.0, 0.0, 2.0)
                     time.sleep(0.001)
             except ClientDisconnect:
                 stopped.set()
@@ -137,6 +138,20 @@ def test_too_long_is_504(results, monkeypatch):
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
         problem = assert_problem(client.post("/v1/response", json=many), 504)
         assert "0.2 s" in problem["detail"]
+
+
+@pytest.mark.parametrize("path", ["/v1/critical_amplitude", "/v1/overturning"])
+def test_a_search_that_takes_too_long_is_504_and_leaves_its_place(results, path):
+    """An elastic block under a slow pulse has changes of fate without number: it takes half a minute."""
+    question = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
+    if path == "/v1/critical_amplitude":
+        question["frequency_ratio"] = 0.05
+    with client_of(results, max_seconds=0.3) as client:
+        assert_problem(client.get(path, params=question), 504)
+        began = time.monotonic()
+        while client.app.state.service.workshop.running:
+            time.sleep(0.01)
+            assert time.monotonic() - began < 5.0
 
 
 def test_batches_in_pieces_are_the_same(client, monkeypatch):

@@ -15,8 +15,7 @@ NO_UPLIFT, SAFE, OVERTURNED_DIRECTLY, OVERTURNED_AFTER_IMPACT, CAPPED = 0, 1, 2,
 class ExactResponse:
     """What happened; times are tau = p t, `margin` is how far the deciding quantity is from the barrier (> 0 falls).
 
-    `uplifts` are those from rest; `last_impact_time` counts from the start of the pulse; `slowest_impact` is the
-    smallest speed at an impact during it.
+    `uplifts` are those from rest; `slowest_impact` is the smallest speed at an impact during the pulse.
     """
 
     outcome: int = NO_UPLIFT
@@ -29,7 +28,6 @@ class ExactResponse:
     first_impact_velocity: arb | None = None
     margin: arb | None = None
     uplifts: int = 0
-    last_impact_time: arb | None = None
     slowest_impact: arb | None = None
 
     @property

@@ -191,7 +191,6 @@ class _Integration:
         if answer.first_impact_time is None:
             answer.first_impact_time = (self.tau - answer.uplift_time).mid()
             answer.first_impact_velocity = (self.side * self.v).mid()
-        answer.last_impact_time = self.tau
         if answer.slowest_impact is None or abs(self.v) < answer.slowest_impact:
             answer.slowest_impact = abs(self.v)
         self.side, self.z, self.v = -self.side, arb(0), abs(eta * self.v).mid()

@@ -1,0 +1,82 @@
+"""Run time against error, four diagrams: `python -m benchmarks.figures.work_precision` after the measurements."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from benchmarks.cells import DIAGRAMS
+from benchmarks.measure import spread
+from workflow.figures.style import BLACK, BLUE, VERMILION, WIDTH, panel_letters
+
+ORANGE, SKY, GREEN, PURPLE = "#E69F00", "#56B4E9", "#009E73", "#CC79A7"
+LOOKS: dict[str, dict[str, Any]] = {
+    "rocking": {"color": BLACK, "marker": "*", "markersize": 7, "linewidth": 1.6},
+    "heyoka": {"color": BLUE, "marker": "o"},
+    "numbalsoda DOP853": {"color": GREEN, "marker": "s"},
+    "numbalsoda LSODA": {"color": GREEN, "marker": "D", "linestyle": "--"},
+    "diffrax Dopri8": {"color": BLUE, "marker": "x", "linestyle": ":"},
+    "RK4, fixed steps": {"color": VERMILION, "marker": "^"},
+    "scipy RK45": {"color": ORANGE, "marker": "v"},
+    "scipy DOP853": {"color": PURPLE, "marker": "s"},
+    "scipy LSODA": {"color": PURPLE, "marker": "D", "linestyle": "--"},
+    "scipy Radau": {"color": SKY, "marker": "p"},
+}
+MEASURES = {"error_99": "relative error that 99 % of the cells keep [-]", "median_error": "median relative error [-]"}
+
+
+def panel(ax: Axes, record: dict[str, Any], measure: str) -> None:
+    """One diagram: median time over error, the bar from the fastest to the slowest round; hollow: a wrong fate."""
+    for name, rows in record["methods"].items():
+        look: dict[str, Any] = {"markersize": 4, **LOOKS[name]}
+        error = np.array([row[measure] for row in rows])
+        times = [spread(row["us"]) for row in rows]
+        middle = np.array([time["median"] for time in times])
+        bars = [middle - [time["smallest"] for time in times], [time["largest"] for time in times] - middle]
+        ax.errorbar(error, middle, bars, label=name, capsize=1.5, elinewidth=0.7, **look)
+        wrong = np.array([row["wrong_fates"] > 0 for row in rows])
+        hollow = {"linestyle": "", "markerfacecolor": "white", "zorder": 5}
+        ax.plot(error[wrong], middle[wrong], **{**look, **hollow})
+    kind, pulse = record["diagram"].split("-")
+    names = {"slender": "slender block", "rigid": "rigid block, 20°", "sine": "one sine", "ricker": "Ricker wavelet"}
+    ax.set_title(f"{names[kind]}, {names[pulse]}")
+    ax.set(xscale="log", yscale="log", xlim=(1e0, 1e-16), ylim=(0.1, 2e5))
+    ax.grid(visible=True, which="major", linewidth=0.3, alpha=0.5)
+
+
+def draw(records: list[dict[str, Any]], measure: str, paths: list[Path]) -> None:
+    """Four panels, the slender ones above."""
+    figure, axes = plt.subplots(2, 2, figsize=(WIDTH, 1.05 * WIDTH), sharex=True, sharey=True)
+    for ax, record in zip(axes.flat, records, strict=True):
+        panel(ax, record, measure)
+    panel_letters(list(axes.flat))
+    for ax in axes[1]:
+        ax.set_xlabel(MEASURES[measure])
+    for ax in axes[:, 0]:
+        ax.set_ylabel("processor time of a cell, one core [µs]")
+    handles, labels = axes.flat[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=5)
+    for path in paths:
+        figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
+    plt.close(figure)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="of the measurements")
+    parser.add_argument("--measure", choices=MEASURES, default="error_99")
+    options = parser.parse_args()
+    records = [json.loads((options.folder / f"work-precision-{name}.json").read_text()) for name in DIAGRAMS]
+    name = "work-precision" if options.measure == "error_99" else "work-precision-median"
+    draw(records, options.measure, [options.folder / f"{name}.{kind}" for kind in ("png", "svg")])
+
+
+if __name__ == "__main__":
+    main()

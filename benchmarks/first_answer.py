@@ -1,0 +1,59 @@
+"""How long a new process waits for its first answer: `python -m benchmarks.first_answer`.
+
+A fresh copy of the package, whose kernels have to be compiled, and then the same copy with the kernels on disk.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import rocking
+from benchmarks.measure import save, versions
+
+FIRST_CALL = """
+import time
+begin = time.perf_counter()
+import rocking
+imported = time.perf_counter()
+rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+first = time.perf_counter()
+rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+print(imported - begin, first - imported, time.perf_counter() - first)
+"""
+
+
+def seconds() -> dict[str, dict[str, float]]:
+    """To import, to the first and second answer, in a new process: kernels compiled, then from disk."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(rocking.__file__).parent
+        shutil.copytree(source, Path(folder) / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
+        answers = {}
+        for state in ("compiled", "from disk"):
+            done = subprocess.run(
+                [sys.executable, "-c", FIRST_CALL], cwd=folder, capture_output=True, text=True, check=True
+            )
+            names = ("import", "first_call", "second_call")
+            answers[state] = dict(zip(names, map(float, done.stdout.split()), strict=True))
+    return answers
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/first-answer.json"))
+    out = parser.parse_args().out
+    found = seconds()
+    save({"seconds": found, "versions": versions("numpy", "numba")}, out)
+    print(f"{'kernels':12}{'import':>10}{'first':>10}{'second':>10}   s to answer one cell")
+    for state, times in found.items():
+        print(f"{state:12}" + "".join(f"{value:10.4f}" for value in times.values()))
+    print(f"\nwritten to {out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,175 @@
+"""Error of interpolation against the size of the grid: `python -m benchmarks.grid_size`.
+
+Cubes of one pulse and restitution, slender blocks and blocks of 20 degrees, are made as the workflow makes them, on the
+grid of paper.yaml and on coarser and finer ones, in a temporary folder. Random questions, uniform in 1/a and log omega,
+are answered three ways: by the solver, which is the truth, by our scheme, and by linear interpolation between the four
+nodes around, which answers where all four stand or all four overturn. Errors are compared where both answer a peak.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+import yaml
+from numpy.typing import NDArray
+
+from benchmarks.figures.grid_size import draw
+from benchmarks.measure import progress, save, versions
+from rocking.interpolation import cell_index, log_index, uniform_index
+from rocking.lookup_open import open_cube
+from rocking.lookup_points import Points
+from rocking.solve import peak_response
+from workflow.scripts import overturning, spectra
+
+CONFIG = Path(__file__).parents[1] / "workflow/config/paper.yaml"
+PULSE, RESTITUTION, ANGLES = "sine", 0.85, (0.0, 20.0)
+SCALES = (0.125, 0.25, 0.5, 1.0, 2.0)
+"""Nodes along each axis over those of paper.yaml."""
+
+LIMITS = (1e-4, 1e-6)
+"""Bounds of error for which the share of the questions that the cube may answer is counted."""
+
+
+def grids(config: dict[str, Any], scales: tuple[float, ...]) -> Iterator[dict[str, Any]]:
+    """The grid of the configuration with that many times its nodes along both axes."""
+    for scale in scales:
+        axes = {name: dict(config["grid"][name]) for name in ("slenderness", "frequency_ratio")}
+        for axis in axes.values():
+            axis["points"] = round(scale * (axis["points"] - 1)) + 1
+        yield {**axes, "alpha_deg": list(ANGLES)}
+
+
+def made(folder: Path, config: dict[str, Any], scales: tuple[float, ...]) -> Iterator[tuple[Path, float]]:
+    """The cubes of all grids, and the seconds that each took."""
+    common: dict[str, Any] = {"pulse": PULSE, "restitution": [RESTITUTION], "provenance": {}}
+    curves = [folder / "boundaries.nc"]
+    progress("grid size: boundaries")
+    overturning.main(alpha_deg=ANGLES, boundary=config["boundary"], boundaries=curves, **common)
+    for grid in grids(config, scales):
+        path = folder / f"{grid['slenderness']['points']}.nc"
+        start = time.perf_counter()
+        spectra.main(grid=grid, boundaries=curves, cubes=[path], **common)
+        progress(f"grid size: {grid['slenderness']['points']} x {grid['frequency_ratio']['points']} nodes")
+        yield path, time.perf_counter() - start
+
+
+def questions(config: dict[str, Any], count: int, alpha: float, seed: int) -> Points:
+    """Random ones over the window of the cubes, all at one angle [rad]."""
+    random = np.random.default_rng(seed)
+    s, w = config["grid"]["slenderness"], config["grid"]["frequency_ratio"]
+    omega = np.exp(random.uniform(math.log(w["low"]), math.log(w["high"]), count))
+    slenderness = random.uniform(s["low"], s["high"], count)
+    return Points(slenderness, omega, np.full(count, RESTITUTION), np.full(count, alpha))
+
+
+def linear(layer: xr.Dataset, points: Points) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Where the four nodes around agree that the block stands or falls, and the peak between them, nan if it falls."""
+    peak = layer["peak_rotation"].values
+    position = (
+        uniform_index(layer["slenderness"].values, points.slenderness),
+        log_index(layer["frequency_ratio"].values, points.frequency_ratio),
+    )
+    i, j = (cell_index(along, nodes) for along, nodes in zip(position, peak.shape, strict=True))
+    x, y = position[0] - i, position[1] - j
+    corners = np.stack([peak[i, j], peak[i, j + 1], peak[i + 1, j], peak[i + 1, j + 1]])
+    weights = np.stack([(1.0 - x) * (1.0 - y), (1.0 - x) * y, x * (1.0 - y), x * y])
+    fallen = np.isnan(corners)
+    return fallen.all(axis=0) | ~fallen.any(axis=0), (weights * corners).sum(axis=0)
+
+
+def quantiles(error: NDArray[np.float64]) -> dict[str, float]:
+    """Of absolute errors of the peak."""
+    return {f"{share:g}": float(np.quantile(error, share)) for share in (0.5, 0.9, 0.99, 1.0)}
+
+
+def judged(path: Path, points: Points, true: NDArray[np.float64]) -> dict[str, Any]:
+    """Both schemes on one cube, held against the solver."""
+    cube = open_cube(path)
+    known, answer = cube.promised(points, math.inf)
+    ours = np.full(true.size, np.nan)
+    ours[known] = answer.peak_rotation
+    bound = np.where(np.isnan(answer.peak_rotation), 0.0, answer.error_bound)
+    with xr.open_dataset(path) as data:
+        agreed, simple = linear(data.sel(alpha=points.alpha[0]), points)
+    both = known & agreed & ~np.isnan(ours) & ~np.isnan(simple) & ~np.isnan(true)
+    return {
+        "ours": {
+            "answered": float(known.mean()),
+            "wrong_fates": int((known & (np.isnan(ours) != np.isnan(true))).sum()),
+            "error": quantiles(np.abs(ours - true)[both]),
+            "within": {f"{limit:.0e}": float((bound <= limit).sum() / true.size) for limit in LIMITS},
+        },
+        "linear": {
+            "answered": float(agreed.mean()),
+            "wrong_fates": int((agreed & (np.isnan(simple) != np.isnan(true))).sum()),
+            "error": quantiles(np.abs(simple - true)[both]),
+        },
+    }
+
+
+def measure(count: int, scales: tuple[float, ...], seed: int) -> dict[str, Any]:
+    """All of it, as one record."""
+    config = yaml.safe_load(CONFIG.read_text())
+    asked = {angle: questions(config, count, math.radians(angle), seed) for angle in ANGLES}
+    true = {angle: peak_response(PULSE, **vars(points)).peak_rotation for angle, points in asked.items()}
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for scale, (path, seconds) in zip(scales, made(Path(folder), config, scales), strict=True):
+            with xr.open_dataset(path) as data:
+                nodes = [data.sizes["slenderness"], data.sizes["frequency_ratio"]]
+            layers = {f"{angle:g}": judged(path, asked[angle], true[angle]) for angle in ANGLES}
+            size = path.stat().st_size / len(ANGLES)
+            rows.append({"scale": scale, "nodes": nodes, "bytes": size, "seconds": seconds, "alpha_deg": layers})
+    return {
+        "pulse": PULSE,
+        "restitution": RESTITUTION,
+        "questions": count,
+        "grids": rows,
+        "versions": versions("numpy", "numba", "xarray"),
+    }
+
+
+def table(record: dict[str, Any]) -> str:
+    """The record in lines."""
+    titles = ("ours 50 %", "90 %", "99 %", "fates", "bound 1e-4", "1e-6", "linear 50 %", "90 %", "99 %", "fates")
+    lines = [f"{'alpha':>6}{'nodes':>12}{'kB':>8}" + "".join(f"{title:>12}" for title in titles)]
+    for row in record["grids"]:
+        for angle, found in row["alpha_deg"].items():
+            lines.append(
+                f"{angle:>6}{'{} x {}'.format(*row['nodes']):>12}{row['bytes'] / 1e3:8.0f}"
+                + "".join(f"{found['ours']['error'][share]:12.1e}" for share in ("0.5", "0.9", "0.99"))
+                + f"{found['ours']['wrong_fates']:12d}"
+                + "".join(f"{found['ours']['within'][f'{limit:.0e}']:12.3f}" for limit in LIMITS)
+                + "".join(f"{found['linear']['error'][share]:12.1e}" for share in ("0.5", "0.9", "0.99"))
+                + f"{found['linear']['wrong_fates']:12d}"
+            )
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=200_000, help="questions at each angle")
+    parser.add_argument(
+        "--scales", type=float, nargs="+", default=SCALES, help="nodes along each axis over the paper's"
+    )
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/grid-size.json"))
+    options = parser.parse_args()
+    record = measure(options.count, tuple(options.scales), options.seed)
+    save(record, options.out)
+    draw(record, [options.out.with_suffix(f".{kind}") for kind in ("png", "svg")])
+    print(table(record))
+    print(f"\nwritten to {options.out}, with figures beside it")
+
+
+if __name__ == "__main__":
+    main()

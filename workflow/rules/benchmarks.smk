@@ -1,0 +1,167 @@
+# Run time against error, cost against size, error against bytes: `snakemake bench`, or `make bench`. A job is one command
+# of `benchmarks`, and one runs at a time, with the machine to itself: what it prints stays in its log, its progress on
+# the screen.
+DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
+TIMED = ["tolerance", "growth", "grid-size", "first-answer", "service", "stages"]
+PRESENT = sys.executable  # the Python that runs Snakemake, with the peers that it has
+
+
+def benchmark_code(*names):
+    """Digest of benchmarks and of all that they import, found when a job asks for it."""
+    return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
+
+
+def installed_peers(wildcards):
+    """Versions of the optional integrators: another one is another measurement."""
+    from benchmarks.measure import versions
+    from benchmarks.methods import OPTIONAL
+
+    return versions(*OPTIONAL)
+
+
+rule work_precision:
+    input:
+        cells=str(PROJECT / "benchmarks/data/{diagram}.csv"),
+    output:
+        record="results/benchmarks/work-precision-{diagram}.json",
+    log:
+        "logs/bench/work-precision-{diagram}.log",
+    wildcard_constraints:
+        diagram="|".join(DIAGRAMS),
+    threads: workflow.cores
+    params:
+        code=benchmark_code("work_precision"),
+        peers=installed_peers,
+    message:
+        "Run time against error, {wildcards.diagram}"
+    shell:
+        "{PRESENT} -m benchmarks.work_precision {wildcards.diagram} --out {output.record} >{log}"
+
+
+rule work_precision_figure:
+    input:
+        records=expand(rules.work_precision.output.record, diagram=DIAGRAMS),
+    output:
+        expand("results/benchmarks/work-precision{kind}.{format}", kind=["", "-median"], format=["png", "svg"]),
+    log:
+        "logs/bench/work-precision-figure.log",
+    params:
+        code=benchmark_code("figures/work_precision"),
+        folder=lambda wildcards, input: os.path.dirname(input.records[0]),
+    message:
+        "Drawing run time against error"
+    shell:
+        "for measure in error_99 median_error; do"
+        " {PRESENT} -m benchmarks.figures.work_precision --folder {params.folder} --measure $measure >>{log}; done"
+
+
+rule tolerance:
+    input:
+        cells=str(PROJECT / "benchmarks/data/random.csv"),
+    output:
+        record="results/benchmarks/tolerance.json",
+        figure="results/benchmarks/tolerance.png",
+    log:
+        "logs/bench/tolerance.log",
+    threads: workflow.cores
+    params:
+        code=benchmark_code("tolerance"),
+    message:
+        "Error against the tolerance asked for"
+    shell:
+        "{PRESENT} -m benchmarks.tolerance --out {output.record} >{log}"
+
+
+rule growth:
+    output:
+        record="results/benchmarks/growth.json",
+        figures=multiext("results/benchmarks/growth", ".png", ".svg"),
+    log:
+        "logs/bench/growth.log",
+    threads: workflow.cores
+    params:
+        code=benchmark_code("growth"),
+    message:
+        "Cost as the work grows"
+    shell:
+        "{PRESENT} -m benchmarks.growth --out {output.record} >{log}"
+
+
+rule grid_size:
+    input:
+        config=str(PROJECT / "workflow/config/paper.yaml"),
+    output:
+        record="results/benchmarks/grid-size.json",
+        figures=multiext("results/benchmarks/grid-size", ".png", ".svg"),
+    log:
+        "logs/bench/grid-size.log",
+    threads: workflow.cores
+    params:
+        code=benchmark_code("grid_size"),
+    message:
+        "Error of interpolation against the size of the grid"
+    shell:
+        "{PRESENT} -m benchmarks.grid_size --out {output.record} >{log}"
+
+
+rule first_answer:
+    output:
+        record="results/benchmarks/first-answer.json",
+    log:
+        "logs/bench/first-answer.log",
+    threads: workflow.cores
+    params:
+        code=benchmark_code("first_answer"),
+    message:
+        "The first answer of a new process"
+    shell:
+        "{PRESENT} -m benchmarks.first_answer --out {output.record} >{log}"
+
+
+rule service:
+    input:
+        manifest=rules.manifest.output.manifest,
+    output:
+        record="results/benchmarks/service.json",
+    log:
+        "logs/bench/service.log",
+    threads: workflow.cores
+    params:
+        code=benchmark_code("service"),
+    message:
+        "Requests to the service"
+    shell:
+        "{PRESENT} -m benchmarks.service --out {output.record} >{log}"
+
+
+rule stages:
+    input:
+        checks=rules.check_results.output.report,
+    output:
+        record="results/benchmarks/stages.json",
+    log:
+        "logs/bench/stages.log",
+    params:
+        code=benchmark_code("stages"),
+    message:
+        "Where the time of the reproduction goes"
+    shell:
+        "{PRESENT} -m benchmarks.stages --out {output.record} >{log}"
+
+
+rule bench:
+    input:
+        diagrams=rules.work_precision_figure.input.records,
+        figures=rules.work_precision_figure.output,
+        records=expand("results/benchmarks/{name}.json", name=TIMED),
+    output:
+        summary="results/benchmarks/summary.md",
+    log:
+        "logs/bench/summary.log",
+    params:
+        code=benchmark_code("summary"),
+        folder=lambda wildcards, output: os.path.dirname(output.summary),
+    message:
+        "Summary of the benchmarks"
+    shell:
+        "{PRESENT} -m benchmarks.summary --folder {params.folder} >{log}"
