@@ -46,7 +46,7 @@ def choose_stencils(
     codes : int array (cells,)
         What each cell has; replaced by the best.
     errors : float array (cells,)
-        Largest error of the code; filled, nan where none serves.
+        Largest error of the code; filled, infinite where none serves.
     """
     n, m = peaks.shape
     for c in range(len(i)):
@@ -68,4 +68,4 @@ def choose_stencils(
                 largest = max(largest, error)
             if largest < least:
                 chosen, least = code, largest
-        codes[c], errors[c] = chosen, least if least < math.inf else math.nan
+        codes[c], errors[c] = chosen, least

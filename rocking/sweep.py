@@ -33,10 +33,13 @@ FIRST = 2
 TAME = 1e-6
 """Error at the first probes above which the others and the other stencils are tried, there and next to it [-]."""
 
+WORTH = 2e-4
+"""Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
+
 PROBE_TOLERANCE = 1e-9
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
 
-TOGETHER = 4
+TOGETHER = 11
 """Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
 
 
@@ -154,19 +157,28 @@ class _Grid:
             mine = smooth[k][cells]
             own = cells[0][mine], cells[1][mine]
             found = [layer.peak_at(own, place) - peaks[p, mine, k] for p, place in enumerate(PROBES[:FIRST])]
-            errors[k][own] = np.abs(found).max(axis=0)  # nan, an overturned block inside the cell, stays
-        wild = smooth & ~(largest_around(np.where(np.isnan(errors), 1.0, errors)) <= TAME)
+            errors[k][own] = np.abs(found).max(axis=0)
+        errors[smooth & np.isnan(errors)] = np.inf  # a block overturns inside the cell
+        wild = smooth & ~(largest_around(errors) <= TAME)
         for k, layer in enumerate(layers):
             mine = wild[k][cells]
             own = cells[0][mine], cells[1][mine]
+            self._choose(layer, own, peaks[:, mine, k], errors[k])
+            promising = errors[k][own] <= WORTH
+            layer.stencil[own[0][~promising], own[1][~promising]] = NO_STENCIL
+            good = own[0][promising], own[1][promising]
             # one restitution at a time: these blocks strike often, and hardly two layers have them in the same cells
-            more = self._probe(PROBES[FIRST:], own, etas[k : k + 1], angle)
-            truth = np.concatenate([peaks[:, mine, k], more[..., 0]])
-            x, y = (np.array(axis) for axis in zip(*(self.mesh.within(own, place) for place in PROBES), strict=True))
-            codes, least = layer.stencil[own], np.empty(own[0].size)
-            choose_stencils(layer.peak_rotation, *own, x, y, truth, self.mesh, codes, least)
-            layer.stencil[own], errors[k][own] = codes, least
+            more = self._probe(PROBES[FIRST:], good, etas[k : k + 1], angle)[..., 0]
+            self._choose(layer, good, np.concatenate([peaks[:, mine, k][:, promising], more]), errors[k])
         return errors
+
+    def _choose(self, layer: Layer, cells: Cells, peaks: Array, errors: Array) -> None:
+        """Give some cells the stencil that comes closest to the peaks (probes, cells) at the first probes."""
+        places = PROBES[: len(peaks)]
+        x, y = (np.array(axis) for axis in zip(*(self.mesh.within(cells, place) for place in places), strict=True))
+        codes, least = layer.stencil[cells], np.empty(cells[0].size)
+        choose_stencils(layer.peak_rotation, *cells, x, y, np.ascontiguousarray(peaks), self.mesh, codes, least)
+        layer.stencil[cells], errors[cells] = codes, least
 
     def _probe(self, places: Sequence[tuple[float, float]], cells: Cells, etas: Array, angle: float) -> Array:
         """The solver's peaks at places within cells, for each restitution: shape (places, cells, restitutions)."""
@@ -199,8 +211,10 @@ def _cube(pulse: str, eta: float, axes: Mapping[str, Array], layers: Sequence[La
         return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
 
     variables["stencil"] = at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
+    served = np.stack([layer.stencil for layer in layers]) != NO_STENCIL
     for name, error in zip(("interpolation_error", "restitution_error", "alpha_error"), errors, strict=True):
         largest = largest_around(error)
+        largest[~served | np.isinf(largest)] = np.nan
         single = largest.astype(np.float32)
         # up to the next single: what is stored is still a bound
         above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
