@@ -39,6 +39,9 @@ serve: .venv/project | results/manifest.json ## the HTTP service over results/, 
 bench: .venv/project ## time and error beside other integrators, cost, interpolation: results/benchmarks/; ten minutes
 	snakemake $(if $(CONFIG),--configfile $(CONFIG)) bench
 
+stress: .venv/project ## 3,600 hard cases against 192-bit answers: fates, digits, symmetries, times; a minute or two
+	python -m stress
+
 fuzz: .venv/project ## ask the service 5,000 questions that a machine makes up; three minutes (SEED= for others)
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/service/test_api_fuzz.py
 

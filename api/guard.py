@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import asyncio
 from http import HTTPStatus
-from typing import Any
+from typing import Any, cast
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+from api.one_write import OneWrite
 from api.problems import problem
 
 
@@ -34,7 +35,7 @@ def guarded(seconds: float, header_bytes: int) -> type[HttpToolsProtocol]:
         _header_bytes = 0
 
         def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-            super().connection_made(transport)
+            super().connection_made(cast(asyncio.Transport, OneWrite(transport, self.loop)))
             self._wait()
 
         def connection_lost(self, exc: Exception | None) -> None:

@@ -17,6 +17,8 @@ def time_for(error: float, times: Sequence[float], errors: Sequence[float]) -> f
     Between two settings log(time) is linear in log(error). A setting counts only if none with a smaller error is
     faster, so the time does not rise where more error is allowed, nor fall beyond the coarsest setting.
     """
+    if not len(errors):
+        return math.nan
     order = np.argsort(errors)
     reached = np.maximum(np.asarray(errors, dtype=np.float64)[order], SMALLEST)
     if not error >= reached[0]:

@@ -86,6 +86,10 @@ def methods(pulse: str) -> Iterator[Method]:
 
         yield Method("numbalsoda DOP853", compiled(numbalsoda_peer.dop853_flight), rtols)
         yield Method("numbalsoda LSODA", compiled(numbalsoda_peer.lsoda_flight), rtols)
+    if find_spec("diffrax"):
+        from benchmarks import diffrax_peer  # noqa: PLC0415  # optional
+
+        yield Method("diffrax Dopri8", diffrax_peer.peaks, rtols[1:])
     steps = tuple(2**k * (1 if pulse == "sine" else 4) for k in (5, 6, 8, 10, 12))  # the wavelet lasts longer
     yield Method("RK4, fixed steps", compiled(fixed_step_peer.flight), steps)
     yield by_scipy("RK45", rtols[:5])

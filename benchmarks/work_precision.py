@@ -45,7 +45,7 @@ def sample(cells: Cells) -> Cells:
 def tried(method: Method, setting: float | None, cells: Cells) -> tuple[dict[str, Any], Task]:
     """Accuracy of a method at a setting, with its compilation apart, and the task to be timed."""
     start = time.perf_counter()
-    method.peaks(setting, cells.chosen(np.arange(2)))
+    method.peaks(setting, cells.chosen(np.arange(min(2, len(cells)))))
     first = time.perf_counter() - start
     row = {"setting": setting, "cells": len(cells), "first_call_s": first}
     given = cells if method.name != "rocking" else cells.chosen(np.tile(np.arange(len(cells)), COPIES))
@@ -85,7 +85,8 @@ def least_times(rows: list[dict[str, Any]], error: float, measure: str) -> NDArr
     """Least time of a method (rounds,) for an error; a setting with a wrong fate reaches none."""
     right = [row for row in rows if row["wrong_fates"] == 0]
     errors = [row[measure] for row in right]
-    return np.array([time_for(error, times, errors) for times in zip(*(row["us"] for row in right), strict=True)])
+    rounds = range(len(rows[0]["us"]))
+    return np.array([time_for(error, [row["us"][k] for row in right], errors) for k in rounds])
 
 
 def ratios(table: dict[str, list[dict[str, Any]]], name: str, measure: str) -> dict[str, dict[str, float] | None]:

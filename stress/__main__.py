@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measure import progress, save, versions
 from stress.examine import examined
 from stress.families import BY_NAME, known
 from stress.figure import draw
-from stress.report import broken, markdown, relative_times
+from stress.report import broken, markdown
+from stress.speed import over_ordinary, times_in_short
 from stress.truth import read
 
 
@@ -30,14 +30,9 @@ def main() -> None:
     for count, name in enumerate(dict.fromkeys(("ordinary", *wanted)), start=1):
         progress(f"family {count}: {name}")
         records[name], parts[name] = examined(read(name))
-    times = relative_times(parts)
+    times = over_ordinary(parts)
     for name, record in records.items():
-        slowest = int(np.argmax(times[name]))
-        record["time"] = {
-            "median": float(np.median(times[name])),
-            "largest": float(times[name][slowest]),
-            "slowest_cell": read(name).cell(slowest),
-        }
+        record["time"] = times_in_short(times[name], parts[name]["impacts"], read(name))
     promises = broken(records)
     save({"families": records, "broken": promises, "versions": versions("numpy", "numba")}, out)
     table = markdown(records)

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 def examined(table: Table) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """The record of a family, and the errors, kinds and times (cells,) [-, -, us] that it sums up."""
+    """The record of a family, and the errors, kinds, times and impacts (cells,) [-, -, us, -] that it sums up."""
     found = solve(table)
     error = errors(table, found)
     rigid = table["alpha"] > 0.0
@@ -38,7 +38,7 @@ def examined(table: Table) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         "beyond_promised_bound": beyond_promised_bound(table),
         "symmetries": symmetries(table, found),
     }
-    return record, {"error": error.peak_in_ulps, "rigid": rigid, "time": times}
+    return record, {"error": error.peak_in_ulps, "rigid": rigid, "time": times, "impacts": found.impacts}
 
 
 def wrong_cells(table: Table, found: rocking.Response) -> list[dict[str, Any]]:

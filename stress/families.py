@@ -57,7 +57,7 @@ def _elastic(draw: Draw) -> tuple[float, float, float]:
 
 
 def _unending(draw: Draw) -> tuple[float, float, float]:
-    return 1.0 - draw.log(5e-5, 2e-4), draw.log(0.01, 0.03), draw.one_of(0.9998, 0.9999, 0.99995)
+    return 1.0 - draw.log(7e-5, 1.5e-4), draw.log(0.015, 0.03), draw.uniform(0.9999, 0.99994)
 
 
 def _line(draw: Draw) -> tuple[float, float, float]:
@@ -119,7 +119,7 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         _elastic,
         pulses=("sine", "half_sine", "c1"),
         accept=lambda r: 2_000 <= r.impacts < FOLLOWED,
-        size=24,
+        size=12,
         promises=("fates", "digits", "bounds"),
     ),
     Family(
@@ -128,7 +128,7 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         _unending,
         pulses=("sine",),
         accept=lambda r: FOLLOWED < r.impacts <= 60_000,
-        size=6,
+        size=4,
         promises=(),
     ),
 )

@@ -29,7 +29,7 @@ def draw(
     """Write the figure as .png and .svg: per family (cells,) errors over conditioning, times over the ordinary."""
     figure, axes = plt.subplots(1, 2, sharey=True, figsize=(WIDTH, 0.27 * len(errors) + 0.9), width_ratios=(3, 2))
     for row, name in enumerate(errors):
-        for ax, values, floor in ((axes[0], errors[name], FLOOR), (axes[1], times[name], 1e-2)):
+        for ax, values, floor in ((axes[0], errors[name], FLOOR), (axes[1], times[name], 1e-1)):
             _strip(ax, row, np.maximum(values, floor), rigid[name])
     for label, colour in (("slender", BLUE), ("rigid", VERMILION)):
         axes[0].plot([], [], "o", color=colour, markersize=3, label=label)

@@ -20,8 +20,8 @@ EPS = float(np.finfo(float).eps)
 ULPS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 """By how many units in the last place inputs are moved in search of the fate that was found."""
 
-LONG = 2_000
-"""Impacts from which on that search is made for one unit alone."""
+LONG, ENDLESS = 2_000, 20_000
+"""Impacts from which on that search is made for one unit alone, and from which on it is not made."""
 
 
 def solve(table: Table) -> rocking.Response:
@@ -85,6 +85,8 @@ def ulps_that_explain(table: Table, k: int, found: rocking.Response) -> int | No
 
     Inputs are moved alone and together, up and down; None if no such change is found among `ULPS`.
     """
+    if table["impacts"][k] > ENDLESS:
+        return None
     cell = table.cell(k)
     names = [name for name in INPUTS if name in cell]
     for ulps in ULPS[:1] if table["impacts"][k] > LONG else ULPS:

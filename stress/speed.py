@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,9 @@ FEW, MANY = 8, 256
 LONG = 20.0
 """Microseconds from which on a cell takes long."""
 
+SLOW = 100.0
+"""Time over the median ordinary cell from which on a cell counts as slow, and has to have many impacts."""
+
 
 def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
     """Processor time (cells,) [us], the smallest of some rounds; each cell in the company of its like."""
@@ -26,6 +31,24 @@ def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
         if found[k] < LONG:
             found[k] = _in_company(str(pulse), cell, MANY, rounds)
     return found
+
+
+def over_ordinary(parts: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[np.float64]]:
+    """Times (cells,) over the median of the ordinary cells, slender and rigid each over their own [-]."""
+    ordinary = parts["ordinary"]
+    usual = {kind: float(np.median(ordinary["time"][ordinary["rigid"] == kind])) for kind in (False, True)}
+    return {name: part["time"] / np.where(part["rigid"], usual[True], usual[False]) for name, part in parts.items()}
+
+
+def times_in_short(times: NDArray[np.float64], impacts: NDArray[np.int64], table: Table) -> dict[str, Any]:
+    """Of times over the ordinary (cells,) [-] with the impacts that were followed; 0 to an impact if none is slow."""
+    per_impact = times / (1.0 + impacts)
+    return {
+        "median": float(np.median(times)),
+        "largest": float(np.max(times)),
+        "slowest_cell": table.cell(int(np.argmax(times))),
+        "slow_per_impact": float(np.max(per_impact[times > SLOW], initial=0.0)),
+    }
 
 
 def _in_company(pulse: str, cell: dict[str, float], copies: int, rounds: int) -> float:

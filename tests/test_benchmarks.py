@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rocking
-from benchmarks import cells, fixed_step_peer, truth
+from benchmarks import cells, fixed_step_peer, stages, truth, work_precision
 from benchmarks.equal_error import time_for
 from benchmarks.measure import accuracy
 from benchmarks.methods import compiled, ours, plain
@@ -84,6 +84,11 @@ def test_numbalsoda_finds_the_truth(standing: cells.Cells, name: str, error: flo
     np.testing.assert_allclose(found, standing.peak_rotation, rtol=error)
 
 
+def test_diffrax_finds_the_truth(standing: cells.Cells) -> None:
+    peer = pytest.importorskip("benchmarks.diffrax_peer", exc_type=ModuleNotFoundError)
+    np.testing.assert_allclose(peer.peaks(1e-11, standing), standing.peak_rotation, rtol=1e-6)
+
+
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_diagrams_keep_to_the_tolerance(diagram: cells.Cells, tolerance: float) -> None:
     found = accuracy(ours(tolerance, diagram), diagram.peak_rotation)
@@ -123,13 +128,77 @@ def run(module: str, out: Path, *options: str) -> tuple[dict, str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["slender-sine", "rigid-ricker"])
 def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path, name: str) -> None:
-    record, text = run("work_precision", tmp_path / "a.json", name, "--rounds", "1", "--coarse", "8")
-    assert record["cells"]["all"] == 16
+    record, text = run("work_precision", tmp_path / "a.json", name, "--rounds", "1", "--coarse", "4")
+    assert record["cells"]["all"] == 64
     assert all(rows[-1]["wrong_fates"] == 0 for rows in record["methods"].values())
     assert record["methods"]["rocking"][-1]["largest_error"] < 1e-12
     for peers in record["time_over_ours"].values():
         assert set(peers) == set(record["methods"]) - {"rocking"}
     assert all(f"{peer} cannot be imported here" in text for peer in record["missing_peers"])
+
+
+@pytest.mark.slow
+def test_growth_finds_the_same_fates_however_many_threads(tmp_path: Path) -> None:
+    record, _ = run("growth", tmp_path / "a.json", "--largest", "10000")
+    counts = {(one["kind"], one["cells"]): set() for one in record["sizes"]}
+    for one in record["sizes"]:
+        counts[one["kind"], one["cells"]].add(one["overturned"])
+    assert counts == {
+        ("slender", 1024): {666},
+        ("slender", 10_000): {6529},
+        ("rigid", 1024): {672},
+        ("rigid", 10_000): {6576},
+    }
+    assert (tmp_path / "a.svg").exists()
+
+
+@pytest.mark.slow
+def test_interpolation_gains_four_orders_where_linear_gains_two(tmp_path: Path) -> None:
+    record, text = run("grid_size", tmp_path / "a.json", "--count", "20000", "--scales", "0.125", "0.25", "0.5")
+    for angle in ("0", "20"):
+        ours, linear = ([row["alpha_deg"][angle][name] for row in record["grids"]] for name in ("ours", "linear"))
+        assert all(one["wrong_fates"] == 0 for one in ours)
+        assert math.log2(ours[0]["error"]["0.5"] / ours[2]["error"]["0.5"]) > 7.0
+        assert 3.0 < math.log2(linear[0]["error"]["0.5"] / linear[2]["error"]["0.5"]) < 4.5
+        assert ours[2]["within"]["1e-04"] > 0.8
+    assert "145 x 136" in text
+    assert (tmp_path / "a.png").exists()
+
+
+def test_stages_add_up(tmp_path: Path) -> None:
+    head = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n"
+    for job, seconds in (("spectra-sine", 3.0), ("spectra-cosine", 4.0), ("figure-08", 1.0)):
+        (tmp_path / f"{job}.tsv").write_text(f"{head}{seconds}\t0:00:01\t100.0\t1\t1\t1\t0\t0\t90\t2.5\n")
+    (tmp_path / "manifest.tsv").write_text(f"{head}0.1\t0:00:00\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\n")
+    rows = {row["kind"]: row for row in stages.measure(tmp_path)}
+    assert rows["spectrum cubes"]["jobs"] == 2
+    assert rows["spectrum cubes"]["seconds"] == 7.0
+    assert rows["manifest"]["processor_seconds"] == 0.0
+    assert list(rows) == ["spectrum cubes", "figures and table", "manifest"]
+
+
+def test_the_best_peer_is_the_fastest_that_gets_there() -> None:
+    def spread(ratio: float) -> dict[str, float]:
+        return {"median": ratio, "smallest": ratio, "largest": ratio}
+
+    errors = [f"{error:.0e}" for error in work_precision.TARGETS]
+    peers = {"a": dict.fromkeys(errors, spread(9.0)), "scipy b": dict.fromkeys(errors, spread(50.0))}
+    peers["a"]["1e-12"] = None
+    record = {"time_over_ours": {"error_99": peers}}
+    best = work_precision.best_peers(record, "error_99")
+    assert best["1e-09"][0] == "a"
+    assert best["1e-12"][0] == "scipy b"
+    assert work_precision.best_peers(record, "error_99", "scipy")["1e-03"][0] == "scipy b"
+
+
+def test_a_setting_with_a_wrong_fate_reaches_no_error() -> None:
+    rows = [
+        {"us": [1.0], "error_99": 1e-9, "wrong_fates": 1},
+        {"us": [5.0], "error_99": 1e-8, "wrong_fates": 0},
+    ]
+    assert work_precision.least_times(rows, 1e-6, "error_99") == pytest.approx([5.0])
+    assert np.isnan(work_precision.least_times(rows, 1e-9, "error_99")).all()
+    assert np.isnan(work_precision.least_times(rows[:1], 1e-3, "error_99")).all()
 
 
 @pytest.mark.slow

@@ -75,7 +75,7 @@ def test_symmetries_hold_to_the_last_bit_or_to_rounding(table: Table) -> None:
 
 def test_every_family_has_both_equations_signs_and_its_pulses(table: Table) -> None:
     family = BY_NAME[table.family]
-    assert len(table) >= {"nearly-elastic": 24, "unending": 6}.get(table.family, 150)
+    assert len(table) >= {"nearly-elastic": 12, "unending": 4}.get(table.family, 150)
     assert set(table["alpha"] > 0.0) == set(family.rigid)
     assert {name.startswith("-") for name in table.pulse} == {False, True}
     assert {name.removeprefix("-") for name in table.pulse} <= set(family.pulses)
@@ -136,7 +136,7 @@ def test_the_command_runs_and_keeps_its_promises(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     families = json.loads(out.read_text())["families"]
     assert list(families) == ["ordinary", "angles", "last-bits"]
-    timeless = {name: record | {"time": {"largest": 0.0}} for name, record in families.items()}
+    timeless = {name: record | {"time": {"slow_per_impact": 0.0}} for name, record in families.items()}
     assert not broken(timeless)
     assert broken({"angles": timeless["angles"] | {"wrong": [{"wrong": "fate", "explained_by_ulps": 2}]}})
     assert out.with_suffix(".png").read_bytes().startswith(b"\x89PNG")

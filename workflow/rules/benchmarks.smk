@@ -3,20 +3,6 @@
 # the screen.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
 TIMED = ["tolerance", "growth", "grid-size", "first-answer", "service", "stages"]
-PRESENT = sys.executable  # the Python that runs Snakemake, with the peers that it has
-
-
-def benchmark_code(*names):
-    """Digest of benchmarks and of all that they import, found when a job asks for it."""
-    return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
-
-
-def installed_peers(wildcards):
-    """Versions of the optional integrators: another one is another measurement."""
-    from benchmarks.measure import versions
-    from benchmarks.methods import OPTIONAL
-
-    return versions(*OPTIONAL)
 
 
 rule work_precision:
@@ -26,6 +12,8 @@ rule work_precision:
         record="results/benchmarks/work-precision-{diagram}.json",
     log:
         "logs/bench/work-precision-{diagram}.log",
+    benchmark:
+        "logs/bench/work-precision-{diagram}.tsv"
     wildcard_constraints:
         diagram="|".join(DIAGRAMS),
     threads: workflow.cores
@@ -35,7 +23,7 @@ rule work_precision:
     message:
         "Run time against error, {wildcards.diagram}"
     shell:
-        "{PRESENT} -m benchmarks.work_precision {wildcards.diagram} --out {output.record} >{log}"
+        "python -m benchmarks.work_precision {wildcards.diagram} --out {output.record} >{log}"
 
 
 rule work_precision_figure:
@@ -45,6 +33,8 @@ rule work_precision_figure:
         expand("results/benchmarks/work-precision{kind}.{format}", kind=["", "-median"], format=["png", "svg"]),
     log:
         "logs/bench/work-precision-figure.log",
+    benchmark:
+        "logs/bench/work-precision-figure.tsv"
     params:
         code=benchmark_code("figures/work_precision"),
         folder=lambda wildcards, input: os.path.dirname(input.records[0]),
@@ -52,7 +42,7 @@ rule work_precision_figure:
         "Drawing run time against error"
     shell:
         "for measure in error_99 median_error; do"
-        " {PRESENT} -m benchmarks.figures.work_precision --folder {params.folder} --measure $measure >>{log}; done"
+        " python -m benchmarks.figures.work_precision --folder {params.folder} --measure $measure >>{log}; done"
 
 
 rule tolerance:
@@ -63,28 +53,32 @@ rule tolerance:
         figure="results/benchmarks/tolerance.png",
     log:
         "logs/bench/tolerance.log",
+    benchmark:
+        "logs/bench/tolerance.tsv"
     threads: workflow.cores
     params:
         code=benchmark_code("tolerance"),
     message:
         "Error against the tolerance asked for"
     shell:
-        "{PRESENT} -m benchmarks.tolerance --out {output.record} >{log}"
+        "python -m benchmarks.tolerance --out {output.record} >{log}"
 
 
 rule growth:
     output:
         record="results/benchmarks/growth.json",
-        figures=multiext("results/benchmarks/growth", ".png", ".svg"),
+        drawings=multiext("results/benchmarks/growth", ".png", ".svg"),
     log:
         "logs/bench/growth.log",
+    benchmark:
+        "logs/bench/growth.tsv"
     threads: workflow.cores
     params:
         code=benchmark_code("growth"),
     message:
         "Cost as the work grows"
     shell:
-        "{PRESENT} -m benchmarks.growth --out {output.record} >{log}"
+        "python -m benchmarks.growth --out {output.record} >{log}"
 
 
 rule grid_size:
@@ -92,16 +86,18 @@ rule grid_size:
         config=str(PROJECT / "workflow/config/paper.yaml"),
     output:
         record="results/benchmarks/grid-size.json",
-        figures=multiext("results/benchmarks/grid-size", ".png", ".svg"),
+        drawings=multiext("results/benchmarks/grid-size", ".png", ".svg"),
     log:
         "logs/bench/grid-size.log",
+    benchmark:
+        "logs/bench/grid-size.tsv"
     threads: workflow.cores
     params:
         code=benchmark_code("grid_size"),
     message:
         "Error of interpolation against the size of the grid"
     shell:
-        "{PRESENT} -m benchmarks.grid_size --out {output.record} >{log}"
+        "python -m benchmarks.grid_size --out {output.record} >{log}"
 
 
 rule first_answer:
@@ -109,13 +105,15 @@ rule first_answer:
         record="results/benchmarks/first-answer.json",
     log:
         "logs/bench/first-answer.log",
+    benchmark:
+        "logs/bench/first-answer.tsv"
     threads: workflow.cores
     params:
         code=benchmark_code("first_answer"),
     message:
         "The first answer of a new process"
     shell:
-        "{PRESENT} -m benchmarks.first_answer --out {output.record} >{log}"
+        "python -m benchmarks.first_answer --out {output.record} >{log}"
 
 
 rule service:
@@ -125,13 +123,15 @@ rule service:
         record="results/benchmarks/service.json",
     log:
         "logs/bench/service.log",
+    benchmark:
+        "logs/bench/service.tsv"
     threads: workflow.cores
     params:
         code=benchmark_code("service"),
     message:
         "Requests to the service"
     shell:
-        "{PRESENT} -m benchmarks.service --out {output.record} >{log}"
+        "python -m benchmarks.service --out {output.record} >{log}"
 
 
 rule stages:
@@ -141,12 +141,14 @@ rule stages:
         record="results/benchmarks/stages.json",
     log:
         "logs/bench/stages.log",
+    benchmark:
+        "logs/bench/stages.tsv"
     params:
         code=benchmark_code("stages"),
     message:
         "Where the time of the reproduction goes"
     shell:
-        "{PRESENT} -m benchmarks.stages --out {output.record} >{log}"
+        "python -m benchmarks.stages --out {output.record} >{log}"
 
 
 rule bench:
@@ -158,10 +160,12 @@ rule bench:
         summary="results/benchmarks/summary.md",
     log:
         "logs/bench/summary.log",
+    benchmark:
+        "logs/bench/summary.tsv"
     params:
         code=benchmark_code("summary"),
         folder=lambda wildcards, output: os.path.dirname(output.summary),
     message:
         "Summary of the benchmarks"
     shell:
-        "{PRESENT} -m benchmarks.summary --folder {params.folder} >{log}"
+        "python -m benchmarks.summary --folder {params.folder} >{log}"

@@ -99,3 +99,16 @@ def provenance(rule_name, scripts, settings, products):
     for path in products:
         PRODUCTS[path] = {"rule": rule_name, **digests}
     return digests
+
+
+def benchmark_code(*names):
+    """Digest of benchmarks and of all that they import, found when a job asks for it."""
+    return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
+
+
+def installed_peers(wildcards):
+    """Versions of the optional integrators: another one is another measurement."""
+    from benchmarks.measure import versions
+    from benchmarks.methods import OPTIONAL
+
+    return versions(*OPTIONAL)

@@ -66,7 +66,7 @@ function draw(situation, [chosen, ...others]) {
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, Math.max(1.2, high * 1.2)] } },
       hooks: {
         drawClear: [(u) => shadeFalls(u, chosen)],
-        draw: [(u) => nameOthers(u, others), (u) => markPoint(u, situation.point)],
+        draw: [(u) => markPoint(u, situation.point), (u) => nameOthers(u, others)],
         setCursor: [tell],
       },
     },
@@ -110,7 +110,7 @@ function shadeFalls(u, chosen) {
   ctx.restore();
 }
 
-/** Write each restitution above the highest place of its curve's last stretch. */
+/** Write each restitution above the highest place of its curve's last stretch, and above the names that are there. */
 function nameOthers(u, others) {
   const { ctx } = u;
   ctx.save();
@@ -119,13 +119,17 @@ function nameOthers(u, others) {
   ctx.lineWidth = 3 * devicePixelRatio;
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
   ctx.textAlign = "center";
+  const [wide, high] = [44 * devicePixelRatio, 14 * devicePixelRatio];
+  const taken = [];
   others.forEach(({ frequency_ratio, peak_rotation }, n) => {
     const from = peak_rotation.lastIndexOf(null) + 1;
     const stretch = peak_rotation.slice(from);
     const top = Math.max(...stretch);
     if (!stretch.length || top > u.scales.y.max) return;
     const x = u.valToPos(frequency_ratio[from + stretch.indexOf(top)], "x", true);
-    const y = u.valToPos(top, "y", true) - (5 + 12 * n) * devicePixelRatio; // stairs, so that they do not meet
+    let y = u.valToPos(top, "y", true) - 5 * devicePixelRatio;
+    for (const other of taken) if (Math.abs(x - other.x) < wide && Math.abs(y - other.y) < high) y = other.y - high;
+    taken.push({ x, y });
     ctx.strokeText(`η ${number(OTHERS[n], 2)}`, x, y);
     ctx.fillText(`η ${number(OTHERS[n], 2)}`, x, y);
   });
