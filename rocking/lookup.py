@@ -27,7 +27,7 @@ from rocking.lookup_weights import weights_on
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
 
-SAFETY = 8.0
+SAFETY = 6.0
 """Factor from the measured errors to the error bound [-]: the probes are five points of a cell, not all."""
 
 FOUND = np.dtype(

@@ -12,7 +12,7 @@ from rocking.response import Outcome
 UNKNOWN = -1
 """Impacts where the nodes around a point differ in them."""
 
-GAP_SHARE = 0.5
+GAP_SHARE = 0.7
 """Weight of the errors between levels beside those within cells [-]: they are measured where they are largest, in the
 middle of the gap, and the safety factor is made for those within cells, which creases can pass by."""
 
