@@ -39,7 +39,7 @@ serve: .venv/project | results/manifest.json ## the HTTP service over results/, 
 bench: .venv/project ## time and error beside other integrators, cost, interpolation: results/benchmarks/; ten minutes
 	snakemake $(if $(CONFIG),--configfile $(CONFIG)) bench
 
-stress: .venv/project ## 3,600 hard cases against 192-bit answers: fates, digits, symmetries, times; a minute or two
+stress: .venv/project ## 3,800 hard cases against 192-bit answers: fates, digits, symmetries, times; a minute or two
 	python -m stress
 
 fuzz: .venv/project ## ask the service 5,000 questions that a machine makes up; three minutes (SEED= for others)

@@ -43,21 +43,26 @@ def ratio(best: tuple[str, dict[str, float]] | None) -> str:
     if best is None:
         return "no peer gets there"
     name, found = best
-    return f"{found['median']:,.3g} ({found['smallest']:,.3g} to {found['largest']:,.3g}), {name}"
+    return f"{digits(found['median'])} ({digits(found['smallest'])} to {digits(found['largest'])}), {name}"
 
 
-def verdict(records: list[dict[str, Any]], measure: str) -> Iterator[str]:
-    """Whether the best of all peers is as far behind as we would like."""
+def digits(value: float) -> str:
+    """Two or three of them."""
+    return f"{value:.1f}" if value < 100.0 else f"{float(f'{value:.3g}'):,.0f}"
+
+
+def verdict(records: list[dict[str, Any]], measure: str, beginning: str) -> Iterator[str]:
+    """Whether the best peer of a class is as far behind as we would like."""
     for kind, goal in GOALS.items():
         best = [
             one["median"]
             for record in records
             if record["diagram"].startswith(kind)
-            for _, one in filter(None, work_precision.best_peers(record, measure).values())
+            for _, one in filter(None, work_precision.best_peers(record, measure, beginning).values())
         ]
         if best:
             met = sum(value >= goal for value in best)
-            yield f"- {kind}: {goal:,.0f} times is reached at {met} of {len(best)} errors; least {min(best):.3g}"
+            yield f"- {kind}: {goal:,.0f} times is reached at {met} of {len(best)} errors; least {digits(min(best))}"
 
 
 def page(folder: Path) -> Iterator[str]:
@@ -72,8 +77,8 @@ def page(folder: Path) -> Iterator[str]:
         for among, beginning in CLASSES.items():
             yield f"\n## Best peer ({among}) over ours, {measure.replace('_', ' ')}\n"
             yield from comparison(records, measure, beginning)
-        yield ""
-        yield from verdict(records, measure)
+            yield ""
+            yield from verdict(records, measure, beginning)
     for record in records:
         yield f"\n## {record['diagram']}, {record['cells']['all']} cells\n\n```"
         yield work_precision.table_of(record)

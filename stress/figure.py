@@ -44,7 +44,7 @@ def draw(
     axes[1].axvline(100.0, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     for suffix in (".png", ".svg"):
-        figure.savefig(path.with_suffix(suffix))
+        figure.savefig(path.with_suffix(suffix), dpi=180)
     plt.close(figure)
 
 

@@ -1,7 +1,7 @@
 """The tables of hard cases with their answers in 192-bit arithmetic, kept in stress/data.
 
 The tables are made by
-    python -m stress.truth             all families, half an hour on one core
+    python -m stress.truth             all families, some forty minutes on one core
     python -m stress.truth onset ...   some of them
 A second run gives the same bytes. Inputs are exact doubles and stand in the tables to their last bit, answers to 20
 digits. `NAME_per_ulp` is the conditioning: the largest change of the answer, relative for the peak and for times, when
