@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 SMALLEST_VELOCITY = 1e-5
 """A block that strikes slower than this while |u| < 1 is taken to rest [-]: from 1e-8 to here no error changes, and the
-impacts left out are up to half of a peer's time; 1e-3 would be seen."""
+impacts left out are more than a third of the time of some peers; 1e-3 would be seen."""
 
 Block = tuple[float, float, float, float, float]
 """a = a_g/(g tan(alpha)) [-], omega [-], alpha [rad], tan(alpha)/alpha [-], pulse; alpha = 0 is the slender limit."""

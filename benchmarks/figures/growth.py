@@ -36,10 +36,10 @@ def draw(record: dict[str, Any], paths: list[Path]) -> None:
             memory.plot(cells, [one["peak_bytes"] / 1e6 for one in rows], **look)
     total.set(xscale="log", yscale="log", xlabel="cells", ylabel="wall-clock time [s]")
     each.set(xscale="log", yscale="log", xlabel="cells", ylabel="wall-clock time of a cell [µs]")
-    each.set_ylim(0.1, 10.0)
+    each.set_ylim(0.1, 20.0)
     memory.set(xscale="log", xlabel="cells", ylabel="peak memory of the process [MB]")
     memory.set_ylim(bottom=0.0)
-    each.legend(loc="lower left")
+    memory.legend(*each.get_legend_handles_labels(), loc="lower center")
     panel_letters([total, each, memory])
     for path in paths:
         figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
