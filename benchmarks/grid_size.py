@@ -23,11 +23,16 @@ from numpy.typing import NDArray
 
 from benchmarks.figures.grid_size import draw
 from benchmarks.measure import progress, save, versions
-from rocking.interpolation import cell_index, log_index, uniform_index
+from rocking.boundary_cells import crossed_cells
+from rocking.cube import read_dataset, write_dataset
 from rocking.lookup_open import open_cube
 from rocking.lookup_points import Points
 from rocking.solve import peak_response
-from workflow.scripts import overturning, spectra
+from rocking.sweep import spectra
+from workflow.scripts import overturning
+from workflow.scripts.axes import stepped
+
+Vector = NDArray[np.float64]
 
 CONFIG = Path(__file__).parents[1] / "workflow/config/paper.yaml"
 PULSE, RESTITUTION, ANGLES = "sine", 0.85, (0.0, 20.0)
@@ -38,51 +43,70 @@ LIMITS = (1e-4, 1e-6)
 """Bounds of error for which the share of the questions that the cube may answer is counted."""
 
 
-def grids(config: dict[str, Any], scales: tuple[float, ...]) -> Iterator[dict[str, Any]]:
-    """The grid of the configuration with that many times its nodes along both axes."""
-    for scale in scales:
-        axes = {name: dict(config["grid"][name]) for name in ("slenderness", "frequency_ratio")}
-        for axis in axes.values():
-            axis["points"] = round(scale * (axis["points"] - 1)) + 1
-        yield {**axes, "alpha_deg": list(ANGLES)}
+def axes(config: dict[str, Any], scale: float) -> tuple[Vector, Vector]:
+    """slenderness and frequency_ratio of the configuration, with that many times its nodes, spaced alike."""
+    columns = config["grid"]["frequency_ratio"]
+    rows = stepped(**config["grid"]["slenderness"])
+    logs = np.linspace(math.log(columns["low"]), math.log(columns["high"]), columns["points"])
+
+    def scaled(axis: Vector) -> Vector:
+        places = np.linspace(0, axis.size - 1, round(scale * (axis.size - 1)) + 1)
+        return np.asarray(np.interp(places, np.arange(axis.size), axis))
+
+    return scaled(rows), np.exp(scaled(logs))
 
 
 def made(folder: Path, config: dict[str, Any], scales: tuple[float, ...]) -> Iterator[tuple[Path, float]]:
     """The cubes of all grids, and the seconds that each took."""
-    common: dict[str, Any] = {"pulse": PULSE, "restitution": [RESTITUTION], "provenance": {}}
-    curves = [folder / "boundaries.nc"]
+    curves = folder / "boundaries.nc"
     progress("grid size: boundaries")
-    overturning.main(alpha_deg=ANGLES, boundary=config["boundary"], boundaries=curves, **common)
-    for grid in grids(config, scales):
-        path = folder / f"{grid['slenderness']['points']}.nc"
+    overturning.main(
+        pulse=PULSE,
+        restitution=[RESTITUTION],
+        alpha_deg=ANGLES,
+        boundary=config["boundary"],
+        boundaries=[curves],
+        provenance={},
+    )
+    boundary, angles = read_dataset(curves), [math.radians(angle) for angle in ANGLES]
+    for scale in scales:
+        plane = axes(config, scale)
         start = time.perf_counter()
-        spectra.main(grid=grid, boundaries=curves, cubes=[path], **common)
-        progress(f"grid size: {grid['slenderness']['points']} x {grid['frequency_ratio']['points']} nodes")
+        barred = np.array([[crossed_cells(boundary, alpha, *plane) for alpha in angles]])
+        grid = {"slenderness": plane[0], "frequency_ratio": plane[1], "alpha": angles}
+        (cube,) = spectra(PULSE, restitution=[RESTITUTION], barred=barred, **grid)
+        path = folder / f"{scale:g}.nc"
+        write_dataset(cube, path)
+        progress(f"grid size: {plane[0].size} x {plane[1].size} nodes")
         yield path, time.perf_counter() - start
 
 
 def questions(config: dict[str, Any], count: int, alpha: float, seed: int) -> Points:
     """Random ones over the window of the cubes, all at one angle [rad]."""
     random = np.random.default_rng(seed)
-    s, w = config["grid"]["slenderness"], config["grid"]["frequency_ratio"]
+    breaks, w = config["grid"]["slenderness"]["breaks"], config["grid"]["frequency_ratio"]
     omega = np.exp(random.uniform(math.log(w["low"]), math.log(w["high"]), count))
-    slenderness = random.uniform(s["low"], s["high"], count)
+    slenderness = random.uniform(breaks[0], breaks[-1], count)
     return Points(slenderness, omega, np.full(count, RESTITUTION), np.full(count, alpha))
 
 
 def linear(layer: xr.Dataset, points: Points) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
     """Where the four nodes around agree that the block stands or falls, and the peak between them, nan if it falls."""
     peak = layer["peak_rotation"].values
-    position = (
-        uniform_index(layer["slenderness"].values, points.slenderness),
-        log_index(layer["frequency_ratio"].values, points.frequency_ratio),
+    (i, x), (j, y) = (
+        between(layer["slenderness"].values, points.slenderness),
+        between(np.log(layer["frequency_ratio"].values), np.log(points.frequency_ratio)),
     )
-    i, j = (cell_index(along, nodes) for along, nodes in zip(position, peak.shape, strict=True))
-    x, y = position[0] - i, position[1] - j
     corners = np.stack([peak[i, j], peak[i, j + 1], peak[i + 1, j], peak[i + 1, j + 1]])
     weights = np.stack([(1.0 - x) * (1.0 - y), (1.0 - x) * y, x * (1.0 - y), x * y])
     fallen = np.isnan(corners)
     return fallen.all(axis=0) | ~fallen.any(axis=0), (weights * corners).sum(axis=0)
+
+
+def between(axis: Vector, value: Vector) -> tuple[NDArray[np.intp], Vector]:
+    """The cell along an axis that holds each value, and where in it [0, 1]."""
+    cell = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
+    return cell, (value - axis[cell]) / (axis[cell + 1] - axis[cell])
 
 
 def quantiles(error: NDArray[np.float64]) -> dict[str, float]:

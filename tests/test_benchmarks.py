@@ -161,7 +161,7 @@ def test_interpolation_gains_four_orders_where_linear_gains_two(tmp_path: Path) 
         assert math.log2(ours[0]["error"]["0.5"] / ours[2]["error"]["0.5"]) > 7.0
         assert 3.0 < math.log2(linear[0]["error"]["0.5"] / linear[2]["error"]["0.5"]) < 4.5
         assert ours[2]["within"]["1e-04"] > 0.8
-    assert "145 x 136" in text
+    assert "189 x 121" in text
     assert (tmp_path / "a.png").exists()
 
 
