@@ -12,8 +12,8 @@ TWICE_PUSHED = ("cosine", "c1", "c2", "ricker", "ricker_antisymmetric", "mavroei
 
 SEVERAL_LOBES = ("sine", *TWICE_PUSHED)
 
-FOLLOWED = 20_000
-"""Impacts that the package follows, then it declares rest."""
+MANY = 20_000
+"""Impacts that part the two families of nearly elastic blocks."""
 
 
 def _ordinary(draw: Draw) -> tuple[float, float, float]:
@@ -118,18 +118,16 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "eta from 0.9999 under slow pulses: thousands of impacts without rest",
         _elastic,
         pulses=("sine", "half_sine", "c1"),
-        accept=lambda r: 2_000 <= r.impacts < FOLLOWED,
+        accept=lambda r: 2_000 <= r.impacts < MANY,
         size=12,
-        promises=("fates", "digits", "bounds"),
     ),
     Family(
         "unending",
-        "the same beyond the impacts that the package follows: its answer is another one",
+        "the same with 20,000 to 60,000 impacts",
         _unending,
         pulses=("sine",),
-        accept=lambda r: FOLLOWED < r.impacts <= 60_000,
+        accept=lambda r: MANY < r.impacts <= 60_000,
         size=4,
-        promises=(),
     ),
 )
 
