@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 from itertools import islice
@@ -17,7 +18,9 @@ from benchmarks.measure import accuracy
 from benchmarks.methods import compiled, ours, plain
 from benchmarks.one_pulse import SINE, rock
 from benchmarks.scipy_peer import flight
+from benchmarks.summary import page
 from benchmarks.tolerance import peaks, summary
+from tests.workflow_fixtures import snakemake
 
 ROOT = Path(__file__).parents[1]
 
@@ -199,6 +202,24 @@ def test_a_setting_with_a_wrong_fate_reaches_no_error() -> None:
     assert work_precision.least_times(rows, 1e-6, "error_99") == pytest.approx([5.0])
     assert np.isnan(work_precision.least_times(rows, 1e-9, "error_99")).all()
     assert np.isnan(work_precision.least_times(rows[:1], 1e-3, "error_99")).all()
+
+
+def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> None:
+    planned = snakemake(tmp_path, "--dry-run", "--quiet", "host", "--", "bench")
+    assert planned.returncode == 0, planned.stdout
+    jobs = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout, flags=re.MULTILINE))
+    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_answer", "service", "stages")
+    assert jobs["work_precision"] == str(len(cells.DIAGRAMS))
+    assert {jobs[name] for name in (*one_each, "bench")} == {"1"}
+
+
+def test_the_summary_tells_what_was_measured_and_leaves_out_the_rest(tmp_path: Path) -> None:
+    growth = [{"kind": "slender", "cells": 1024, "threads": 1, "overturned": 666, "seconds": [2e-3], "peak_bytes": 5e8}]
+    (tmp_path / "growth.json").write_text(json.dumps({"sizes": growth}))
+    text = "\n".join(page(tmp_path))
+    assert "Cost as the work grows" in text
+    assert "1.953" in text  # us a cell
+    assert "Interpolation" not in text
 
 
 @pytest.mark.slow
