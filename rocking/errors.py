@@ -6,6 +6,7 @@ the command line and over HTTP. Physical outcomes such as overturning are result
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
@@ -70,12 +71,20 @@ def in_range(
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         reject_range(parameter, value, low, high, closed, unit)
-    above = array >= low if closed in ("both", "left") else array > low
-    below = array <= high if closed in ("both", "right") else array < high
-    valid = above & below & np.isfinite(array)
-    if not valid.all():
-        reject_range(parameter, float(array[~valid][0]), low, high, closed, unit)
+    if array.size == 0:
+        return array
+    # two numbers instead of arrays of flags; nan if there is one
+    least, most = (float(array), float(array)) if array.ndim == 0 else (float(array.min()), float(array.max()))
+    if not (_within(least, low, high, closed) and _within(most, low, high, closed)):
+        wrong = next(entry for entry in array.flat if not _within(float(entry), low, high, closed))
+        reject_range(parameter, float(wrong), low, high, closed, unit)
     return array
+
+
+def _within(value: float, low: float, high: float, closed: str) -> bool:
+    above = value >= low if closed in ("both", "left") else value > low
+    below = value <= high if closed in ("both", "right") else value < high
+    return above and below and math.isfinite(value)
 
 
 def reject_range(parameter: str, value: Any, low: float, high: float, closed: str, unit: str) -> NoReturn:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import os
+import threading
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.compilation import Record
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.fate_margin import fate_margin
 from rocking.lanes import LANES
@@ -38,6 +41,24 @@ RESERVE = 1e-4
 
 CLOSE = 1e-3
 """Margin of the fate [-] below which a block is solved as accurately as doubles allow, whatever the tolerance."""
+
+
+CORES = os.cpu_count() or 1
+
+
+class Scratch(threading.local):
+    """Memory of the kernels for the pulses last asked for, each thread its own: to make it costs more than a block."""
+
+    def __init__(self) -> None:
+        self.of = lru_cache(maxsize=16)(_scratch_of)
+
+
+def _scratch_of(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void], Record]:
+    flight = prepared(pulse)
+    return np.repeat(flight, LANES), prepared_steps(flight, precision)
+
+
+scratch = Scratch()
 
 
 def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
@@ -144,16 +165,12 @@ def _rock(
     """The answers (size,) to questions of four arrays (size,), shared out among threads."""
     size = cells[0].size
     answers = np.empty(size, ANSWER)
-    flight = prepared(pulse)
-
-    cores = int(threads) if threads else os.cpu_count() or 1
+    cores = int(threads) if threads else CORES
     share = min(max(math.ceil(size / cores), SMALLEST_SHARE), LARGEST_SHARE)
 
     def fill(start: int) -> None:
         part = slice(start, start + share)
-        rock_many(
-            *(cell[part] for cell in cells), np.repeat(flight, LANES), prepared_steps(flight, precision), answers[part]
-        )
+        rock_many(*(cell[part] for cell in cells), *scratch.of(pulse, precision), answers[part])
 
     starts = range(0, size, share)
     workers = min(cores, len(starts))

@@ -195,3 +195,20 @@ def test_every_right_question_has_a_consistent_answer(pulse, log_omega, log_slen
     elif impacts > 0:  # the only impact is the one of free rocking upon which it overturns
         assert (outcome, impacts) == (Outcome.OVERTURNED_AFTER_IMPACT, 1)
     assert not (found.chatter and impacts == 0)
+
+
+@pytest.mark.parametrize("alpha", [None, 0.35])
+def test_answers_do_not_depend_on_what_was_asked_before(alpha):
+    """The kernels' memory is kept from call to call, lanes with the blocks that were in them last."""
+    random = np.random.default_rng(9)
+    cells = {
+        "slenderness": random.uniform(0.05, 0.99, 60),
+        "frequency_ratio": np.exp(random.uniform(-1.0, 3.0, 60)),
+        "restitution": random.uniform(0.0, 1.0, 60),
+    }
+    for pulse in ("sine", "ricker", "-c2"):
+        together = peak_response(pulse, **cells, alpha=alpha, threads=1)
+        for k in random.permutation(60):
+            alone = peak_response(pulse, **{name: values[k] for name, values in cells.items()}, alpha=alpha)
+            for field in ("peak_rotation", "outcome", "impacts", "end_velocity", "first_impact_time"):
+                np.testing.assert_array_equal(getattr(alone, field), getattr(together, field)[k])
