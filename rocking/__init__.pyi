@@ -2,9 +2,9 @@ from . import closed_form as closed_form
 from . import groups as groups
 from . import orientation as orientation
 from .block import Block as Block
-from .boundary import Thresholds as Thresholds
-from .boundary import critical_amplitude as critical_amplitude
 from .boundary import overturning_boundary as overturning_boundary
+from .boundary_amplitude import Thresholds as Thresholds
+from .boundary_amplitude import critical_amplitude as critical_amplitude
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError

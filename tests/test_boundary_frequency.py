@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rocking.boundary import critical_amplitude
+from rocking.boundary_amplitude import critical_amplitude
 from rocking.boundary_frequency import critical_frequency_ratio
 from rocking.errors import InvalidArgumentError
 from rocking.solve import peak_response

@@ -18,7 +18,7 @@ from api.question_route import QuestionRoute
 from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
 from rocking.block import Block
-from rocking.boundary import critical_amplitude
+from rocking.boundary_amplitude import critical_amplitude
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.groups import GroupSet, Problem, groups_of
 from rocking.history_contact import extremes_of

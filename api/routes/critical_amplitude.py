@@ -11,7 +11,7 @@ from api.answers import VERSION
 from api.question_route import QuestionRoute
 from api.questions import AlphaDeg, FrequencyRatio, PulseName, Question, Restitution, alpha_of, checked
 from api.service import ServiceDep
-from rocking.boundary import Thresholds, critical_amplitude
+from rocking.boundary_amplitude import Thresholds, critical_amplitude
 from rocking.pulses import get_pulse
 from rocking.response import Outcome
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rocking.boundary import critical_amplitude
+from rocking.boundary_amplitude import critical_amplitude
 from tests.service.conftest import assert_problem
 
 URL = "/v1/critical_amplitude"

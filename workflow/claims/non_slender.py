@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary import critical_amplitude
+from rocking.boundary_amplitude import critical_amplitude
 from rocking.closed_form import overturning_amplitudes
 from rocking.response import Outcome
 from rocking.solve import peak_response

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.block import STANDARD_GRAVITY, Block
-from rocking.boundary import critical_amplitude
+from rocking.boundary_amplitude import critical_amplitude
 from rocking.cube import read_spectrum
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
 from rocking.response import Outcome
