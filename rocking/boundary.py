@@ -8,16 +8,23 @@ safe band far narrower than a cell still shows, as the gap between the outlines 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import chain, islice
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 from contourpy import LineType, contour_generator
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from rocking.boundary_points import Codes, Floats, classifier, shrink
+from rocking.boundary_points import Classify, Codes, Floats, classifier, shrink
 from rocking.errors import in_range
 from rocking.pulses import AbstractPulse
 from rocking.response import Outcome
 from rocking.solve import as_pulse
+
+DIRECTLY = int(Outcome.OVERTURNED_DIRECTLY)
+"""Code of overturning without an impact."""
 
 
 def overturning_boundary(
@@ -55,32 +62,59 @@ def overturning_boundary(
     InvalidArgumentError
         For an argument out of range.
     """
+    return overturning_boundaries(
+        pulse,
+        restitution=[restitution],
+        alpha=alpha,
+        frequency_ratio=frequency_ratio,
+        slenderness=slenderness,
+        nodes=nodes,
+    )[0]
+
+
+def overturning_boundaries(
+    pulse: str | AbstractPulse,
+    *,
+    restitution: ArrayLike,
+    alpha: float | None = None,
+    frequency_ratio: tuple[float, float] = (0.2, 15.0),
+    slenderness: tuple[float, float] = (0.02, 1.0),
+    nodes: int = 401,
+) -> list[xr.Dataset]:
+    """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit, with less work.
+
+    They share the first flights on the grid, and the curves of overturning without an impact.
+    """
     in_range("nodes", nodes, 16, 4001)
     low, high = (float(in_range("frequency_ratio", x, 0.0, np.inf, closed="neither")) for x in frequency_ratio)
     in_range("frequency_ratio[1]", high, low, np.inf, closed="neither")
     bottom, top = (float(in_range("slenderness", x, 0.0, 1.0, closed="right")) for x in slenderness)
     in_range("slenderness[1]", top, bottom, 1.0, closed="right")
+    etas = in_range("restitution", restitution, 0.0, 1.0)
     made = as_pulse(pulse)
-    classify = classifier(made, restitution, alpha)
+    classify = classifier(made, alpha)
     axes = _spaced(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
-    codes, _ = classify(*np.meshgrid(*axes, indexing="ij"))
+    codes, _ = classify(axes[0][:, None, None], axes[1][:, None], etas)
 
-    inside, outside, sizes, own = [np.empty((0, 2))], [np.empty((0, 2))], [], [np.empty(0, np.int64)]
-    for code in np.unique(codes[codes > 0]):
-        region = codes == code
-        for line in contour_generator(z=region.astype(np.float64), line_type=LineType.Separate).lines(0.5):
-            within, beyond = _grid_edges(np.asarray(line), axes, region)
-            inside.append(within)
-            outside.append(beyond)
-            own.append(np.full(len(within), code))
-            sizes.append(len(within))
-    code = np.concatenate(own)
-    points, beyond = shrink(np.concatenate(inside), np.concatenate(outside), code, classify)
-    neighbour, _ = classify(beyond[:, 0], beyond[:, 1])
-    starts = _curve_starts(sizes, neighbour)
-    return _as_dataset(points, starts, code[starts], neighbour[starts]).assign_attrs(
-        pulse=made.name, restitution=float(restitution), alpha=float(alpha or 0.0)
-    )
+    # without an impact restitution does not count: the curves of 0, the cheapest, serve all
+    groups = [[*_outlines(codes[..., 0], axes, 0.0, directly=True)]]
+    groups += [[*_outlines(codes[..., k], axes, eta, directly=False)] for k, eta in enumerate(etas)]
+    lines = iter(_shrunk([*chain(*groups)], classify))
+    shared, *own = ([*islice(lines, len(group))] for group in groups)
+    return [
+        _curves([*shared, *mine], eta, classify).assign_attrs(
+            pulse=made.name, restitution=float(eta), alpha=float(alpha or 0.0)
+        )
+        for eta, mine in zip(etas, own, strict=True)
+    ]
+
+
+class _Line(NamedTuple):
+    """A polyline around a region of one way of overturning, its code: points (points, 3) just inside and outside."""
+
+    code: int
+    inside: Floats
+    outside: Floats
 
 
 def _spaced(low: float, high: float, nodes: int) -> Floats:
@@ -93,19 +127,52 @@ def _spaced(low: float, high: float, nodes: int) -> Floats:
     return np.interp(np.linspace(0.0, 2.0, nodes), passed, fine)
 
 
-def _grid_edges(line: Floats, axes: tuple[Floats, Floats], region: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def _outlines(codes: Codes, axes: tuple[Floats, Floats], eta: float, *, directly: bool) -> Iterator[_Line]:
+    """The lines around the regions of overturning without an impact, or of all others, by the ends of grid edges."""
+    ways = np.unique(codes[codes > 0])
+    for code in ways[(ways == DIRECTLY) == directly]:
+        region = codes == code
+        for line in contour_generator(z=region.astype(np.float64), line_type=LineType.Separate).lines(0.5):
+            yield _Line(code, *_grid_edges(np.asarray(line), axes, eta, region))
+
+
+def _grid_edges(
+    line: Floats, axes: tuple[Floats, Floats], eta: float, region: NDArray[np.bool_]
+) -> tuple[Floats, Floats]:
     """Ends inside and outside the region of the grid edges that the vertices (points, 2) of `line` halve.
 
-    contourpy gives (column, row) in units of the grid; the ends are (1/a, log omega).
+    contourpy gives (column, row) in units of the grid; the ends are (1/a, log omega, eta).
     """
     first = np.floor(line[:, ::-1]).astype(int)
     last = np.ceil(line[:, ::-1]).astype(int)
     swap = region[last[:, 0], last[:, 1]][:, None]
-    within, beyond = np.where(swap, last, first), np.where(swap, first, last)
-    return (
-        np.stack([axes[0][within[:, 0]], axes[1][within[:, 1]]], axis=1),
-        np.stack([axes[0][beyond[:, 0]], axes[1][beyond[:, 1]]], axis=1),
-    )
+
+    def points(nodes: NDArray[np.int64]) -> Floats:
+        return np.stack([axes[0][nodes[:, 0]], axes[1][nodes[:, 1]], np.full(len(nodes), eta)], axis=1)
+
+    return points(np.where(swap, last, first)), points(np.where(swap, first, last))
+
+
+def _shrunk(lines: Sequence[_Line], classify: Classify) -> list[_Line]:
+    """The lines with their points moved to where the fate changes, all at once."""
+    if not lines:
+        return []
+    codes, inside, outside = zip(*lines, strict=True)
+    sizes = [len(points) for points in inside]
+    found = shrink(np.concatenate(inside), np.concatenate(outside), np.repeat(codes, sizes), classify)
+    within, beyond = (np.split(points, np.cumsum(sizes)[:-1]) for points in found)
+    return [*map(_Line, codes, within, beyond)]
+
+
+def _curves(lines: Sequence[_Line], eta: float, classify: Classify) -> xr.Dataset:
+    """The lines at one restitution, cut into curves where the fate on their other side changes."""
+    sizes = [len(line.inside) for line in lines]
+    own = np.repeat(np.array([line.code for line in lines], dtype=np.int64), sizes)
+    points = np.concatenate([np.empty((0, 3)), *(line.inside for line in lines)])
+    beyond = np.concatenate([np.empty((0, 3)), *(line.outside for line in lines)])
+    neighbour, _ = classify(beyond[:, 0], beyond[:, 1], np.asarray(eta))
+    starts = _curve_starts(sizes, neighbour)
+    return _as_dataset(points, starts, own[starts], neighbour[starts])
 
 
 def _curve_starts(sizes: list[int], neighbour: Codes) -> NDArray[np.int64]:

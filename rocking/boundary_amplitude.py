@@ -65,11 +65,11 @@ def critical_amplitude(
         For an argument out of range.
     """
     in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
-    log_omega = np.log(float(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
-    classify = classifier(as_pulse(pulse), restitution, alpha)
+    log_omega = float(np.log(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
+    eta = float(in_range("restitution", restitution, 0.0, 1.0))
     lowest = 1.0 / highest_amplitude
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    grid, codes = fates_along(0, log_omega, nodes, classify)
+    grid, codes = fates_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha))
     edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
     above = codes[edge] > 0  # 1/a falls as the amplitude rises
     falls = np.where(above, edge, edge + 1)

@@ -76,7 +76,8 @@ def critical_frequency_ratio(
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    grid, codes = fates_along(1, slenderness, nodes, classifier(made, restitution, alpha))
+    point = float(slenderness), float(nodes[0]), float(in_range("restitution", restitution, 0.0, 1.0))
+    grid, codes = fates_along(1, point, nodes, classifier(made, alpha))
     falls = codes > 0
     edge = np.flatnonzero(falls[1:] != falls[:-1])
     above = falls[edge + 1]

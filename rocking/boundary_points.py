@@ -1,4 +1,7 @@
-"""Points of the control space where the fate changes: between two points, and all of them along a line."""
+"""Points where the fate changes: between two points, and all of them along a line.
+
+A point is 1/a, log omega and the restitution.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +25,8 @@ ROUNDS = 32
 
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
-Classify = Callable[[Floats, Floats], tuple[Codes, Floats]]
-"""From 1/a and log omega to the way in which a block ends, and its margin to another."""
+Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
+"""From 1/a, log omega and eta, which broadcast, to the way in which a block ends, and its margin to another."""
 
 
 def fate_code(response: Response) -> Codes:
@@ -33,7 +36,7 @@ def fate_code(response: Response) -> Codes:
 
 
 def shrink(inside: Floats, outside: Floats, code: Codes, classify: Classify) -> tuple[Floats, Floats]:
-    """Shrink brackets (points, 2) in (1/a, log omega) to `RESOLUTION`; `code` holds at `inside` only.
+    """Shrink brackets between points (points, 3) to `RESOLUTION`; `code` holds at `inside` only.
 
     Chandrupatla's method: the fate alone decides on which side a point lies; the margin in energy, which is continuous
     through the change of fate as a rule, makes it a third of the work of bisection.
@@ -43,44 +46,43 @@ def shrink(inside: Floats, outside: Floats, code: Codes, classify: Classify) -> 
         return inside, outside
 
     def side(t: Floats, *ends: Any) -> Floats:
-        s, log_omega, ds, dw, own = ends
-        met, margin = classify(s + t * ds, log_omega + t * dw)
+        s, log_omega, eta, ds, dw, own = ends
+        met, margin = classify(s + t * ds, log_omega + t * dw, eta)
         distance = np.abs(margin) / (1.0 + np.abs(margin)) + 1e-300
         return np.where(met == own, distance, -distance)
 
     found = find_root(
         side,
         (np.zeros(len(code)), np.ones(len(code))),
-        args=(*inside.T, *(outside - inside).T, code),
+        args=(*inside.T, *(outside - inside).T[:2], code),
         tolerances={"xatol": RESOLUTION / widest, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
     )
     first, last = (inside + t[:, None] * (outside - inside) for t in found.bracket)
     return first, last
 
 
-def classifier(pulse: AbstractPulse, restitution: float, alpha: float | None) -> Classify:
+def classifier(pulse: AbstractPulse, alpha: float | None) -> Classify:
     """The solver as a `Classify`."""
 
-    def classify(slenderness: Floats, log_omega: Floats) -> tuple[Codes, Floats]:
+    def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         omega = np.clip(np.exp(log_omega), *FREQUENCY_RATIOS)  # rounding must not lead out of the range
-        found = peak_response(
-            pulse, slenderness=slenderness, frequency_ratio=omega, restitution=restitution, alpha=alpha
-        )
-        eta, angle = np.asarray(restitution, float), np.asarray(alpha or 0.0)
-        return fate_code(found), fate_margin(found.end_rotation, found.end_velocity, eta, angle)
+        found = peak_response(pulse, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha)
+        return fate_code(found), fate_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
 
     return classify
 
 
-def fates_along(axis: int, other: float, nodes: Floats, classify: Classify) -> tuple[Floats, Codes]:
+def fates_along(
+    axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
+) -> tuple[Floats, Codes]:
     """Ways in which blocks end along a line of the control space, and where they change.
 
     Parameters
     ----------
     axis : int
         0 for a line of 1/a, 1 for one of log omega.
-    other : float
-        The coordinate that stays.
+    point : (float, float, float)
+        Of the line; its coordinate along the axis does not count.
     nodes : float array
         Ascending; where fates are looked for first.
     classify : Classify
@@ -93,7 +95,7 @@ def fates_along(axis: int, other: float, nodes: Floats, classify: Classify) -> t
     """
 
     def points(x: Floats) -> Floats:
-        places = np.full((x.size, 2), other)
+        places = np.tile(point, (x.size, 1))
         places[:, axis] = x
         return places
 
@@ -105,7 +107,7 @@ def fates_along(axis: int, other: float, nodes: Floats, classify: Classify) -> t
             break
         # where the fate at the left end stops; a third fate met there becomes a node, and a new edge
         inside, outside = shrink(points(grid[edge]), points(grid[edge + 1]), codes[edge], classify)
-        met, _ = classify(outside[:, 0], outside[:, 1])
+        met, _ = classify(*outside.T)
         grid = np.concatenate([grid, inside[:, axis], outside[:, axis]])
         codes = np.concatenate([codes, codes[edge], met])
         grid, kept = np.unique(grid, return_index=True)

@@ -15,7 +15,7 @@ from rocking.compilation import Record
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.fate_margin import fate_margin
 from rocking.lanes import LANES
-from rocking.pulses import AbstractPulse, get_pulse
+from rocking.pulses import AbstractPulse, SinusoidalPulse, get_pulse
 from rocking.response import Response
 from rocking.rock_many import rock_many
 from rocking.scratch import ANSWER, FINEST, prepared, prepared_steps
@@ -136,7 +136,8 @@ def peak_response(
     shape = groups[0].shape
     cells = [np.ascontiguousarray(group).ravel() for group in groups]
     allowed = 0.0 if tolerance is None else float(in_range("tolerance", tolerance, *TOLERANCES))
-    precision = max(FINEST, RESERVE * allowed)
+    by_arcs = isinstance(made, SinusoidalPulse) and not cells[3].any()  # which have nothing to leave out
+    precision = FINEST if by_arcs else max(FINEST, RESERVE * allowed)
     answers = _rock(made, cells, precision, threads)
     if precision > FINEST:
         margin = fate_margin(answers["end_z"], answers["end_w"], cells[2], cells[3])

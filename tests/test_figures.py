@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -144,7 +145,7 @@ def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Datase
     files = {}
     for pulse in ("sine", "cosine"):
         window = {"nodes": 61, "slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
-        parts = [curves_of(pulse, 0.85, angle, **window) for angle in (0, 5, 10, 20)]
+        parts = [*chain(*(curves_of(pulse, [0.85], angle, **window) for angle in (0, 5, 10, 20)))]
         files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
         write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
     return figure_10.data(**files, restitution=0.85)

@@ -1,14 +1,14 @@
 """Traces the overturning boundaries of one pulse at all slenderness angles, for the sine beside the closed forms."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from rocking.boundary import overturning_boundary
+from rocking.boundary import overturning_boundaries
 from rocking.boundary_curves import join_curves
 from rocking.boundary_points import RESOLUTION
 from rocking.closed_form import overturning_amplitudes
@@ -29,20 +29,20 @@ def main(
     """Trace one file of curves per restitution [-], at all angles [deg], inside the configured window."""
     limits = {name: (boundary[name]["low"], boundary[name]["high"]) for name in ("slenderness", "frequency_ratio")}
     nodes = {angle: boundary["nodes_rigid"] if angle else boundary["nodes"] for angle in alpha_deg}
-    for eta, path in zip(restitution, boundaries, strict=True):
-        parts = [curves_of(pulse, eta, angle, nodes=nodes[angle], **limits) for angle in alpha_deg]
+    by_angle = [curves_of(pulse, restitution, angle, nodes=nodes[angle], **limits) for angle in alpha_deg]
+    for eta, path, parts in zip(restitution, boundaries, zip(*by_angle, strict=True), strict=True):
         curves = described(join_curves(parts), pulse, eta)
         write_dataset(describe(curves, **provenance), path)
         print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
-def curves_of(pulse: str, restitution: float, alpha_deg: float, **window: Any) -> xr.Dataset:
-    """The boundary curves at one slenderness angle: contiguous ragged polylines, `row_size` points each."""
+def curves_of(pulse: str, restitution: Sequence[float], alpha_deg: float, **window: Any) -> Iterator[xr.Dataset]:
+    """The boundary curves at one slenderness angle, by restitution: ragged polylines, `row_size` points each."""
     alpha = math.radians(alpha_deg)
-    traced = overturning_boundary(pulse, restitution=restitution, alpha=alpha or None, **window)
-    if pulse == "sine":
-        traced = traced.assign(_closed_forms(traced, restitution, slender=alpha == 0.0))
-    return traced.assign(alpha=("curve", np.full(traced.sizes["curve"], alpha))).drop_attrs(deep=False)
+    for traced in overturning_boundaries(pulse, restitution=restitution, alpha=alpha or None, **window):
+        closed = _closed_forms(traced, traced.restitution, slender=alpha == 0.0) if pulse == "sine" else {}
+        angle = ("curve", np.full(traced.sizes["curve"], alpha))
+        yield traced.assign(closed).assign(alpha=angle).drop_attrs(deep=False)
 
 
 def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
@@ -57,7 +57,7 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
         f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}.",
-        history="rocking.boundary.overturning_boundary",
+        history="rocking.boundary.overturning_boundaries",
         id=f"overturning/{pulse}/eta-{restitution:.2f}",
     )
 
