@@ -32,8 +32,8 @@ MEASURES = ("median_error", "error_99")
 COPIES = 16
 """Of the cells, in one call to the package: what a call costs by itself is no matter of the cells."""
 
-SLOW_ROUNDS = 2
-"""Slow methods take part in each second round."""
+PATIENCE, SLOW_ROUNDS = 1.0, 2
+"""A call that takes longer [s] takes part in each second round only."""
 
 
 def sample(cells: Cells) -> Cells:
@@ -49,8 +49,10 @@ def tried(method: Method, setting: float | None, cells: Cells) -> tuple[dict[str
     first = time.perf_counter() - start
     row = {"setting": setting, "cells": len(cells), "first_call_s": first}
     given = cells if method.name != "rocking" else cells.chosen(np.tile(np.arange(len(cells)), COPIES))
-    task = Task(lambda: method.peaks(setting, given), len(given), SLOW_ROUNDS if method.slow else 1)
-    return row | accuracy(method.peaks(setting, cells), cells.peak_rotation), task
+    start = time.perf_counter()
+    row |= accuracy(method.peaks(setting, cells), cells.peak_rotation)
+    every = SLOW_ROUNDS if time.perf_counter() - start > PATIENCE else 1
+    return row, Task(lambda: method.peaks(setting, given), len(given), every)
 
 
 def measure(diagram: str, rounds: int, cells: Cells) -> dict[str, Any]:

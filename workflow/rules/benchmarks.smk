@@ -2,7 +2,7 @@
 # of `benchmarks`, and one runs at a time, with the machine to itself: what it prints stays in its log, its progress on
 # the screen.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = ["tolerance", "growth", "grid-size", "first-answer", "service", "stages"]
+TIMED = ["tolerance", "growth", "grid-size", "first-answer", "service", "skips", "stages"]
 
 
 rule work_precision:
@@ -132,6 +132,24 @@ rule service:
         "Requests to the service"
     shell:
         "python -m benchmarks.service --out {output.record} >{log}"
+
+
+rule skips:
+    input:
+        manifest=rules.manifest.output.manifest,
+    output:
+        record="results/benchmarks/skips.json",
+    log:
+        "logs/bench/skips.log",
+    benchmark:
+        "logs/bench/skips.tsv"
+    threads: workflow.cores
+    params:
+        code=benchmark_code("skips"),
+    message:
+        "Work that is not done"
+    shell:
+        "python -m benchmarks.skips --out {output.record} >{log}"
 
 
 rule stages:

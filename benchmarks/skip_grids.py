@@ -1,0 +1,181 @@
+"""Blocks that need not be solved: far from boundaries, between nodes that agree, far from another fate.
+
+Every cell that the solver follows is counted at the one place through which all of them go.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from benchmarks.skip import Skip, alternately
+from benchmarks.skip_motion import RESTITUTION, RESTITUTIONS, plane
+from rocking import boundary_points, solve, sweep
+from rocking.boundary import overturning_boundaries, overturning_boundary
+from rocking.boundary_cells import crossed_cells
+from rocking.response import Outcome
+from rocking.solve import peak_response
+
+PULSE = "sine"
+ANGLES = (0.0, math.radians(20.0))
+GRID = {"slenderness": np.linspace(0.05, 0.95, 73), "frequency_ratio": np.geomspace(0.3, 12.0, 161)}
+"""That of the smallest configuration."""
+
+ETAS = (0.85, 0.90)
+NODES = 401
+"""Of the grid on which boundaries are sought, as in the reproduction."""
+
+FINE = 1e-6
+"""Accuracy of a curve for which the full grid is extrapolated [-]: beyond it the number of cells says nothing."""
+
+
+def cells_solved(call: Callable[[], Any]) -> int:
+    """Cells that the solver follows during a call."""
+    count = 0
+    follow = solve._rock
+
+    def counting(pulse: Any, cells: list[NDArray[np.float64]], *rest: Any) -> NDArray[np.void]:
+        nonlocal count
+        count += cells[0].size
+        return follow(pulse, cells, *rest)
+
+    with patch.object(solve, "_rock", counting):
+        call()
+    return count
+
+
+def with_settings(module: Any, call: Callable[[], Any], **settings: Any) -> Any:
+    """A call while constants of a module are others."""
+    with ExitStack() as stack:
+        for name, value in settings.items():
+            stack.enter_context(patch.object(module, name, value))
+        return call()
+
+
+def tracing(nodes: int, rounds: int) -> Iterator[Skip]:
+    """Boundaries traced beside a full grid, and by the margin in energy beside the fate alone."""
+
+    def trace() -> xr.Dataset:
+        return overturning_boundary(PULSE, restitution=RESTITUTION, nodes=nodes)
+
+    def by_fate_alone() -> xr.Dataset:
+        return with_settings(boundary_points, trace, fate_margin=lambda z, *_: np.ones_like(z))
+
+    done, without = cells_solved(trace), cells_solved(by_fate_alone)
+    times = alternately("boundary", trace, by_fate_alone, rounds)
+    vertices = trace().sizes["point"]
+    window = 0.98 * math.log(75.0)  # 1/a from 0.02 to 1, omega from 0.2 to 15 in the logarithm
+    note = (
+        f"extrapolated: a grid that shows the curves to {FINE:g}; one of as many cells shows them to "
+        f"{math.sqrt(window / done):.1g}, traced they are good to {boundary_points.RESOLUTION:g}"
+    )
+    yield Skip("cells far from a boundary: slender", "cells", done, round(window / FINE**2), note=note)
+    grid = nodes * nodes
+    yield Skip(
+        "points on the way to a boundary: slender", "cells", done - grid, without - grid, *times,
+        note=f"{vertices} vertices, by the margin in energy and by the fate alone",
+    )  # fmt: skip
+
+
+def shared_tracing(nodes: int, rounds: int) -> Iterator[Skip]:
+    """The boundaries of several restitutions, each traced by itself and all together."""
+    for angle in ANGLES:
+        window = {"alpha": angle or None, "nodes": nodes}
+
+        def together(window: dict[str, Any] = window) -> list[xr.Dataset]:
+            return overturning_boundaries(PULSE, restitution=RESTITUTIONS, **window)
+
+        def apart(window: dict[str, Any] = window) -> list[xr.Dataset]:
+            return [overturning_boundary(PULSE, restitution=eta, **window) for eta in RESTITUTIONS]
+
+        kind = "rigid" if angle else "slender"
+        changed = sum(not one.identical(other) for one, other in zip(together(), apart(), strict=True))
+        direct = [int(one.row_size[one.outcome == Outcome.OVERTURNED_DIRECTLY].sum()) for one in together()]
+        total = sum(one.sizes["point"] for one in together())
+        times = alternately(f"boundaries by restitution, {kind}", together, apart, rounds)
+        yield Skip(
+            f"first flights on the grids of boundaries: {kind}", "first flights", nodes**2,
+            nodes**2 * len(RESTITUTIONS), *times, changed, "time of the whole tracing",
+        )  # fmt: skip
+        yield Skip(
+            f"boundaries without an impact: {kind}", "vertices", direct[0], sum(direct),
+            note=f"of {total:,d} vertices in all, for {len(RESTITUTIONS)} restitutions",
+        )  # fmt: skip
+
+
+def barred_cells() -> NDArray[np.bool_]:
+    """Cells of the grid that boundaries cross, by restitution and angle."""
+    plane_axes = GRID["slenderness"], GRID["frequency_ratio"]
+
+    def crossed(eta: float, angle: float) -> NDArray[np.bool_]:
+        window = {"frequency_ratio": (0.3, 12.0), "slenderness": (0.05, 1.0)}
+        curves = overturning_boundary(PULSE, restitution=eta, alpha=angle or None, nodes=61, **window)
+        return crossed_cells(curves.assign(alpha=("curve", np.full(curves.sizes["curve"], angle))), angle, *plane_axes)
+
+    return np.array([[crossed(eta, angle) for angle in ANGLES] for eta in ETAS])
+
+
+def probes(rounds: int) -> Iterator[Skip]:
+    """The cubes of a small grid: nodes, probes in cells, centres between levels."""
+    barred = barred_cells()
+
+    def fill() -> list[xr.Dataset]:
+        return list(sweep.spectra(PULSE, restitution=ETAS, alpha=ANGLES, barred=barred, threads=1, **GRID))
+
+    def everywhere() -> list[xr.Dataset]:
+        return with_settings(sweep, fill, TAME=-1.0, WORTH=math.inf)
+
+    cells = (GRID["slenderness"].size - 1) * (GRID["frequency_ratio"].size - 1)
+    nodes = GRID["slenderness"].size * GRID["frequency_ratio"].size * len(ETAS) * len(ANGLES)
+    between = cells_between(fill)
+    done, more = (cells_solved(call) - nodes - between for call in (fill, everywhere))
+    kept = int(np.sum(np.isfinite([cube.interpolation_error.values for cube in fill()])))
+    times = alternately("probes", fill, everywhere, rounds)
+    layers = len(ETAS) * len(ANGLES)
+    yield Skip(
+        "probes in the cells of a cube", "cells", done, more, *times,
+        note=f"{layers} layers of {cells} cells, {kept} of them with a bound; time of all of it",
+    )  # fmt: skip
+    gaps = (len(ETAS) - 1) * len(ANGLES) + (len(ANGLES) - 1) * len(ETAS)
+    yield Skip("centres between the levels of a cube", "cells", between, gaps * cells, note=f"{gaps} gaps")
+
+
+def cells_between(fill: Callable[[], Any]) -> int:
+    """Cells solved between the levels of restitution and of angle while cubes are filled."""
+    count = 0
+    measure = sweep._Grid.errors_between
+
+    def counting(*arguments: Any, **named: Any) -> Any:
+        nonlocal count
+        found: list[Any] = []
+        count += cells_solved(lambda: found.append(measure(*arguments, **named)))
+        return found[0]
+
+    with patch.object(sweep._Grid, "errors_between", counting):
+        fill()
+    return count
+
+
+def precision(side: int, rounds: int) -> Skip:
+    """Blocks solved a second time, to all digits, as another fate is near."""
+    slenderness, omega = plane(side)
+    groups = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": RESTITUTION, "alpha": ANGLES[1]}
+
+    def ask(tolerance: float | None = 1e-3) -> NDArray[np.float64]:
+        return peak_response(PULSE, **groups, tolerance=tolerance, threads=1).peak_rotation
+
+    def all_again() -> NDArray[np.float64]:
+        return with_settings(solve, ask, CLOSE=math.inf)
+
+    changed = int(np.sum(np.isnan(ask()) != np.isnan(ask(None))))
+    done, without = (cells_solved(call) - omega.size for call in (ask, all_again))
+    times = alternately("precision", ask, all_again, rounds)
+    note = "tolerance 1e-3; changes of fate are counted"
+    return Skip("all digits far from another fate: rigid", "cells solved again", done, without, *times, changed, note)

@@ -1,0 +1,189 @@
+"""Motion that is not followed: after the pulse, in chatter, beyond return, and where the first flight is known.
+
+The block is driven by the package's own flights, one after another, and goes on by request where the solver stops.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.skip import Skip, alternately
+from rocking.compilation import Record, Vector, kernel
+from rocking.history_motion import FALLEN, FREE_IMPACTS
+from rocking.pulses import get_pulse
+from rocking.rock import SAFE, advance, begin
+from rocking.sampling import INVISIBLE, rock_freely
+from rocking.scratch import prepared, prepared_steps
+from rocking.slender_flight import state
+from rocking.solve import peak_response
+from rocking.taylor_step import take_step
+
+PULSE, RESTITUTION = "sine", 0.85
+ALPHA = {"slender": 0.0, "rigid, 20 degrees": math.radians(20.0)}
+RESTITUTIONS = (0.80, 0.82, 0.84, 0.85, 0.86, 0.88, 0.90, 0.92, 0.94, 0.96, 1.00)
+"""Those of the reproduction."""
+
+CHATTER, BEYOND, FREE = 1, 2, 4
+"""What can be followed, to be added."""
+
+FLIGHTS, FARTHER, IMPACTS, OTHER_FATES = 0, 1, 2, 3
+"""What is counted: flights during the pulse; cuts or Taylor steps beyond return; impacts after the pulse; fates of
+motion followed after the pulse that differ from the one by energy."""
+
+FOR_EVER = 1e6
+"""Time after the pulse that no block needs [tau]."""
+
+
+@kernel
+def go_beyond(flight: Record, steps: Record, phase: float) -> int:
+    """Go on from a fall at `phase` to the end of the pulse; the cuts met, or Taylor steps taken."""
+    found = 0
+    if flight.by_arcs == 1:
+        for k in range(flight.count + 1):
+            if flight.cut_phase[k] > phase:
+                h = (flight.cut_phase[k] - flight.phase) / flight.omega
+                flight.end_z, flight.end_w = state(flight, h, flight.cut_cosine[k], flight.cut_sine[k])
+                found += 1
+        return found
+    steps.z0[0], steps.w0[0], steps.lifted[0], steps.phase[0] = flight.end_z, flight.end_w, 0.0, phase
+    left = (flight.end_phase[flight.pieces] - phase) / flight.omega
+    while left > 0.0:
+        steps.limit[0] = left
+        take_step(steps)
+        left -= steps.h[0]
+        steps.z0[0], steps.w0[0] = steps.z1[0], steps.w1[0]
+        steps.phase[0] += flight.omega * steps.h[0]
+        found += 1
+    return found
+
+
+@kernel
+def rock_on(
+    slenderness: float,
+    omega: float,
+    eta: float,
+    alpha: float,
+    flight: Record,
+    steps: Record,
+    followed: int,
+    landings: Vector,
+    counts: Vector,
+) -> None:
+    """One block as the solver follows it, and farther where `followed` says so."""
+    begin(slenderness, omega, alpha, flight)
+    going, phase = flight.count > 0, math.inf
+    while going:
+        flight.length = math.nan
+        going = advance(flight, steps, eta)
+        if math.isnan(flight.length):
+            break
+        counts[FLIGHTS] += 1
+        phase = flight.phase + omega * flight.length
+        if followed & CHATTER and flight.at_rest == 1 and flight.next_w > INVISIBLE:
+            flight.at_rest = flight.chatter = 0
+    if flight.end_sign == 0.0:
+        return
+    before_end = phase < flight.end_phase[flight.pieces] * (1.0 - 1e-12)
+    if before_end and followed & BEYOND:
+        counts[FARTHER] += go_beyond(flight, steps, phase)
+    if not before_end and followed & FREE:
+        nothing = landings[:0]
+        farthest = min(FALLEN, 0.5 * math.pi / alpha) if alpha > 0.0 else FALLEN
+        counts[IMPACTS] += rock_freely(flight, steps, eta, 0.0, FOR_EVER, farthest, nothing, nothing, nothing, landings)
+        counts[OTHER_FATES] += (steps.z0[0] >= farthest) != (flight.outcome > SAFE)
+
+
+@kernel
+def rock_all(
+    slenderness: Vector,
+    omega: Vector,
+    eta: float,
+    alpha: float,
+    flight: Record,
+    steps: Record,
+    followed: int,
+    landings: Vector,
+    counts: Vector,
+    peaks: Vector,
+) -> None:
+    """Blocks one after another; `peaks` (cells,) is filled."""
+    for i in range(len(slenderness)):
+        rock_on(slenderness[i], omega[i], eta, alpha, flight, steps, followed, landings, counts)
+        peaks[i] = flight.peak
+
+
+def plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> tuple[NDArray[np.float64], ...]:
+    """1/a and omega of side x side blocks, ravelled."""
+    axes = np.meshgrid(np.linspace(lowest, highest, side), np.geomspace(0.5, 12.0, side), indexing="ij")
+    return axes[0].ravel(), axes[1].ravel()
+
+
+def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Counts and peaks of blocks of which so much is followed."""
+    flight = prepared(get_pulse(PULSE)).copy()
+    cells, counts = plane(side), np.zeros(4)
+    peaks = np.empty(side * side)
+    rock_all(*cells, RESTITUTION, alpha, flight, prepared_steps(flight), what, np.empty(FREE_IMPACTS), counts, peaks)
+    return counts, peaks
+
+
+def motions(side: int, rounds: int) -> Iterator[Skip]:
+    """Free rocking, chatter and motion beyond return, followed and not."""
+    kinds = {
+        FREE: ("free rocking after the pulse", "impacts after the pulse", IMPACTS),
+        CHATTER: ("chatter", "flights", FLIGHTS),
+        BEYOND: ("motion beyond return", "cuts or Taylor steps", FARTHER),
+    }
+    for what, (name, unit, key) in kinds.items():
+        for kind, alpha in ALPHA.items():
+            (done, peaks), (more, peaks_without) = followed(alpha, side, 0), followed(alpha, side, what)
+            other = np.sum(~((peaks == peaks_without) | np.isnan(peaks) & np.isnan(peaks_without)))
+            changed = int(other + more[OTHER_FATES])
+            times = alternately(
+                f"{name}, {kind}",
+                lambda alpha=alpha: followed(alpha, side, 0),
+                lambda alpha=alpha, what=what: followed(alpha, side, what),
+                rounds,
+            )
+            yield Skip(f"{name}: {kind}", unit, int(done[key]), int(more[key]), *times, changed, f"{side**2:,d} blocks")
+
+
+def no_uplift(side: int, rounds: int) -> Skip:
+    """Blocks that the ground cannot lift beside blocks that it lifts."""
+    quiet, lifted = plane(side, lowest=1.0, highest=2.0), plane(side)
+
+    def ask(cells: tuple[NDArray[np.float64], ...]) -> Any:
+        return peak_response(PULSE, slenderness=cells[0], frequency_ratio=cells[1], restitution=RESTITUTION, threads=1)
+
+    count = [int(np.sum(np.isfinite(ask(cells).uplift_time))) for cells in (quiet, lifted)]
+    times = alternately("no uplift", lambda: ask(quiet), lambda: ask(lifted), rounds)
+    note = "blocks with 1/a in [1, 2] beside as many with 1/a in [0.02, 0.98]"
+    return Skip("blocks that never uplift: slender", "flights, at least", *count, *times, note=note)
+
+
+def first_flights(side: int, rounds: int) -> Iterator[Skip]:
+    """Restitutions side by side, along the last axis and along the first."""
+    slenderness, omega = plane(side)
+    eta = np.array(RESTITUTIONS)
+
+    def ask(alpha: float, *, last: bool) -> Any:
+        groups = (slenderness[:, None], omega[:, None], eta) if last else (slenderness, omega, eta[:, None])
+        names = ("slenderness", "frequency_ratio", "restitution")
+        return peak_response(PULSE, **dict(zip(names, groups, strict=True)), alpha=alpha or None, threads=1)
+
+    for kind, alpha in ALPHA.items():
+        first, last = ask(alpha, last=False).peak_rotation.T, ask(alpha, last=True).peak_rotation
+        changed = int(np.sum(~((first == last) | np.isnan(first) & np.isnan(last))))
+        times = alternately(
+            f"first flights, {kind}",
+            lambda alpha=alpha: ask(alpha, last=True),
+            lambda alpha=alpha: ask(alpha, last=False),
+            rounds,
+        )
+        note = f"{eta.size} restitutions along the last axis or the first"
+        yield Skip(f"first flights: {kind}", "first flights", omega.size, omega.size * eta.size, *times, changed, note)

@@ -1,0 +1,131 @@
+"""Jobs of the workflow that need not run again: the smallest configuration is run once, then something changes.
+
+The project is copied, so that nothing here is touched; what would run again is asked of Snakemake by dry runs.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from benchmarks.measure import progress
+from benchmarks.skip import Skip
+
+PROJECT = Path(__file__).parents[1]
+COPIED = ("Snakefile", "environment.lock", "README.md", "rocking", "workflow", "profiles", "docs")
+SMOKE = "workflow/config/smoke.yaml"
+
+
+def appended(path: str, text: str = "\n# a change\n") -> Callable[[Path], None]:
+    """Add a line to a file of the project."""
+
+    def change(project: Path) -> None:
+        with (project / path).open("a") as stream:
+            stream.write(text)
+
+    return change
+
+
+def replaced(before: str, after: str) -> Callable[[Path], None]:
+    """Change a setting of the configuration, wherever it stands."""
+
+    def change(project: Path) -> None:
+        text = (project / SMOKE).read_text()
+        if before not in text:
+            raise ValueError(f"{SMOKE} has no {before}")
+        (project / SMOKE).write_text(text.replace(before, after))
+
+    return change
+
+
+CHANGES: dict[str, Callable[[Path], None]] = {
+    "nothing": lambda _: None,
+    "a page of docs/": appended("docs/numerics.md", "\nA change.\n"),
+    "the service side: rocking/lookup.py": appended("rocking/lookup.py"),
+    "a setting of figure 7": replaced(
+        "slenderness: 0.45, frequency_ratio: 5.5", "slenderness: 0.46, frequency_ratio: 5.5"
+    ),
+    "the script of figure 7": appended("workflow/figures/figure_07.py"),
+    "the claims' settings": replaced("claims:\n  restitution: [0.85, 0.90]", "claims:\n  restitution: [0.85]"),
+    "rocking/scale_law.py": appended("rocking/scale_law.py"),
+    "rocking/history.py": appended("rocking/history.py"),
+    "the grid of the cubes": replaced("points: 161}", "points: 171}"),
+    "one restitution more": replaced("restitution: [0.85, 0.90]\n\ngrid", "restitution: [0.85, 0.88, 0.90]\n\ngrid"),
+    "rocking/sweep.py": appended("rocking/sweep.py"),
+    "rocking/boundary.py": appended("rocking/boundary.py"),
+    "a kernel: rocking/chatter.py": appended("rocking/chatter.py"),
+}
+"""What is changed, from little to much."""
+
+
+def snakemake(project: Path, directory: Path, *arguments: str) -> str:
+    """What the workflow of a project says."""
+    command = [
+        sys.executable, "-m", "snakemake", "--snakefile", str(project / "Snakefile"), "--directory", str(directory),
+        "--configfile", str(project / SMOKE), "--nocolor", *arguments,
+    ]  # fmt: skip
+    done = subprocess.run(
+        command, cwd=project, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
+    )
+    if done.returncode != 0:
+        raise RuntimeError(done.stdout)
+    return done.stdout
+
+
+def jobs(output: str) -> dict[str, int]:
+    """Jobs of each rule in the table of a run, without the target that stands for all."""
+    table = output.partition("Job stats:")[2].partition("total")[0]
+    found = re.findall(r"^(\w+) +(\d+)$", table, flags=re.MULTILINE)
+    return {rule: int(count) for rule, count in found if rule != "all"}
+
+
+def copied(folder: Path) -> Path:
+    """A copy of what the workflow reads."""
+    project = folder / "project"
+    project.mkdir()
+    for name in COPIED:
+        source = PROJECT / name
+        if source.is_dir():
+            shutil.copytree(source, project / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, project / name)
+    kernels = PROJECT / "rocking/__pycache__"  # else the first job compiles them
+    if kernels.exists():
+        shutil.copytree(kernels, project / "rocking/__pycache__")
+    return project
+
+
+def reruns(changes: dict[str, Callable[[Path], None]], rounds: int) -> Iterator[Skip]:
+    """Jobs that run again after each change, of all; the time of a run in which nothing is to be done."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        project, directory = copied(folder), folder / "run"
+        directory.mkdir()
+        progress("workflow: the whole of the smallest configuration")
+        start = time.perf_counter()
+        total = jobs(snakemake(project, directory))
+        whole = time.perf_counter() - start
+        idle = []
+        for _ in range(rounds):
+            start = time.perf_counter()
+            snakemake(project, directory)
+            idle.append(time.perf_counter() - start)
+        before = {path: path.read_bytes() for path in project.rglob("*") if path.suffix in (".py", ".md", ".yaml")}
+        for what, change in changes.items():
+            progress(f"workflow: {what}")
+            change(project)
+            again = jobs(snakemake(project, directory, "--dry-run"))
+            times = (idle, [whole]) if not again else ([], [])
+            yield Skip(
+                f"jobs after a change of {what}", "jobs", sum(again.values()), sum(total.values()), *times,
+                note=", ".join(f"{rule} {count}" if count > 1 else rule for rule, count in again.items()),
+            )  # fmt: skip
+            for path, content in before.items():
+                if path.read_bytes() != content:
+                    path.write_bytes(content)

@@ -1,0 +1,92 @@
+"""What a new process does not load: modules of other commands, cubes that nobody asks for.
+
+Each start is a process of its own; its processor time is all that it takes, Python's own start included.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from benchmarks.measure import progress
+from benchmarks.skip import Skip
+
+GROUPS = "--pulse sine --slenderness 0.4 --frequency-ratio 5 --restitution 0.85"
+STARTS = {
+    "import rocking": "import rocking",
+    **{
+        f"rocking {command.split()[0]}": f"import sys; sys.argv[1:] = {command.split()}\n"
+        "from rocking.cli import app\n"
+        "try: app()\n"
+        "except SystemExit: pass"
+        for command in ("--help", f"response {GROUPS}")
+    },
+}
+EVERYTHING = """
+import importlib, pkgutil, api, rocking
+for package in (rocking, api):
+    for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+        importlib.import_module(module.name)
+"""
+"""All modules of the package and the service, as a package that lists its contents by plain imports would load them."""
+
+COUNT = "\nimport sys; print(len(sys.modules), file=sys.stderr)"
+
+CUBES = """
+import json, resource, sys, time
+from pathlib import Path
+from rocking.lookup_atlas import Atlas
+results, everything = Path(sys.argv[1]), sys.argv[2] == "all"
+question = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
+Atlas(results).response("sine", method="solver", **question)  # loads the kernels, as the service does first
+memory = lambda: int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
+before, start = memory(), time.process_time()
+atlas = Atlas(results)
+if everything:
+    for folder in (results / "spectra").iterdir():
+        for eta in atlas.levels(folder.name):
+            atlas.level(folder.name, eta)
+answer, used = atlas.response("sine", **question)
+print(json.dumps({"seconds": time.process_time() - start, "MB": memory() - before, "cubes": len(atlas._cubes)}))
+"""
+
+
+def started(code: str, *arguments: str) -> tuple[subprocess.CompletedProcess[str], float]:
+    """A new process that runs some code, and its processor time [s]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return done, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def imports(rounds: int) -> Iterator[Skip]:
+    """Commands as they are, and after an import of everything: modules at the end, and time."""
+    for name, code in STARTS.items():
+        times: tuple[list[float], list[float]] = ([], [])
+        for k in range(rounds):
+            (one, seconds), (every, more) = (started(text + COUNT) for text in (code, EVERYTHING + code))
+            times[0].append(seconds)
+            times[1].append(more)
+            progress(f"{name}: round {k + 1} of {rounds}")
+        once, without = (int(done.stderr.split()[-1]) for done in (one, every))
+        yield Skip(f"imports: {name}", "modules", once, without, *times)
+
+
+def cubes(results: Path, rounds: int) -> Skip | None:
+    """The first answer of a service from its cubes, one opened or all; None if there are no cubes."""
+    if not any(results.glob("spectra/sine/eta-0.85.nc")):
+        return None
+    found: dict[str, list[dict[str, Any]]] = {"asked": [], "all": []}
+    for k in range(rounds):
+        for which, rows in found.items():
+            rows.append(json.loads(started(CUBES, str(results), which)[0].stdout))
+        progress(f"cubes: round {k + 1} of {rounds}")
+    one, every = (rows[0] for rows in found.values())
+    times = ([row["seconds"] for row in rows] for rows in found.values())
+    note = f"memory {one['MB']:.0f} MB and {every['MB']:.0f} MB, on top of the solver's"
+    return Skip("cubes that nobody asks for", "cubes opened", one["cubes"], every["cubes"], *times, note=note)
