@@ -89,7 +89,7 @@ def methods(pulse: str) -> Iterator[Method]:
     if find_spec("diffrax"):
         from benchmarks import diffrax_peer  # noqa: PLC0415  # optional
 
-        yield Method("diffrax Dopri8", diffrax_peer.peaks, rtols[1:])
+        yield Method("diffrax Dopri8", diffrax_peer.peaks, rtols[2:6])
     steps = tuple(2**k * (1 if pulse == "sine" else 4) for k in (5, 6, 8, 10, 12))  # the wavelet lasts longer
     yield Method("RK4, fixed steps", compiled(fixed_step_peer.flight), steps)
     yield by_scipy("RK45", rtols[:5])

@@ -29,9 +29,6 @@ GRID = {"slenderness": np.linspace(0.05, 0.95, 73), "frequency_ratio": np.geomsp
 """That of the smallest configuration."""
 
 ETAS = (0.85, 0.90)
-NODES = 401
-"""Of the grid on which boundaries are sought, as in the reproduction."""
-
 FINE = 1e-6
 """Accuracy of a curve for which the full grid is extrapolated [-]: beyond it the number of cells says nothing."""
 

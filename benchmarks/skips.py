@@ -17,8 +17,9 @@ from benchmarks import skip_grids, skip_motion, skip_reruns, skip_starts
 from benchmarks.measure import progress, save, versions
 from benchmarks.skip import Skip
 
-SIDE, NODES, ROUNDS = 128, 401, 3
-"""Blocks along an axis of the plane; those of the grid on which boundaries are sought, as in the reproduction."""
+SIDE, NODES, ROUNDS = 128, 241, 3
+"""Blocks along an axis of the plane; those of the grid on which boundaries are sought, as in the reproduction where
+blocks are not slender."""
 
 
 def motion(rounds: int) -> Iterator[Skip]:

@@ -20,9 +20,8 @@ from rocking.response import Response
 from rocking.rock_many import rock_many
 from rocking.scratch import ANSWER, FINEST, prepared, prepared_steps
 
-SMALLEST_SHARE, LARGEST_SHARE = 256, 4096
-"""Cells handed to one thread at a time: at least a tenth of a millisecond of work, at most some."""
-
+SMALLEST_SHARE, LARGEST_SHARE = 2048, 4096
+"""Cells handed to one thread at a time: at least a millisecond of work, as long as a thread takes to start."""
 
 SMALLEST_SLENDERNESS = 1e-12
 """Smallest 1/a answered [-]: an acceleration of 10^12 g tan(alpha)."""
