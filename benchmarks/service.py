@@ -1,9 +1,9 @@
 """The service on one core, asked from another: `python -m benchmarks.service [--results FOLDER]`.
 
 One worker is bound to the first core, the load to the second. Measured are the start, questions about one block over
-1, 16 and 64 connections, a batch of a million blocks in binary and one of a hundred thousand in JSON, and the memory of
-the worker. The blocks are random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85, alpha as asked; how many of them
-a data set answers, and how many the solver, is told. wrk asks if it is installed (apt-get install wrk).
+1, 16 and 64 connections, batches of a thousand to a million blocks in binary and to a hundred thousand in JSON, and the
+memory of the worker. The blocks are random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85, alpha as asked; how
+many of them a data set answers, and how many the solver, is told. wrk asks if it is installed (apt-get install wrk).
 """
 
 from __future__ import annotations
@@ -88,27 +88,42 @@ def _blocks(points: int) -> dict[str, np.ndarray]:
     }
 
 
-def batches(one: Worker, pulse: str, alpha_deg: float, points: int, json_points: int, rounds: int) -> dict[str, Any]:
-    """Time of a binary and of a JSON batch, from the first byte sent to the last received [s]."""
-    binary = xr.Dataset({name: ("point", values) for name, values in _blocks(points).items()})
-    content = bytes(binary.to_netcdf(engine="scipy"))
+def batches(
+    one: Worker, pulse: str, alpha_deg: float, sizes: dict[str, list[int]], rounds: int
+) -> list[dict[str, Any]]:
+    """Time of batches of several sizes [points], from the first byte sent to the last received [s]."""
     options = f"?pulse={pulse}&restitution=0.85&alpha_deg={alpha_deg:g}"
-    columns = {name: values.tolist() for name, values in _blocks(json_points).items()}
-    text = json.dumps({"pulse": pulse, "restitution": 0.85, "alpha_deg": alpha_deg, **columns}).encode()
-    times: dict[str, list[float]] = {"netcdf": [], "json": []}
-    for _ in range(rounds):
-        began = time.perf_counter()
-        one.ask("/v1/response" + options, content, NETCDF)
-        between = time.perf_counter()
-        answer = one.ask("/v1/response", text)
-        times["netcdf"].append(between - began)
-        times["json"].append(time.perf_counter() - between)
-    sources = json.loads(answer)["source"]
-    return {
-        "netcdf": {"points": points, "seconds": spread(times["netcdf"])},
-        "json": {"points": json_points, "seconds": spread(times["json"])},
-        "share_by_data_sets": sources.count("cube") / max(1, len(sources)),
+    asked = {
+        (form, points): (options, _as_netcdf(points), NETCDF)
+        if form == "netcdf"
+        else ("", _as_json(points, pulse=pulse, restitution=0.85, alpha_deg=alpha_deg), "application/json")
+        for form in sizes
+        for points in sizes[form]
     }
+    times: dict[tuple[str, int], list[float]] = {key: [] for key in asked}
+    for _ in range(rounds):
+        for key, (query, body, media_type) in asked.items():
+            began = time.perf_counter()
+            one.ask("/v1/response" + query, body, media_type)
+            times[key].append(time.perf_counter() - began)
+    return [{"form": form, "points": points, "seconds": spread(times[form, points])} for form, points in asked]
+
+
+def share_by_data_sets(one: Worker, pulse: str, alpha_deg: float, points: int) -> float:
+    """Of random blocks [-]; the solver answers the others."""
+    answer = one.ask("/v1/response", _as_json(points, pulse=pulse, restitution=0.85, alpha_deg=alpha_deg))
+    sources = json.loads(answer)["source"]
+    return float(sources.count("cube") / max(1, len(sources)))
+
+
+def _as_netcdf(points: int) -> bytes:
+    return bytes(
+        xr.Dataset({name: ("point", values) for name, values in _blocks(points).items()}).to_netcdf(engine="scipy")
+    )
+
+
+def _as_json(points: int, **common: Any) -> bytes:
+    return json.dumps({**common, **{name: values.tolist() for name, values in _blocks(points).items()}}).encode()
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -119,8 +134,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--alpha-deg", type=float, default=0.0)
     parser.add_argument("--seconds", type=float, default=5.0, help="of each load")
     parser.add_argument("--connections", type=int, nargs="+", default=[1, 16, 64])
-    parser.add_argument("--points", type=int, default=1_000_000, help="of the binary batch")
-    parser.add_argument("--json-points", type=int, default=100_000, help="of the JSON batch")
+    parser.add_argument("--points", type=int, nargs="+", default=[1_000, 10_000, 100_000, 1_000_000], help="of batches")
+    parser.add_argument("--json-points", type=int, nargs="+", default=[1_000, 10_000, 100_000], help="of those in JSON")
     parser.add_argument("--rounds", type=int, default=3, help="of the batches")
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/service.json"))
     asked = parser.parse_args(arguments)
@@ -140,15 +155,17 @@ def main(arguments: list[str] | None = None) -> None:
             record["points"].append(load(one.port, path, connections, asked.seconds, cores[-1]))
         record["memory_after_points"] = one.memory()
         progress("batches")
-        sizes = (asked.points, asked.json_points, asked.rounds)
-        record["batches"] = batches(one, asked.pulse, asked.alpha_deg, *sizes)
+        sizes = {"netcdf": asked.points, "json": asked.json_points}
+        record["batches"] = batches(one, asked.pulse, asked.alpha_deg, sizes, asked.rounds)
+        record["share_by_data_sets"] = share_by_data_sets(one, asked.pulse, asked.alpha_deg, max(asked.json_points))
         record["memory_after_batches"] = one.memory()
     save(record, asked.out)
-    print(_table(record))
+    print(table(record))
 
 
-def _table(record: dict[str, Any]) -> str:
-    start, found = record["start"], record["batches"]
+def table(record: dict[str, Any]) -> str:
+    """All of it in lines."""
+    start = record["start"]
     lines = [f"start       listens after {start['listens_s']:.2f} s, first answer {start['first_answer_s']:.2f} s"]
     lines += [
         f"{row['connections']:>3} connections ({row['client']})  {row['per_second']:8.0f} questions/s   "
@@ -156,11 +173,11 @@ def _table(record: dict[str, Any]) -> str:
         for row in record["points"]
     ]
     lines += [
-        f"{kind:<7}{found[kind]['points']:>9} blocks  {found[kind]['seconds']['median']:6.2f} s "
-        f"({found[kind]['seconds']['smallest']:.2f} to {found[kind]['seconds']['largest']:.2f})"
-        for kind in ("netcdf", "json")
+        f"{row['form']:<7}{row['points']:>9} blocks  {row['seconds']['median']:8.4f} s "
+        f"({row['seconds']['smallest']:.4f} to {row['seconds']['largest']:.4f})"
+        for row in record["batches"]
     ]
-    lines.append(f"by data sets {100 * found['share_by_data_sets']:.1f} %, the rest by the solver")
+    lines.append(f"by data sets {100 * record['share_by_data_sets']:.1f} %, the rest by the solver")
     memory = [record[f"memory_{when}"] for when in ("at_first", "after_points", "after_batches")]
     lines.append("memory      " + ", ".join(f"{m['now_MB']:.0f} MB" for m in memory) + " (first, points, batches)")
     lines.append(f"at most     {memory[-1]['most_MB']:.0f} MB")

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks import grid_size, growth, skips, stages, tolerance, work_precision
+from benchmarks import grid_size, growth, service, skips, stages, tolerance, work_precision
 from benchmarks.cells import DIAGRAMS
 
 GOALS = {"slender": 1000.0, "rigid": 10.0}
@@ -23,6 +23,7 @@ TABLES = {
     "growth": ("Cost as the work grows", growth.table),
     "grid-size": ("Interpolation", grid_size.table),
     "tolerance": ("Tolerance", tolerance.table),
+    "service": ("Service", service.table),
     "skips": ("Work not done", skips.table),
     "stages": ("Stages of the reproduction", lambda record: stages.table(record["stages"])),
 }

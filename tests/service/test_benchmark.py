@@ -23,7 +23,8 @@ def test_the_benchmark_measures_a_worker(results, tmp_path):
     assert points["errors"] == 0
     assert points["questions"] > 50
     assert 0 < points["median_ms"] <= points["p99_ms"]
-    assert 0 < record["batches"]["share_by_data_sets"] < 1
+    assert [(one["form"], one["points"]) for one in record["batches"]] == [("netcdf", 2000), ("json", 500)]
+    assert 0 < record["share_by_data_sets"] < 1
     assert record["memory_after_batches"]["now_MB"] > 50
     assert "questions/s" in done.stdout
 
