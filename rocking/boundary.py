@@ -8,6 +8,7 @@ safe band far narrower than a cell still shows, as the gap between the outlines 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
@@ -25,6 +26,9 @@ from rocking.solve import as_pulse
 
 DIRECTLY = int(Outcome.OVERTURNED_DIRECTLY)
 """Code of overturning without an impact."""
+
+AT_ONCE = 500_000
+"""Blocks of the grid that are solved in one call, about: a hundred megabytes [-]."""
 
 
 def overturning_boundary(
@@ -94,7 +98,8 @@ def overturning_boundaries(
     made = as_pulse(pulse)
     classify = classifier(made, alpha)
     axes = _spaced(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
-    codes, _ = classify(axes[0][:, None, None], axes[1][:, None], etas)
+    shares = np.array_split(axes[0], math.ceil(nodes * nodes * etas.size / AT_ONCE))
+    codes = np.concatenate([classify(rows[:, None, None], axes[1][:, None], etas)[0] for rows in shares])
 
     # without an impact restitution does not count: the curves of 0, the cheapest, serve all
     groups = [[*_outlines(codes[..., 0], axes, 0.0, directly=True)]]
