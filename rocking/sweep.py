@@ -39,6 +39,9 @@ WORTH = 2e-4
 PROBE_TOLERANCE = 1e-9
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
 
+APART = {"restitution": 0.1, "alpha": np.radians(25.0)}
+"""Levels farther apart are not interpolated between: one look in the middle would not tell enough [-, rad]."""
+
 TOGETHER = 11
 """Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
 
@@ -98,11 +101,11 @@ def spectra(
                 layers[first + k].append(Layer.of(grid.mesh, nodes, k, bars))
             made = [layers[first + k][a] for k in range(some.size)]
             errors[0, first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
-    middles = 0.5 * (etas[1:] + etas[:-1])
+    lower, middles = _close(etas, APART["restitution"])
     for a, angle in enumerate(angles):
         gaps = [Gap.of([row[a] for row in layers], etas, eta) for eta in middles]
-        errors[1, :-1, a] = grid.errors_between(gaps, middles, angle, known=DIRECT)
-    for a, angle in enumerate(0.5 * (angles[1:] + angles[:-1])):
+        errors[1, lower, a] = grid.errors_between(gaps, middles, angle, known=DIRECT)
+    for a, angle in zip(*_close(angles, APART["alpha"]), strict=True):
         # the equation of motion knows the sign of alpha only in its square
         gaps = [Gap.of(row, angles**2, angle**2) for row in layers]
         errors[2, :, a] = grid.errors_between(gaps, etas, angle)
@@ -110,6 +113,12 @@ def spectra(
     for k, eta in enumerate(etas):
         above = etas[k + 1] if k + 1 < etas.size else np.nan
         yield _cube(pulse, float(eta), axes, layers[k], errors[:, k]).assign_attrs(next_restitution=float(above))
+
+
+def _close(levels: Array, apart: float) -> tuple[NDArray[np.intp], Array]:
+    """The levels with the next one not farther than `apart` above, and the middles between these two."""
+    lower = np.flatnonzero(np.diff(levels) <= apart * (1.0 + 1e-9))
+    return lower, 0.5 * (levels[lower] + levels[lower + 1])
 
 
 @dataclass(frozen=True)

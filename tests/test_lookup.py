@@ -91,6 +91,24 @@ def test_a_cube_that_was_made_with_another_neighbour_is_not_interpolated_towards
     assert open_cube(tmp_path).response(**question).source == "solver"
 
 
+@pytest.mark.parametrize(
+    ("etas", "angles", "asked"),
+    [
+        ([0.50, 0.62, 0.70], [0.0, 0.3], {"restitution": 0.6, "alpha": 0.0}),
+        ([0.50, 0.60, 0.70], [0.0, 0.5], {"restitution": 0.6, "alpha": 0.2}),
+    ],
+)
+def test_levels_far_apart_are_not_interpolated_between(tmp_path, etas, angles, asked):
+    coarse = {"slenderness": np.linspace(0.3, 0.6, 13), "frequency_ratio": np.geomspace(8.0, 12.0, 13)}
+    for cube in spectra("sine", restitution=etas, alpha=angles, **coarse):
+        write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
+    cube, place = open_cube(tmp_path), {"slenderness": 0.46, "frequency_ratio": 10.1, "tolerance": 1e-2}
+    assert cube.response(**place, **asked).source == "solver"
+    assert cube.response(**place, restitution=0.66, alpha=0.0).source == "cube"
+    with pytest.raises(OutsideCubeError):
+        cube.response(**place, **asked, method="cube")
+
+
 def test_several_cubes_want_to_know_the_restitution(folder):
     with pytest.raises(InvalidArgumentError, match="restitution"):
         open_cube(folder).response(slenderness=0.4, frequency_ratio=9.0)
