@@ -195,7 +195,8 @@ class Cube:
         if known[0] and part.error_bound[0] > limit:
             bound = float(part.error_bound[0])
             raise OutsideCubeError("tolerance", limit, f"at least {bound:.3g} {where} in this cube, or method auto")
-        raise OutsideCubeError("method", "cube", f"auto or solver {where}, where fates or modes of response meet")
+        why = "where fates or modes of response meet, or the levels of restitution or alpha are too far apart"
+        raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 
 
 def _parts(labels: NDArray[np.intp]) -> Iterator[tuple[int, Index]]:

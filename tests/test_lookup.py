@@ -105,7 +105,7 @@ def test_levels_far_apart_are_not_interpolated_between(tmp_path, etas, angles, a
     cube, place = open_cube(tmp_path), {"slenderness": 0.46, "frequency_ratio": 10.1, "tolerance": 1e-2}
     assert cube.response(**place, **asked).source == "solver"
     assert cube.response(**place, restitution=0.66, alpha=0.0).source == "cube"
-    with pytest.raises(OutsideCubeError):
+    with pytest.raises(OutsideCubeError, match="too far apart"):
         cube.response(**place, **asked, method="cube")
 
 
