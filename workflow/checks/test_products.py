@@ -71,31 +71,35 @@ def test_fate_changes_across_each_boundary_as_its_file_states(name: str) -> None
     for alpha in np.unique(stored.alpha):
         curves = curves_at(stored, alpha)
         # after many impacts regions lie in layers, some thinner than a millionth and a few than the smallest step
-        agrees = np.array([_as_stated(curves, step) for step in STEPS])
-        assert agrees[0].mean() > 0.7
-        assert agrees.any(axis=0).mean() > 0.95
+        left = np.arange(curves.sizes["point"])
+        agree = []
+        for step in STEPS:
+            left = left[~_as_stated(curves, left, step)]
+            agree.append(1.0 - left.size / curves.sizes["point"])
+        assert agree[0] > 0.7
+        assert agree[-1] > 0.95
 
 
-def _as_stated(curves: xr.Dataset, step: float) -> NDArray[np.bool_]:
-    """At each point, whether a step off the curve to either side meets the two fates that the file states.
+def _as_stated(curves: xr.Dataset, points: NDArray[np.intp], step: float) -> NDArray[np.bool_]:
+    """At some points, whether a step off the curve to either side meets the two fates that the file states.
 
     A point lies on a line of the grid along which its fate changes, so the step in 1/a or the one in log omega does.
     """
-    stated = np.sort(np.repeat([_codes(curves, ""), _codes(curves, "neighbour_")], curves.row_size, axis=1), axis=0)
+    stated = np.repeat([_codes(curves, ""), _codes(curves, "neighbour_")], curves.row_size, axis=1)[:, points]
     sides = step * np.array([[1.0], [-1.0]])
     met = [
         fate_code(
             peak_response(
                 curves.pulse.attrs["pulse_name"],
-                slenderness=curves.slenderness.values + in_slenderness,
-                frequency_ratio=curves.frequency_ratio.values * np.exp(in_log_omega),
+                slenderness=curves.slenderness.values[points] + in_slenderness,
+                frequency_ratio=curves.frequency_ratio.values[points] * np.exp(in_log_omega),
                 restitution=float(curves.restitution),
                 alpha=float(curves.alpha[0]),
             )
         )
         for in_slenderness, in_log_omega in ((sides, 0 * sides), (0 * sides, sides))
     ]
-    return np.any([np.all(np.sort(fates, axis=0) == stated, axis=0) for fates in met], axis=0)
+    return np.any([np.all(np.sort(fates, axis=0) == np.sort(stated, axis=0), axis=0) for fates in met], axis=0)
 
 
 def _codes(curves: xr.Dataset, side: str) -> NDArray[np.int64]:

@@ -1,5 +1,6 @@
 # Spectrum cubes and overturning boundaries: one job per pulse makes the files of all its coefficients of restitution,
-# because starting Python and loading the compiled solver costs more than filling a cube.
+# because starting Python and loading the compiled solver costs more than filling a cube. They go first: figures and
+# claims wait for them, and what does not wait fills the cores at the end.
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",
@@ -29,6 +30,7 @@ rule spectra:
         "logs/spectra/{pulse}.log",
     benchmark:
         "logs/benchmarks/spectra-{pulse}.tsv"
+    priority: 2
     params:
         **SPECTRUM_SETTINGS,
         provenance=SPECTRUM_PROVENANCE,
@@ -46,6 +48,7 @@ rule overturning:
         "logs/overturning/{pulse}.log",
     benchmark:
         "logs/benchmarks/overturning-{pulse}.tsv"
+    priority: 2
     params:
         **OVERTURNING_SETTINGS,
         provenance=OVERTURNING_PROVENANCE,

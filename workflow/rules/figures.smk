@@ -14,6 +14,7 @@ FIGURE_INPUTS = {
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions("figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
+READ_BY_CLAIMS = ["figure-06", "figure-09", "figure-11", "figure-12"]
 
 for _figure, _files in FIGURES.items():
     _name = _figure.replace("-", "_")
@@ -29,6 +30,7 @@ for _figure, _files in FIGURES.items():
             f"logs/figures/{_figure}.log",
         benchmark:
             f"logs/benchmarks/{_figure}.tsv"
+        priority: int(_figure in READ_BY_CLAIMS)
         params:
             **_figures[_figure],
             figure=_name,

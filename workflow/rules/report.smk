@@ -15,6 +15,7 @@ rule claims:
         "logs/claims.log",
     benchmark:
         "logs/benchmarks/claims.tsv"
+    priority: 1
     params:
         **config["claims"],
         provenance=provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values()),
