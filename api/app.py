@@ -5,12 +5,15 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from typing import Any
 
 import anyio
 import anyio.to_thread
 from fastapi import FastAPI
+from starlette.middleware import Middleware
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
+from starlette.types import ASGIApp
 
 from api.answers import VERSION
 from api.observer import Observer
@@ -44,12 +47,33 @@ ROUTES = (
 )
 
 
+class Application(FastAPI):
+    """FastAPI with layers around its own: what they answer takes no way through those.
+
+    An error that gets out of FastAPI's layers comes to these as an exception.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.outer_layers: list[Middleware] = []
+
+    def add_outer_layer(self, kind: Callable[..., ASGIApp], **options: Any) -> None:
+        """Put a layer around all that are there."""
+        self.outer_layers.append(Middleware(kind, **options))
+
+    def build_middleware_stack(self) -> ASGIApp:
+        stack = super().build_middleware_stack()
+        for kind, arguments, options in self.outer_layers:
+            stack = kind(stack, *arguments, **options)
+        return stack
+
+
 def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None) -> FastAPI:
     """Build the service over the results folder of the settings, which need not exist.
 
     `when_ready` is called once the compiled solver is loaded.
     """
-    app = FastAPI(
+    app = Application(
         title="rocking",
         version=VERSION,
         summary="Does the block fall, and how far does it rock?",
@@ -68,16 +92,16 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
     short = [route for route in response.router.routes if isinstance(route, QuestionRoute)]
-    app.add_middleware(ShortWay, routes=short)
+    app.add_outer_layer(ShortWay, routes=short)
     if settings.cors_origins:
-        app.add_middleware(
+        app.add_outer_layer(
             CORSMiddleware,
             allow_origins=list(settings.cors_origins),
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
+    app.add_outer_layer(Observer, metrics=service.metrics, access_log=settings.access_log)
     app.state.when_ready = when_ready
-    app.add_middleware(Observer, metrics=service.metrics, access_log=settings.access_log)  # the outermost
     add_handlers(app)
     for module in ROUTES:
         app.include_router(module.router)

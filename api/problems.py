@@ -93,10 +93,11 @@ def internal_error() -> Response:
 
 
 def add_handlers(app: FastAPI) -> None:
-    """Answer every exception by its line in the table; what is not in it the observer logs and answers."""
+    """Answer every exception by its line in the table; one that is not in it is logged by the observer."""
     for kind in STATUS:
         app.add_exception_handler(kind, answer_problem)
     app.add_exception_handler(HTTPException, _handle_http)
+    app.add_exception_handler(Exception, _handle_unknown)
 
 
 async def answer_problem(_: Request, error: Exception) -> Response:
@@ -143,6 +144,10 @@ async def _handle_http(request: Request, error: Exception) -> Response:
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and methods:
         headers = {"Allow": ", ".join(method.upper() for method in methods)}  # of all routes of the path
     return problem(error.status_code, str(error.detail), headers)
+
+
+async def _handle_unknown(_: Request, __: Exception) -> Response:
+    return internal_error()
 
 
 def _plain(value: Any) -> float | str | None:

@@ -14,7 +14,7 @@ QUESTIONS += [POINT | {"pulse": "sinus"}, POINT | {"method": "cube", "frequency_
 def usual(results):
     """The service without the short way."""
     client = client_of(results)
-    client.app.user_middleware = [layer for layer in client.app.user_middleware if layer.cls is not ShortWay]
+    client.app.outer_layers = [layer for layer in client.app.outer_layers if layer.cls is not ShortWay]
     with client:
         yield client
 
