@@ -2,7 +2,9 @@
 
 A call of the solver or of a cube costs the same for one block as for a hundred: what takes the time is Python around
 the numbers. So a question waits until the event loop has read all requests that are there, microseconds, and all that
-differ in the block only are asked together. Nobody notices but the clock.
+differ in the block only are asked together. As long as more come with each turn of the loop it waits another turn:
+otherwise clients that ask anew at once fall apart into groups, each of which is answered while the others arrive.
+Nobody notices but the clock.
 """
 
 from __future__ import annotations
@@ -40,6 +42,7 @@ class Together:
         self._atlas = atlas
         self._loop: asyncio.AbstractEventLoop
         self._waiting: dict[Hashable, list[Asked]] = {}
+        self._count = 0
         self._open: dict[tuple[str, float], float] = {}
         self._reading: set[asyncio.Task[None]] = set()
 
@@ -52,15 +55,20 @@ class Together:
             As `Atlas.response`.
         """
         check_point(question)  # one that is out of range must not spoil the call of the others
-        if not self._waiting:
+        if not self._count:
             self._loop = asyncio.get_running_loop()  # asks the operating system who runs: once is enough
-            self._loop.call_soon(self._answer_all)
+            self._loop.call_soon(self._answer_all, 0)
+        self._count += 1
         answer: asyncio.Future[Point] = self._loop.create_future()
         self._waiting.setdefault(_kind(question), []).append((question, answer))
         return await answer
 
-    def _answer_all(self) -> None:
-        waiting, self._waiting = self._waiting, {}
+    def _answer_all(self, before: int) -> None:
+        """Answer what waits, unless a turn ago there were fewer questions."""
+        if before < self._count < MOST:
+            self._loop.call_soon(self._answer_all, self._count)
+            return
+        waiting, self._waiting, self._count = self._waiting, {}, 0
         for group in waiting.values():
             for start in range(0, len(group), MOST):
                 self._answer(group[start : start + MOST])

@@ -10,6 +10,8 @@ import pytest
 from starlette.requests import ClientDisconnect
 
 import api.batch_answer
+from api.questions import ResponseQuestion
+from api.together import Together
 from api.workshop import BusyError, Leave, TimeLimitError, Workshop
 from rocking.errors import in_range
 from tests.service.conftest import assert_problem, client_of
@@ -174,6 +176,23 @@ def test_questions_asked_together_have_the_answers_of_questions_asked_alone(resu
         found = json.loads(body)
         assert found == one.json()
     assert len(calls) < len(questions) / 2
+
+
+def test_a_question_waits_for_those_that_come_with_the_next_turns_of_the_loop(results):
+    async def one_a_turn(together, questions):
+        asked = []
+        for question in questions:
+            asked.append(asyncio.create_task(together.ask(question)))
+            await asyncio.sleep(0)
+        return await asyncio.gather(*asked)
+
+    questions = [ResponseQuestion(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
+    with client_of(results) as client:
+        atlas = client.app.state.service.atlas
+        alone = [asyncio.run(one_a_turn(Together(atlas), [question]))[0] for question in questions]
+        calls = _count_calls(atlas)
+        assert asyncio.run(one_a_turn(Together(atlas), questions)) == alone
+    assert len(calls) == 1
 
 
 def test_an_error_inside_reaches_all_that_asked(results, monkeypatch):
