@@ -10,8 +10,10 @@ exceeded_alpha        i1   1 where |theta| passed alpha at some time
 peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
 stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
 interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
-restitution_error     f4   the same of interpolating to the middle before the next restitution, at the cells' centres
-alpha_error           f4   the same before the next angle
+restitution_levels    i1   which files serve in that cell before the next restitution, see `interpolation.LEVELS`
+restitution_error     f4   largest error of that, measured in the same cells
+alpha_levels          i1   which angles serve in that cell before the next angle
+alpha_error           f4   largest error of that, measured in the same cells
 ====================  ===  =====================================================================================
 
 with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
@@ -59,6 +61,8 @@ _OUTCOMES = {
 }
 _NO_YES = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"}
 
+_LEVELS = "0 to 5: Lagrange over 4, 4, 4, 3, 3, 2, the first of them 1, 2, 0, 1, 0, 0 below the node's; -1: not at all"
+
 MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
 """Attributes of every dimensionless variable that a model computed."""
 
@@ -92,19 +96,27 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
          "comment": "against the solver, in the cell and those around it, at two points of each and at five where "
                     "they differ; 0 where all overturn alike, missing where no bound is known"},
     ),
+    "restitution_levels": (
+        "i1",
+        {"long_name": "files that serve the cell above the node before the next restitution", "equation": "3.2",
+         "comment": _LEVELS},
+    ),
     "restitution_error": (
         "f4",
-        {"long_name": "measured error of peak_rotation interpolated to the middle before the next restitution",
+        {"long_name": "largest measured error of peak_rotation interpolated before the next restitution",
          "equation": "3.2",
-         "comment": "at the centres of the cell above the node and of those around it, by four-point Lagrange over "
-                    "the files of the pulse; missing where they differ in fate"},
+         "comment": "over restitution_levels, in the cell above the node and in those around it, halfway at their "
+                    "centres and, where that differs, at two points more; missing where they differ in fate"},
+    ),
+    "alpha_levels": (
+        "i1",
+        {"long_name": "angles that serve the cell above the node before the next angle", "equation": "3.2",
+         "comment": f"in the square of alpha; {_LEVELS}"},
     ),
     "alpha_error": (
         "f4",
-        {"long_name": "measured error of peak_rotation interpolated to the middle before the next alpha",
-         "equation": "3.2",
-         "comment": "at the centres of the cell above the node and of those around it, by four-point Lagrange in the "
-                    "square of alpha; missing where the layers differ in fate"},
+        {"long_name": "largest measured error of peak_rotation interpolated before the next alpha", "equation": "3.2",
+         "comment": "over alpha_levels, as restitution_error"},
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube."""

@@ -2,7 +2,8 @@
 
 Rows are slenderness, columns the logarithm of frequency_ratio; both may be spaced unevenly. Cell (i, j) lies between
 the nodes (i, j) and (i + 1, j + 1). It is interpolated from 4 x 4 nodes that hold it: those around it, or a block
-shifted by one to a side, so that cells next to a boundary keep the full order.
+shifted by one to a side, so that cells next to a boundary keep the full order. So it is with the levels of restitution
+and of slenderness angle, which lie farther apart: there three or two serve where four do not.
 """
 
 from __future__ import annotations
@@ -20,6 +21,9 @@ STENCIL = 4
 
 SHIFTS = ((1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2))
 """Rows and columns by which a stencil may start before its cell, the best first."""
+
+LEVELS = ((4, 1), (4, 2), (4, 0), (3, 1), (3, 0), (2, 0))
+"""How many levels may serve the gap between two, and how many of them lie below the lower of these; the best first."""
 
 Array = NDArray[np.float64]
 
@@ -105,41 +109,22 @@ def in_cell(values: Vector, i: int, j: int, shift: int, squared: bool, x: float,
     return total
 
 
-def level_weights(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
-    """How to interpolate between unevenly spaced levels: the gap, the first level that serves, and the weights.
-
-    Parameters
-    ----------
-    levels : float array, shape (k,)
-        Ascending.
-    value : array_like, any shape
-        Within the levels.
-
-    Returns
-    -------
-    gap : int array
-        Level just below the value; -1 where it lies on a level.
-    first : int array
-        The first of the levels that serve: the four around the gap, fewer if there are no more; the level itself.
-    weights : float array, shape (..., 4)
-        Of `first` and those after it; 1, 0, 0, 0 on a level.
-    """
+def level_of(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """The level at or below each value, -1 outside of them; and whether the value is that level."""
     value = np.asarray(value, dtype=np.float64)
-    above = np.searchsorted(levels, value, side="left")
-    exact = levels[np.minimum(above, levels.size - 1)] == value
-    count = min(STENCIL, levels.size)
-    first = np.where(exact, above, np.clip(above - count // 2, 0, levels.size - count))
-    weights = np.zeros((*value.shape, STENCIL))
-    weights[exact, 0] = 1.0
-    between = ~exact
-    if between.any():
-        x = value[between]
-        nodes = levels[first[between][:, None] + np.arange(count)]
-        for k in range(count):
-            others = [m for m in range(count) if m != k]
-            basis = [(x - nodes[:, m]) / (nodes[:, k] - nodes[:, m]) for m in others]
-            weights[between, k] = np.prod(basis, axis=0)
-    return np.where(exact, -1, above - 1), first, weights
+    below = np.searchsorted(levels, value, side="right") - 1
+    inside = (below >= 0) & (value <= levels[-1])
+    return np.where(inside, below, -1), inside & (levels[np.maximum(below, 0)] == value)
+
+
+@kernel
+def level_weight(levels: Vector, first: int, count: int, k: int, x: float) -> float:
+    """Lagrange's weight at x of the k-th of `count` levels from `first` on."""
+    weight = 1.0
+    for m in range(count):
+        if m != k:
+            weight *= (x - levels[first + m]) / (levels[first + k] - levels[first + m])
+    return weight
 
 
 def stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:

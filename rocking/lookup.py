@@ -18,11 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
-from rocking.interpolation import cell_of
-from rocking.lookup_kernel import interpolate_many
+from rocking.interpolation import cell_of, level_of
+from rocking.lookup_kernel import AROUND, LOWER, interpolate_many
 from rocking.lookup_level import FIELDS, Level
 from rocking.lookup_points import Points
-from rocking.lookup_weights import weights_on
 
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
@@ -123,18 +122,23 @@ class Cube:
         return answer.reshape(shape)
 
     def used(self, restitution: Array) -> list[int]:
-        """Indices of the cubes that serve some of the restitutions."""
-        _, first, weights = weights_on(self.restitutions, restitution)
-        points, offset = np.nonzero(weights)
-        return [int(k) for k in np.flatnonzero(np.bincount(first[points] + offset))]
+        """Indices of the cubes that may serve some of the restitutions."""
+        lower, on_level = level_of(self.restitutions, restitution)
+        serve = {int(k) for k in lower[on_level]}
+        for k in set(lower[~on_level & (lower >= 0)].tolist()):
+            serve.update(range(max(0, k - LOWER), min(self.restitutions.size, k - LOWER + AROUND)))
+        return sorted(serve)
 
     def promised(self, points: Points, limit: float) -> tuple[Flags, BoundedResponse]:
         """Where the cubes keep to the limit (points,), and what they answer there."""
         found = np.zeros(points.slenderness.size, FOUND)
-        for index, levels, gap, weights in self._groups(points.restitution):
-            part = found[index]
-            _interpolate(levels, points[index], gap, weights, part)
-            found[index] = part
+        lower, on_level = level_of(self.restitutions, points.restitution)
+        for label, index in _parts(np.where(lower < 0, -1, 2 * lower + on_level)):
+            serving = self._around(*divmod(label, 2)) if label >= 0 else None
+            if serving is not None:
+                part = found[index]
+                _interpolate(*serving, points[index], part)
+                found[index] = part
         bound = np.where(found["overturned"], 0.0, SAFETY * found["error"] + SOLVER_ERROR)
         # a safe block passes alpha exactly if its peak does; a peak within its bound of alpha leaves that open
         open_ = ~found["overturned"] & (np.abs(found["peak"] - 1.0) <= bound)
@@ -150,29 +154,28 @@ class Cube:
             np.full(kept.size, "cube"),
         )
 
-    def _groups(self, restitution: Array) -> Iterator[tuple[Index, list[Level], NDArray[np.intp], Array]]:
-        """Points that the same four cubes serve: which, the cubes, the gap among them, their weights."""
-        etas = self.restitutions
-        if not etas.size:
-            return
-        inside = (restitution >= etas[0]) & (restitution <= etas[-1])
-        gap, first, weights = weights_on(etas, np.where(inside, restitution, etas[0]))
-        for label, index in _parts(np.where(inside, 2 * first + (gap >= 0), -1)):
-            start, several = divmod(label, 2)
-            levels = self._serving(start, min(4, etas.size - start) if several else 1) if label >= 0 else []
-            if levels:
-                yield index, levels, gap[index] - start, weights[index]  # on a level the gap stays negative
+    def _around(self, k: int, on_level: int) -> tuple[list[Level], Flags] | None:
+        """`AROUND` cubes, the k-th in place `LOWER`, and which of them there are; the others are the k-th once more.
 
-    def _serving(self, start: int, count: int) -> list[Level]:
-        """The cubes from `start` on, the last one repeated to make four; none if they do not belong together."""
-        opened = [self.level(start + k) for k in range(count)]
-        levels = [one for one in opened if one is not None]
-        whole = len(levels) == count and all(one.fits(levels[0]) for one in levels[1:])
-        # the errors between restitutions were measured with these neighbours
-        etas = self.restitutions[start + 1 :]
-        if whole and all(one.next_restitution == eta for one, eta in zip(levels[:-1], etas, strict=False)):
-            return levels + levels[-1:] * (4 - count)
-        return []
+        A gap needs those next to it that were made together: the errors between restitutions were measured with them.
+        """
+        own = self.level(k)
+        if own is None:
+            return None
+        levels, usable = [own] * AROUND, np.zeros(AROUND, dtype=np.bool_)
+        usable[LOWER] = True
+        if not on_level:
+            for places, step in ((range(LOWER + 1, AROUND), 1), (range(LOWER - 1, -1, -1), -1)):
+                for place in places:
+                    index, last = k + place - LOWER, levels[place - step]
+                    one = self.level(index) if 0 <= index < self.restitutions.size else None
+                    if one is None or not one.fits(own):
+                        break
+                    below, above = (last, one) if step > 0 else (one, last)
+                    if below.next_restitution != above.restitution:
+                        break
+                    levels[place], usable[place] = one, True
+        return levels, usable
 
     def _refuse(self, point: Points, limit: float) -> None:
         """Say why the cubes cannot answer a point."""
@@ -208,25 +211,24 @@ def _parts(labels: NDArray[np.intp]) -> Iterator[tuple[int, Index]]:
             yield int(label), np.flatnonzero(labels == label)
 
 
-def _interpolate(
-    levels: list[Level], points: Points, gap: NDArray[np.intp], weights: Array, found: NDArray[np.void]
-) -> None:
-    """Fill `found` (points,) from four cubes."""
-    first = levels[0]
-    squares = first.alpha**2  # the equation of motion knows the sign of alpha only in its square
-    inside = (points.alpha >= first.alpha[0]) & (points.alpha <= first.alpha[-1])
-    angle_gap, angle_first, angle_weights = weights_on(squares, np.where(inside, points.alpha, first.alpha[0]) ** 2)
+def _interpolate(levels: list[Level], usable: Flags, points: Points, found: NDArray[np.void]) -> None:
+    """Fill `found` (points,) from `AROUND` cubes, for restitutions that lie in one gap, or are one level."""
+    own = levels[LOWER]
+    angle_level, on_angle = level_of(own.alpha, points.alpha)
     interpolate_many(
-        cell_of(first.slenderness, points.slenderness),
-        cell_of(first.frequency_ratio, points.frequency_ratio),
+        cell_of(own.slenderness, points.slenderness),
+        cell_of(own.frequency_ratio, points.frequency_ratio),
         points.slenderness,
         np.log(points.frequency_ratio),
-        first.mesh,
-        gap,
-        weights,
-        angle_gap,
-        np.where(inside, angle_first, -1),
-        angle_weights,
+        own.mesh,
+        points.restitution,
+        bool(points.restitution[0] == own.restitution),
+        np.array([level.restitution for level in levels]),
+        usable,
+        angle_level,
+        on_angle,
+        points.alpha**2,  # the equation of motion knows the sign of alpha only in its square
+        own.alpha**2,
         _Fields(*(tuple(getattr(level, name) for level in levels) for name in FIELDS)),
         found,
     )

@@ -1,4 +1,4 @@
-"""Interpolates cubes at many points: four restitutions by four angles by 4 x 4 nodes, with the bound of each answer."""
+"""Interpolates cubes at many points: up to four restitutions, four angles and 4 x 4 nodes, with the bound of each."""
 
 from __future__ import annotations
 
@@ -6,11 +6,17 @@ import numpy as np
 
 from rocking.compilation import Record, Vector, kernel
 from rocking.cube import OVERTURNS, SQUARED
-from rocking.interpolation import Mesh, in_cell
+from rocking.interpolation import LEVELS, STENCIL, Mesh, in_cell, level_weight
 from rocking.response import Outcome
 
 UNKNOWN = -1
 """Impacts where the nodes around a point differ in them."""
+
+LOWER = STENCIL - 2
+"""Of the cubes that `interpolate_many` takes: the one at or below the restitutions asked for."""
+
+AROUND = LOWER + STENCIL
+"""How many these are: all that may serve a gap."""
 
 GAP_SHARE = 0.7
 """Weight of the errors between levels beside those within cells [-]: they are measured where they are largest, in the
@@ -38,11 +44,14 @@ def interpolate_many(
     x: Vector,
     y: Vector,
     mesh: Mesh,
-    eta_gap: Vector,
-    eta_weights: Vector,
-    angle_gap: Vector,
-    angle_first: Vector,
-    angle_weights: Vector,
+    eta: Vector,
+    on_eta: bool,
+    etas: Vector,
+    usable: Vector,
+    angle_level: Vector,
+    on_angle: Vector,
+    angle: Vector,
+    angles: Vector,
     cubes: Record,
     answers: Record,
 ) -> None:
@@ -56,59 +65,76 @@ def interpolate_many(
         slenderness and log(frequency_ratio).
     mesh : Mesh
         The nodes.
-    eta_gap : int array (points,)
-        Which of the four cubes the restitution lies above; -1 where it is that of the first.
-    eta_weights : float array (points, 4)
-        Of the four cubes.
-    angle_gap, angle_first : int arrays (points,)
-        Layer that the angle lies above, -1 on a layer; first of the layers that serve, -1 where none does.
-    angle_weights : float array (points, 4)
-        Of the layers from there on.
+    eta, on_eta : float array (points,), bool
+        Restitutions, all above that of cube `LOWER`, and below that of the next; or all equal to it.
+    etas, usable : float array (AROUND,), bool array (AROUND,)
+        Restitutions of the cubes, and whether there is one.
+    angle_level, on_angle : int array, bool array (points,)
+        Layer at or below each angle, -1 where there is none; whether the angle is that of the layer.
+    angle, angles : float arrays (points,), (layers,)
+        Squares of the angles, and of those of the layers.
     cubes : named tuple of `lookup.FIELDS`
-        Each a tuple of four arrays (angles, n, m), one for each cube.
+        Each a tuple of `AROUND` arrays (layers, n, m), one for each cube.
     answers : array (points,) of `lookup.FOUND`
         `known` is set where there is an answer.
     """
     for point in range(len(row)):
-        i, j = row[point], column[point]
-        if i < 0 or j < 0 or angle_first[point] < 0:
+        i, j, layer = row[point], column[point], angle_level[point]
+        if i < 0 or j < 0 or layer < 0:
             continue
         kind, impacts = 0, -2
         peak, value, squares, forms = 0.0, 0.0, 0, 0
         in_cells, between_etas, between_angles = 0.0, 0.0, 0.0
-        agree = True
-        for e in range(4):
-            by_eta = eta_weights[point, e]
-            for a in range(4):
-                by_angle = angle_weights[point, a]
-                if by_eta == 0.0 or by_angle == 0.0 or not agree:
+        first_angle, count_angles = layer, 1
+        if not on_angle[point]:
+            choice = cubes.alpha_levels[LOWER][layer, i, j]
+            if choice < 0:
+                continue
+            count_angles, first_angle = LEVELS[choice][0], layer - LEVELS[choice][1]
+            between_angles = cubes.alpha_error[LOWER][layer, i, j]
+            if not on_eta:
+                # measured on both sides of the gap between restitutions, with the same layers
+                other = cubes.alpha_error[LOWER + 1][layer, i, j]
+                if cubes.alpha_levels[LOWER + 1][layer, i, j] != choice or np.isnan(other):
                     continue
-                layer = angle_first[point] + a
-                code = cubes.stencil[e][layer, i, j]
+                between_angles = max(between_angles, other)
+        agree = not np.isnan(between_angles)
+        for a in range(count_angles):
+            if not agree:
+                break
+            layer = first_angle + a
+            by_angle = level_weight(angles, first_angle, count_angles, a, angle[point])
+            first_eta, count_etas = LOWER, 1
+            if not on_eta:
+                choice = cubes.restitution_levels[LOWER][layer, i, j]
+                error = cubes.restitution_error[LOWER][layer, i, j]
+                if choice < 0 or np.isnan(error):
+                    agree = False
+                    break
+                count_etas, first_eta = LEVELS[choice][0], LOWER - LEVELS[choice][1]
+                between_etas = max(between_etas, error)
+            for b in range(count_etas):
+                e = first_eta + b
+                if not usable[e]:
+                    agree = False
+                    break
+                code, error = cubes.stencil[e][layer, i, j], cubes.interpolation_error[e][layer, i, j]
                 if code == OVERTURNS:
                     here = -(4 * cubes.impacts[e][layer, i, j] + cubes.outcome[e][layer, i, j])
                 else:
                     here = 0 if code < 0 else 1
-                agree = here != 0 and (kind == 0 or kind == here)
+                agree = here != 0 and (kind == 0 or kind == here) and not np.isnan(error)
                 if not agree:
-                    continue
-                kind = here
-                error = cubes.interpolation_error[e][layer, i, j]
-                in_cells = error if np.isnan(error) else max(in_cells, error)
-                if e == eta_gap[point]:
-                    error = cubes.restitution_error[e][layer, i, j]
-                    between_etas = error if np.isnan(error) else max(between_etas, error)
-                if layer == angle_gap[point]:
-                    error = cubes.alpha_error[e][layer, i, j]
-                    between_angles = error if np.isnan(error) else max(between_angles, error)
-                agree = not np.isnan(in_cells + between_etas + between_angles)
+                    break
+                kind, in_cells = here, max(in_cells, error)
                 impacts = common_impacts(cubes, layer, e, i, j, impacts)
                 if kind > 0:
                     squared = code >= SQUARED
                     shift = code - SQUARED if squared else code
                     here_value = in_cell(cubes.peak_rotation[e][layer], i, j, shift, squared, x[point], y[point], mesh)
-                    value += by_eta * by_angle * here_value
-                    peak += by_eta * by_angle * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
+                    weight = by_angle * level_weight(etas, first_eta, count_etas, b, eta[point])
+                    value += weight * here_value
+                    peak += weight * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
                     squares, forms = squares + int(squared), forms + 1
         if not agree:
             continue
@@ -118,4 +144,4 @@ def interpolate_many(
         found.impacts = impacts
         found.overturned = kind < 0
         found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1
-        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if 0 < squares == forms else peak  # as `sweep_layer.gap_error`
+        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if 0 < squares == forms else peak  # as `sweep_gap.Gap.errors`

@@ -19,7 +19,7 @@ from rocking.interpolation import Mesh
 ERRORS = ("interpolation_error", "restitution_error", "alpha_error")
 """Measured errors of interpolation."""
 
-FIELDS = ("peak_rotation", "outcome", "impacts", "stencil", *ERRORS)
+FIELDS = ("peak_rotation", "outcome", "impacts", "stencil", "restitution_levels", "alpha_levels", *ERRORS)
 """Variables of a cube that interpolation needs."""
 
 Array = NDArray[np.float64]
@@ -55,6 +55,8 @@ class Level:
     outcome: NDArray[np.int8]
     impacts: NDArray[np.int32]
     stencil: NDArray[np.int8]
+    restitution_levels: NDArray[np.int8]
+    alpha_levels: NDArray[np.int8]
     interpolation_error: NDArray[np.float32]
     restitution_error: NDArray[np.float32]
     alpha_error: NDArray[np.float32]

@@ -5,7 +5,7 @@ Several coefficients of restitution are solved together, as the first flight of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,8 @@ from rocking.interpolation import Mesh
 from rocking.response import Response
 from rocking.solve import peak_response
 from rocking.stencil_choice import choose_stencils
-from rocking.sweep_layer import CENTRE, DIRECT, Cells, Gap, Layer, fate_codes, largest_around
+from rocking.sweep_gap import Gap, Place
+from rocking.sweep_layer import CENTRE, DIRECT, Cells, Layer, fate_codes, largest_around
 
 Array = NDArray[np.float64]
 
@@ -27,11 +28,17 @@ PROBES = (CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
 """Rows and columns within a cell where interpolation is compared with the solver [-]. No two share a row or a column,
 so that no crease along one passes between them, and errors of rows and of columns cannot cancel at all of them."""
 
+HALFWAY = (CENTRE, 0.5)
+"""Place in every cell, and share of the gap between two levels, where interpolation between them is compared."""
+
+ELSEWHERE = (((0.65, 0.15), 0.25), ((0.35, 0.85), 0.75))
+"""The same where it is not tame."""
+
 FIRST = 2
 """Probes in every cell: the error of a smooth function has one shape along rows and one along columns."""
 
 TAME = 1e-6
-"""Error at the first probes above which the others and the other stencils are tried, there and next to it [-]."""
+"""Error at the first probes above which the others and other stencils or levels are tried, there and next to it [-]."""
 
 WORTH = 2e-4
 """Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
@@ -91,7 +98,9 @@ def spectra(
     etas = in_range("restitution", restitution, 0.0, 1.0)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads)
     layers: list[list[Layer]] = [[] for _ in etas]
-    errors = np.full((3, etas.size, angles.size, rows.size - 1, columns.size - 1), np.nan)
+    shape = (etas.size, angles.size, rows.size - 1, columns.size - 1)
+    errors = {name: np.full(shape, np.nan) for name in ("interpolation_error", "restitution_error", "alpha_error")}
+    levels = {name: np.full(shape, NO_STENCIL, np.int8) for name in ("restitution_levels", "alpha_levels")}
     for a, angle in enumerate(angles):
         for first in range(0, etas.size, TOGETHER):
             some = etas[first : first + TOGETHER]
@@ -100,25 +109,44 @@ def spectra(
                 bars = None if barred is None else barred[first + k, a]
                 layers[first + k].append(Layer.of(grid.mesh, nodes, k, bars))
             made = [layers[first + k][a] for k in range(some.size)]
-            errors[0, first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
-    lower, middles = _close(etas, APART["restitution"])
+            errors["interpolation_error"][first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
+    kinds = [[layer.kinds() for layer in row] for row in layers]
     for a, angle in enumerate(angles):
-        gaps = [Gap.of([row[a] for row in layers], etas, eta) for eta in middles]
-        errors[1, lower, a] = grid.errors_between(gaps, middles, angle, known=DIRECT)
-    for a, angle in zip(*_close(angles, APART["alpha"]), strict=True):
+        along = [row[a] for row in layers], [row[a] for row in kinds]
+        gaps = [Gap.of(*along, etas, 1, int(k)) for k in _close(etas, APART["restitution"])]
+        found = grid.errors_between(gaps, _between_restitutions(gaps, angle), known=DIRECT)
+        for gap, error in zip(gaps, found, strict=True):
+            errors["restitution_error"][gap.lower, a], levels["restitution_levels"][gap.lower, a] = error, gap.choice
+    for a in _close(angles, APART["alpha"]):
         # the equation of motion knows the sign of alpha only in its square
-        gaps = [Gap.of(row, angles**2, angle**2) for row in layers]
-        errors[2, :, a] = grid.errors_between(gaps, etas, angle)
+        gaps = [Gap.of(*row, angles, 2, int(a)) for row in zip(layers, kinds, strict=True)]
+        found = grid.errors_between(gaps, _between_angles(gaps, etas))
+        for k, (gap, error) in enumerate(zip(gaps, found, strict=True)):
+            errors["alpha_error"][k, a], levels["alpha_levels"][k, a] = error, gap.choice
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
     for k, eta in enumerate(etas):
+        measured = {name: error[k] for name, error in errors.items()}
+        chosen = {name: choice[k] for name, choice in levels.items()}
         above = etas[k + 1] if k + 1 < etas.size else np.nan
-        yield _cube(pulse, float(eta), axes, layers[k], errors[:, k]).assign_attrs(next_restitution=float(above))
+        cube = _cube(pulse, float(eta), axes, layers[k], measured, chosen)
+        yield cube.assign_attrs(next_restitution=float(above))
 
 
-def _close(levels: Array, apart: float) -> tuple[NDArray[np.intp], Array]:
-    """The levels with the next one not farther than `apart` above, and the middles between these two."""
-    lower = np.flatnonzero(np.diff(levels) <= apart * (1.0 + 1e-9))
-    return lower, 0.5 * (levels[lower] + levels[lower + 1])
+def _close(levels: Array, apart: float) -> list[int]:
+    """The levels with the next one not farther than `apart` above."""
+    return [int(k) for k in np.flatnonzero(np.diff(levels) <= apart * (1.0 + 1e-9))]
+
+
+Asked = Callable[[float], tuple[Array, float]]
+"""From a share of some gaps to the restitution there of each [-], and the angle [rad]."""
+
+
+def _between_restitutions(gaps: Sequence[Gap], angle: float) -> Asked:
+    return lambda share: (np.array([gap.at(share) for gap in gaps]), angle)
+
+
+def _between_angles(gaps: Sequence[Gap], etas: Array) -> Asked:
+    return lambda share: (etas, gaps[0].at(share))
 
 
 @dataclass(frozen=True)
@@ -134,24 +162,47 @@ class _Grid:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
         return self._solve(self.mesh.rows[:, None], self.columns, etas, angle)
 
-    def errors_between(self, gaps: Sequence[Gap], etas: Array, angle: float, known: int | None = None) -> Array:
-        """Errors at the centres of cells, for each of some gaps, at whose middles the restitutions and the angle lie.
+    def errors_between(self, gaps: Sequence[Gap], asked: Asked, known: int | None = None) -> list[Array]:
+        """Largest errors at the probes of each cell, for each of some gaps.
 
         nan where the layers of a gap differ; 0 without asking the solver where their kind is `known` to hold between.
+        Where the error is large the gaps are given the levels that have the least.
         """
-        shape = self.mesh.rows.size - 1, self.mesh.columns.size - 1
-        kinds = np.array([gap.kind for gap in gaps]).reshape(len(gaps), *shape)
-        errors = np.where(kinds == known, 0.0, np.nan)
-        wanted = (kinds != 0) & (kinds != known)
-        cells = np.nonzero(wanted.any(axis=0))
-        x, y = self.mesh.within(cells, CENTRE)
-        found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
+        wanted = [(gap.kind != 0) & (gap.kind != known) for gap in gaps]
+        errors = [np.where(gap.kind == known, 0.0, np.nan) for gap in gaps]
+        cells = np.nonzero(np.any(wanted, axis=0)) if gaps else ()
+        if not gaps or not cells[0].size:
+            return errors
+        within, share = HALFWAY
+        x, y = self.mesh.within(cells, within)
+        found = self._solve(x, np.exp(y), *asked(share), PROBE_TOLERANCE)
         fates = fate_codes(found.outcome, found.impacts)
         for k, gap in enumerate(gaps):
             mine = wanted[k][cells]
             own = cells[0][mine], cells[1][mine]
-            errors[k][own] = gap.error(own, found.peak_rotation[mine, k], fates[mine, k])
+            alike = np.where(gap.kind[own] > 0, 1, gap.kind[own]) == fates[mine, k]
+            gap.choice[own[0][~alike], own[1][~alike]] = NO_STENCIL
+            errors[k][own[0][alike], own[1][alike]] = 0.0
+            stand = alike & (gap.kind[own] > 0)
+            own = own[0][stand], own[1][stand]
+            halfway = HALFWAY, found.peak_rotation[mine, k][stand]
+            errors[k][own] = gap.errors(own, halfway)
+            wild = ~(largest_around(errors[k])[own] <= TAME)
+            own, halfway = (own[0][wild], own[1][wild]), (HALFWAY, halfway[1][wild])
+            errors[k][own] = gap.choose(own, [halfway])
+            promising = errors[k][own] <= WORTH
+            gap.choice[own[0][~promising], own[1][~promising]] = NO_STENCIL
+            own, halfway = (own[0][promising], own[1][promising]), (HALFWAY, halfway[1][promising])
+            more = [(place, self._peaks_at(place, own, k, asked)) for place in ELSEWHERE]
+            errors[k][own] = gap.choose(own, [halfway, *more])
         return errors
+
+    def _peaks_at(self, place: Place, cells: Cells, k: int, asked: Asked) -> Array:
+        """The solver's peaks at a place of some cells of the k-th gap."""
+        within, share = place
+        x, y = self.mesh.within(cells, within)
+        etas, angle = asked(share)
+        return self._solve(x, np.exp(y), etas[k : k + 1], angle, PROBE_TOLERANCE).peak_rotation[:, 0]
 
     def errors_in_cells(self, layers: Sequence[Layer], etas: Array, angle: float) -> Array:
         """Largest error at the probes of each cell, for each restitution; 0 where it overturns alike, or nan.
@@ -211,7 +262,14 @@ class _Grid:
         )
 
 
-def _cube(pulse: str, eta: float, axes: Mapping[str, Array], layers: Sequence[Layer], errors: Array) -> xr.Dataset:
+def _cube(
+    pulse: str,
+    eta: float,
+    axes: Mapping[str, Array],
+    layers: Sequence[Layer],
+    errors: Mapping[str, Array],
+    levels: Mapping[str, NDArray[np.int8]],
+) -> xr.Dataset:
     """Assemble the layers of one restitution; cells stand at their lower corner."""
     names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha", "peak_mode")
     variables = {name: np.stack([getattr(layer, name) for layer in layers]) for name in names}
@@ -219,11 +277,12 @@ def _cube(pulse: str, eta: float, axes: Mapping[str, Array], layers: Sequence[La
     def at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
         return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
 
-    variables["stencil"] = at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
-    served = np.stack([layer.stencil for layer in layers]) != NO_STENCIL
-    for name, error in zip(("interpolation_error", "restitution_error", "alpha_error"), errors, strict=True):
+    stencil = np.stack([layer.stencil for layer in layers])
+    for name, codes in {"stencil": stencil, **levels}.items():
+        variables[name] = at_corner(codes, NO_STENCIL)
+    for name, error in errors.items():
         largest = largest_around(error)
-        largest[~served | np.isinf(largest)] = np.nan
+        largest[(stencil == NO_STENCIL) | np.isinf(largest)] = np.nan
         single = largest.astype(np.float32)
         # up to the next single: what is stored is still a bound
         above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)

@@ -6,14 +6,13 @@ vanishes on the boundary of overturning: there E is interpolated, elsewhere the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking.cube import NO_STENCIL, OVERTURNS, SQUARED
-from rocking.interpolation import Mesh, level_weights, stencils
+from rocking.interpolation import Mesh, stencils
 from rocking.response import Outcome, Response
 from rocking.stencil_choice import interpolate_cells
 
@@ -86,48 +85,6 @@ def fate_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDArray
 def peak_of(value: Array, squared: Flags) -> Array:
     """The peak from what is interpolated."""
     return np.where(squared, 1.0 - np.sqrt(np.maximum(value, 0.0)), value)
-
-
-@dataclass(frozen=True)
-class Gap:
-    """The middle between two levels of restitution or alpha: the layers that serve it, each with its weight.
-
-    Attributes
-    ----------
-    kind : int array (n - 1, m - 1)
-        What is known of each cell, as `Layer.kinds`; 0 also where the layers differ.
-    """
-
-    layers: Sequence[Layer]
-    weights: Sequence[float]
-    kind: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, layers: Sequence[Layer], levels: Array, level: float) -> Gap:
-        """Of all layers, at ascending levels, those that serve `level`."""
-        _, first, weights = level_weights(levels, level)
-        used = np.flatnonzero(weights).tolist()
-        serving = [layers[int(first) + k] for k in used]
-        kinds = [layer.kinds() for layer in serving]
-        alike = np.all([kind == kinds[0] for kind in kinds], axis=0)
-        return cls(serving, weights[used].tolist(), np.where(alike, kinds[0], 0))
-
-    def error(self, cells: Cells, peak: Array, fate: NDArray[np.int64]) -> Array:
-        """Error at the centres of some cells, where the solver has that peak and that fate, as `fate_codes`.
-
-        nan where it cannot be interpolated: the fates differ.
-        """
-        kind = self.kind[cells]
-        error = np.where((kind < 0) & (fate == kind), 0.0, np.nan)
-        safe = (kind > 0) & (fate == 1)
-        own = cells[0][safe], cells[1][safe]
-        found = [(layer.at(own, CENTRE), layer.stencil[own] >= SQUARED) for layer in self.layers]
-        squared = np.all([form for _, form in found], axis=0)
-        # E where all of them interpolate it, else the peaks
-        of_form = np.sum([w * value for w, (value, _) in zip(self.weights, found, strict=True)], axis=0)
-        of_peak = np.sum([w * peak_of(*one) for w, one in zip(self.weights, found, strict=True)], axis=0)
-        error[safe] = np.abs(np.where(squared, peak_of(of_form, squared), of_peak) - peak[safe])
-        return error
 
 
 def largest_around(errors: Array) -> Array:

@@ -5,7 +5,7 @@ import pytest
 
 from rocking.cube import SQUARED
 from rocking.errors import InvalidArgumentError
-from rocking.interpolation import SHIFTS, Mesh, cell_of, level_weights, stencils, weights
+from rocking.interpolation import LEVELS, SHIFTS, STENCIL, Mesh, cell_of, level_of, level_weight, stencils, weights
 from rocking.stencil_choice import choose_stencils, interpolate_cells
 
 UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0.1])
@@ -122,23 +122,25 @@ def test_a_grid_too_small_for_a_stencil_is_refused():
         Mesh.of(UNEVEN[:3], UNEVEN)
 
 
-@pytest.mark.parametrize("count", [2, 3, 4, 7])
-def test_levels_are_interpolated_exactly_up_to_their_degree(count):
-    levels = np.sort(np.random.default_rng(4).uniform(0.5, 1.0, count))
-    value = np.concatenate([np.linspace(levels[0], levels[-1], 41), levels])
-    gap, first, weights = level_weights(levels, value)
-    degree = min(count, 4) - 1
-    padded = np.concatenate([levels, np.zeros(4)])
-    found = (weights * padded[first[:, None] + np.arange(4)] ** degree).sum(axis=-1)
-    np.testing.assert_allclose(found, value**degree, rtol=1e-12)
-    between = gap >= 0
-    assert (~between).sum() >= count  # on a level that level alone serves
-    np.testing.assert_array_equal(weights[~between], [[1, 0, 0, 0]] * int((~between).sum()))
-    assert ((levels[gap[between]] < value[between]) & (value[between] < levels[gap[between] + 1])).all()
-    assert ((first[between] <= gap[between]) & (gap[between] + 1 < first[between] + 4)).all()
+@pytest.mark.parametrize("choice", LEVELS)
+def test_levels_are_interpolated_exactly_up_to_their_degree(choice):
+    count, below = choice
+    levels = np.sort(np.random.default_rng(4).uniform(0.5, 1.0, 7))
+    for x in np.linspace(levels[2], levels[3], 7):
+        weights = [level_weight(levels, 2 - below, count, k, x) for k in range(count)]
+        found = np.dot(weights, levels[2 - below :][:count] ** (count - 1))
+        assert found == pytest.approx(x ** (count - 1), rel=1e-12)
 
 
-def test_a_single_level_serves_itself():
-    gap, first, weights = level_weights(np.array([0.85]), [0.85])
-    assert (gap, first) == (-1, 0)
-    np.testing.assert_array_equal(weights, [[1, 0, 0, 0]])
+def test_every_choice_of_levels_holds_the_gap():
+    for count, below in LEVELS:
+        assert 0 <= below <= count - 2
+        assert count <= STENCIL
+    assert len(set(LEVELS)) == len(LEVELS)
+
+
+def test_a_level_serves_itself():
+    assert level_weight(np.array([0.85]), 0, 1, 0, 0.85) == 1.0
+    level, on_level = level_of(np.array([0.80, 0.85, 0.90]), [0.79, 0.80, 0.82, 0.85, 0.90, 0.91])
+    np.testing.assert_array_equal(level, [-1, 0, 0, 1, 2, -1])
+    np.testing.assert_array_equal(on_level, [False, True, False, True, True, False])
