@@ -40,7 +40,10 @@ FIRST = 2
 TAME = 1e-6
 """Error at the first probes above which the others and other stencils or levels are tried, there and next to it [-]."""
 
-WORTH = 2e-4
+FAIR = 1e-5
+"""The same between levels, where errors are larger and other levels help most beside creases [-]."""
+
+WORTH = 5e-5
 """Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
 
 PROBE_TOLERANCE = 1e-9
@@ -187,7 +190,7 @@ class _Grid:
             own = own[0][stand], own[1][stand]
             halfway = HALFWAY, found.peak_rotation[mine, k][stand]
             errors[k][own] = gap.errors(own, halfway)
-            wild = ~(largest_around(errors[k])[own] <= TAME)
+            wild = ~(largest_around(errors[k])[own] <= FAIR)
             own, halfway = (own[0][wild], own[1][wild]), (HALFWAY, halfway[1][wild])
             errors[k][own] = gap.choose(own, [halfway])
             promising = errors[k][own] <= WORTH
