@@ -46,6 +46,10 @@ FAIR = 1e-5
 WORTH = 5e-5
 """Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
 
+NEIGHBOURS = {"interpolation_error": 0.3, "restitution_error": 1.0, "alpha_error": 1.0}
+"""How much the errors of the cells around count [-]: a crease in one of them that reaches into a cell parts one of its
+corners, which are nodes of its stencil, from the others, and shows at its own probes; between levels it may not."""
+
 PROBE_TOLERANCE = 1e-9
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
 
@@ -284,7 +288,7 @@ def _cube(
     for name, codes in {"stencil": stencil, **levels}.items():
         variables[name] = at_corner(codes, NO_STENCIL)
     for name, error in errors.items():
-        largest = largest_around(error)
+        largest = largest_around(error, NEIGHBOURS[name])
         largest[(stencil == NO_STENCIL) | np.isinf(largest)] = np.nan
         single = largest.astype(np.float32)
         # up to the next single: what is stored is still a bound

@@ -87,14 +87,15 @@ def peak_of(value: Array, squared: Flags) -> Array:
     return np.where(squared, 1.0 - np.sqrt(np.maximum(value, 0.0)), value)
 
 
-def largest_around(errors: Array) -> Array:
-    """The largest of the errors (..., n, m) of a cell and the eight around it; nan stays nan, and only there.
+def largest_around(errors: Array, share: float = 1.0) -> Array:
+    """The largest of the errors (..., n, m) of a cell and a share of those of the eight around it.
 
-    A crease of the peak that only cuts a corner of a cell passes the points of its neighbours.
+    nan stays nan, and only there. A crease of the peak that only cuts a corner of a cell passes the points of its
+    neighbours.
     """
     n, m = errors.shape[-2:]
     outside = [(0, 0)] * (errors.ndim - 2) + [(1, 1), (1, 1)]
-    around = np.pad(errors, outside, constant_values=np.nan)
+    around = np.pad(share * errors, outside, constant_values=np.nan)
     largest = errors.copy()
     for i in range(3):
         for j in range(3):
