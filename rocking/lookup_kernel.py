@@ -83,7 +83,7 @@ def interpolate_many(
         if i < 0 or j < 0 or layer < 0:
             continue
         kind, impacts = 0, -2
-        peak, value, squares, forms = 0.0, 0.0, 0, 0
+        peak, value, squared_all = 0.0, 0.0, True
         in_cells, between_etas, between_angles = 0.0, 0.0, 0.0
         first_angle, count_angles = layer, 1
         if not on_angle[point]:
@@ -104,6 +104,7 @@ def interpolate_many(
                 break
             layer = first_angle + a
             by_angle = level_weight(angles, first_angle, count_angles, a, angle[point])
+            layer_peak, layer_value, layer_squared = 0.0, 0.0, True
             first_eta, count_etas = LOWER, 1
             if not on_eta:
                 choice = cubes.restitution_levels[LOWER][layer, i, j]
@@ -132,10 +133,14 @@ def interpolate_many(
                     squared = code >= SQUARED
                     shift = code - SQUARED if squared else code
                     here_value = in_cell(cubes.peak_rotation[e][layer], i, j, shift, squared, x[point], y[point], mesh)
-                    weight = by_angle * level_weight(etas, first_eta, count_etas, b, eta[point])
-                    value += weight * here_value
-                    peak += weight * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
-                    squares, forms = squares + int(squared), forms + 1
+                    weight = level_weight(etas, first_eta, count_etas, b, eta[point])
+                    layer_value += weight * here_value
+                    layer_peak += weight * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
+                    layer_squared = layer_squared and squared
+            # (1 - peak)^2 where all have it, as it was when the errors were measured, see `sweep_gap`
+            value += by_angle * layer_value
+            peak += by_angle * (1.0 - np.sqrt(max(layer_value, 0.0)) if layer_squared else layer_peak)
+            squared_all = squared_all and layer_squared
         if not agree:
             continue
         found = answers[point]
@@ -144,4 +149,4 @@ def interpolate_many(
         found.impacts = impacts
         found.overturned = kind < 0
         found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1
-        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if 0 < squares == forms else peak  # as `sweep_gap.Gap.errors`
+        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if squared_all else peak

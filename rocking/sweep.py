@@ -46,6 +46,9 @@ FAIR = 1e-5
 WORTH = 5e-5
 """Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
 
+CHOSEN = 2.0
+"""Factor on the errors of levels that were chosen by them [-]: the best of six at three points flatters itself."""
+
 NEIGHBOURS = {"interpolation_error": 0.3, "restitution_error": 1.0, "alpha_error": 1.0}
 """How much the errors of the cells around count [-]: a crease in one of them that reaches into a cell parts one of its
 corners, which are nodes of its stencil, from the others, and shows at its own probes; between levels it may not."""
@@ -201,7 +204,7 @@ class _Grid:
             gap.choice[own[0][~promising], own[1][~promising]] = NO_STENCIL
             own, halfway = (own[0][promising], own[1][promising]), (HALFWAY, halfway[1][promising])
             more = [(place, self._peaks_at(place, own, k, asked)) for place in ELSEWHERE]
-            errors[k][own] = gap.choose(own, [halfway, *more])
+            errors[k][own] = CHOSEN * gap.choose(own, [halfway, *more])
         return errors
 
     def _peaks_at(self, place: Place, cells: Cells, k: int, asked: Asked) -> Array:
@@ -284,14 +287,13 @@ def _cube(
     def at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
         return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
 
-    stencil = np.stack([layer.stencil for layer in layers])
-    for name, codes in {"stencil": stencil, **levels}.items():
-        variables[name] = at_corner(codes, NO_STENCIL)
-    for name, error in errors.items():
-        largest = largest_around(error, NEIGHBOURS[name])
-        largest[(stencil == NO_STENCIL) | np.isinf(largest)] = np.nan
+    codes = {"stencil": np.stack([layer.stencil for layer in layers]), **levels}
+    for (name, code), (measured, error) in zip(codes.items(), errors.items(), strict=True):
+        variables[name] = at_corner(code, NO_STENCIL)
+        largest = largest_around(error, NEIGHBOURS[measured])
+        largest[(code == NO_STENCIL) | np.isinf(largest)] = np.nan
         single = largest.astype(np.float32)
         # up to the next single: what is stored is still a bound
         above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
-        variables[name] = at_corner(above, np.nan)
+        variables[measured] = at_corner(above, np.nan)
     return build_spectrum_dataset(variables, pulse=pulse, restitution=eta, axes=axes)

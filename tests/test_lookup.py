@@ -12,8 +12,9 @@ import rocking.lookup
 from rocking.boundary import overturning_boundary
 from rocking.boundary_cells import crossed_cells
 from rocking.bounded_response import SOLVER_ERROR, solve_with_bound
-from rocking.cube import read_spectrum, write_dataset
+from rocking.cube import NO_STENCIL, read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
+from rocking.interpolation import LEVELS
 from rocking.lookup import SAFETY
 from rocking.lookup_open import open_cube
 from rocking.response import Outcome
@@ -89,6 +90,35 @@ def test_a_cube_that_was_made_with_another_neighbour_is_not_interpolated_towards
     question = {"slenderness": 0.4, "frequency_ratio": 9.0, "restitution": 0.82}
     assert open_cube(folder).response(**question).source == "cube"
     assert open_cube(tmp_path).response(**question).source == "solver"
+
+
+def test_only_questions_that_need_a_missing_cube_go_without(folder, tmp_path):
+    for eta in ETAS[:-1]:
+        shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)
+    question = {"slenderness": 0.4, "frequency_ratio": 9.0}
+    whole, part = open_cube(folder), open_cube(tmp_path)
+    assert part.response(**question, restitution=0.87).source == "cube"  # from 0.83, 0.85, 0.88, 0.90
+    assert whole.response(**question, restitution=0.89).source == "cube"
+    assert part.response(**question, restitution=0.89).source == "solver"  # 0.94 is missing
+    assert whole.used(np.array([0.80, 0.86])) == [0, 1, 2, 3, 4, 5]
+    assert whole.used(np.array([0.83])) == [1]
+
+
+def test_cubes_say_which_levels_serve(folder):
+    cubes = [read_spectrum(folder / f"eta-{eta:.2f}.nc") for eta in ETAS]
+    for name, axis in (("restitution", ETAS), ("alpha", ANGLES)):
+        codes = np.array([cube[f"{name}_levels"].values[:, :-1, :-1] for cube in cubes])
+        errors = np.array([cube[f"{name}_error"].values[:, :-1, :-1] for cube in cubes])
+        if name == "alpha":
+            codes, errors = codes.swapaxes(0, 1), errors.swapaxes(0, 1)
+        assert (codes[-1] == NO_STENCIL).all()  # nothing lies above the last
+        assert np.isnan(errors[codes == NO_STENCIL]).all()
+        assert np.isfinite(errors).any()
+        assert len(np.unique(codes)) > 4  # boundaries and creases leave now these and now those
+        for lower, gap in enumerate(codes):
+            for code in set(gap[gap >= 0].tolist()):
+                count, below = LEVELS[code]
+                assert 0 <= lower - below <= axis.size - count
 
 
 @pytest.mark.parametrize(

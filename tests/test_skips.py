@@ -23,7 +23,7 @@ NO_ROUNDS = 0
         (lambda: [skip_grids.precision(32, NO_ROUNDS)], {"all digits": 10}),
         (lambda: skip_grids.shared_tracing(31, NO_ROUNDS), {"first": 11, "boundaries": 11}),
         (lambda: skip_grids.tracing(61, NO_ROUNDS), {"points": 2}),
-        (lambda: skip_grids.probes(NO_ROUNDS), {"probes": 1.5, "centres": 1.3}),
+        (lambda: skip_grids.probes(NO_ROUNDS), {"probes": 1.5, "between": 3}),
     ],
     ids=["motion", "first flights", "digits", "boundaries", "tracing", "cubes"],
 )
