@@ -53,13 +53,13 @@ NEIGHBOURS = {"interpolation_error": 0.3, "restitution_error": 1.0, "alpha_error
 """How much the errors of the cells around count [-]: a crease in one of them that reaches into a cell parts one of its
 corners, which are nodes of its stencil, from the others, and shows at its own probes; between levels it may not."""
 
-PROBE_TOLERANCE = 1e-9
+PROBE_TOLERANCE = 1e-8
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
 
 APART = {"restitution": 0.1, "alpha": np.radians(25.0)}
 """Levels farther apart are not interpolated between: one look in the middle would not tell enough [-, rad]."""
 
-TOGETHER = 11
+TOGETHER = 12
 """Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
 
 

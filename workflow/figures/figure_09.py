@@ -10,21 +10,27 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from rocking.block import STANDARD_GRAVITY, Block
 from rocking.boundary_amplitude import critical_amplitude
-from rocking.cube import read_spectrum
+from rocking.cube import read_dataset
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
-from rocking.response import Outcome
+from rocking.solve import peak_response
 from workflow.figures.boundary_lines import line_variables, lines_of
 from workflow.figures.dimensional import Shaken
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+
+Floats = NDArray[np.float64]
 
 HIGHEST = 12.0
 """Largest amplitude a shown [-], as in figure 4."""
 
 WIDEST = {"sine": 7.2, "cosine": 4.5}
 """Largest frequency ratio shown, beyond the tip of the loop [-]."""
+
+FEWEST, NODES = 0.2, 301
+"""Smallest frequency ratio shown, and nodes in each direction on which blocks are asked whether they come back [-]."""
 
 STEP = 1e-6
 """Relative step off a threshold at which the block is integrated with its dimensions [-]."""
@@ -34,7 +40,6 @@ COLOURS = (BLUE, VERMILION)
 
 def data(
     *,
-    cubes: Sequence[Path],
     boundaries: Sequence[Path],
     alpha_deg: float,
     half_diagonal: Sequence[float],
@@ -45,8 +50,8 @@ def data(
 
     Parameters
     ----------
-    cubes, boundaries : sequences of paths
-        Spectrum cubes and overturning boundaries of this restitution, one of each for each pulse.
+    boundaries : sequence of paths
+        Overturning boundaries of this restitution, one for each pulse.
     alpha_deg : float
         Slenderness angle [deg] of all blocks.
     half_diagonal : sequence
@@ -57,8 +62,7 @@ def data(
         T_p [s] at which thresholds are found and checked.
     """
     alpha = float(np.radians(alpha_deg))
-    opened = [read_spectrum(path).sel(alpha=alpha, method="nearest", tolerance=1e-9) for path in cubes]
-    pulses = [cube.pulse.attrs["pulse_name"] for cube in opened]
+    pulses = [read_dataset(path).pulse.attrs["pulse_name"] for path in boundaries]
     blocks = [Block.from_slenderness_angle(alpha, R) for R in half_diagonal]
     rows = [
         {"pulse": i, "block": j, "period": period, **row}
@@ -67,7 +71,9 @@ def data(
         for period in pulse_period
         for row in thresholds(pulse, block, period, restitution)
     ]
-    back = [(cube.exceeded_alpha.values == 1) & (cube.outcome.values == Outcome.SAFE) for cube in opened]
+    slenderness = 1 / np.geomspace(HIGHEST, 1, NODES)
+    frequency_ratio = np.geomspace(FEWEST, max(WIDEST.values()), NODES)
+    back = [brought_back(pulse, slenderness, frequency_ratio, restitution, alpha) for pulse in pulses]
     names = {
         "pulse": ("index of the pulse", "1"),
         "block": ("index of the block", "1"),
@@ -96,8 +102,8 @@ def data(
             ),
         },
         coords={
-            "slenderness": opened[0].slenderness.variable,
-            "frequency_ratio": opened[0].frequency_ratio.variable,
+            "slenderness": plotted("slenderness", slenderness, "dimensionless slenderness 1/a"),
+            "frequency_ratio": plotted("frequency_ratio", frequency_ratio, "frequency ratio omega_g/p"),
             "half_diagonal": plotted("block", half_diagonal, "half diagonal R", units="m"),
         },
         attrs={
@@ -110,6 +116,16 @@ def data(
             "step": STEP,
         },
     )
+
+
+def brought_back(
+    pulse: str, slenderness: Floats, frequency_ratio: Floats, restitution: float, alpha: float
+) -> NDArray[np.bool_]:
+    """Whether blocks on a grid pass alpha and stand: shape (slenderness, frequency_ratio)."""
+    found = peak_response(
+        pulse, slenderness=slenderness[:, None], frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha
+    )
+    return found.exceeded_alpha & ~found.overturned
 
 
 def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float) -> Iterator[dict[str, Any]]:
@@ -169,8 +185,8 @@ def draw(data: xr.Dataset) -> Figure:
         top.set_title(f"{pulse} pulse")
         top.set_xlabel(r"pulse frequency $1/T_p$ [Hz]")
         bottom.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
-        bottom.set_xlim(0.2, WIDEST[pulse])
-        top.set_xlim(0.2 * p.min() / (2 * np.pi), WIDEST[pulse] * p.max() / (2 * np.pi))
+        bottom.set_xlim(FEWEST, WIDEST[pulse])
+        top.set_xlim(FEWEST * p.min() / (2 * np.pi), WIDEST[pulse] * p.max() / (2 * np.pi))
     for (ax, _), scale in zip(axes, (uplift, 1.0), strict=True):
         ax.set_yscale("log")
         ax.set_ylim(scale, HIGHEST * scale)

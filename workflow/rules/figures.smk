@@ -6,8 +6,7 @@ FIGURE_INPUTS = {
     "figure-04": {"boundaries": overturning_files("sine", restitutions("figure-04"))},
     "figure-08": {pulse: spectrum_files(pulse, restitutions("figure-08")) for pulse in ("sine", "cosine")},
     "figure-09": {
-        kind: [files(pulse, restitutions("figure-09"))[0] for pulse in ("sine", "cosine")]
-        for kind, files in {"cubes": spectrum_files, "boundaries": overturning_files}.items()
+        "boundaries": [overturning_files(pulse, restitutions("figure-09"))[0] for pulse in ("sine", "cosine")]
     },
     "figure-10": {pulse: overturning_files(pulse, restitutions("figure-10"))[0] for pulse in ("sine", "cosine")},
     "figure-13": {pulse: spectrum_files(pulse, restitutions("figure-13"))[0] for pulse in ("sine", "cosine")},
