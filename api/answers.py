@@ -27,7 +27,10 @@ _IMPACTS = Field(
     "answers whose nodes there differ"
 )
 _EXCEEDED = Field(description="|theta| passed alpha at some time; the ground can bring a block back from there")
-_DATA = Field(description="sha256 of the data set that answered; null if the solver did")
+_DATA = Field(
+    description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
+    "solver did"
+)
 
 
 class ResponseAnswer(BaseModel):

@@ -113,8 +113,8 @@ def level_of(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray
     """The level at or below each value, -1 outside of them; and whether the value is that level."""
     value = np.asarray(value, dtype=np.float64)
     below = np.searchsorted(levels, value, side="right") - 1
-    inside = (below >= 0) & (value <= levels[-1])
-    return np.where(inside, below, -1), inside & (levels[np.maximum(below, 0)] == value)
+    on_level = np.append(levels, np.nan)[below] == value  # -1 finds nan, which equals nothing
+    return np.where((below < levels.size - 1) | on_level, below, -1), on_level
 
 
 @kernel

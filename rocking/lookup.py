@@ -122,12 +122,13 @@ class Cube:
         return answer.reshape(shape)
 
     def used(self, restitution: Array) -> list[int]:
-        """Indices of the cubes that may serve some of the restitutions."""
+        """Indices of the cubes that may serve some of the restitutions: first those at or below one, then others."""
         lower, on_level = level_of(self.restitutions, restitution)
-        serve = {int(k) for k in lower[on_level]}
-        for k in set(lower[~on_level & (lower >= 0)].tolist()):
-            serve.update(range(max(0, k - LOWER), min(self.restitutions.size, k - LOWER + AROUND)))
-        return sorted(serve)
+        below = lower >= 0
+        serve = dict.fromkeys(np.flatnonzero(np.bincount(lower[below])).tolist())
+        for k in np.flatnonzero(np.bincount(lower[below & ~on_level])).tolist():
+            serve |= dict.fromkeys(range(max(0, k - LOWER), min(self.restitutions.size, k - LOWER + AROUND)))
+        return list(serve)
 
     def promised(self, points: Points, limit: float) -> tuple[Flags, BoundedResponse]:
         """Where the cubes keep to the limit (points,), and what they answer there."""

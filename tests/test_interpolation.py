@@ -144,3 +144,6 @@ def test_a_level_serves_itself():
     level, on_level = level_of(np.array([0.80, 0.85, 0.90]), [0.79, 0.80, 0.82, 0.85, 0.90, 0.91])
     np.testing.assert_array_equal(level, [-1, 0, 0, 1, 2, -1])
     np.testing.assert_array_equal(on_level, [False, True, False, True, True, False])
+    level, on_level = level_of(np.empty(0), [0.8, 0.9])
+    np.testing.assert_array_equal(level, [-1, -1])
+    assert not on_level.any()

@@ -100,8 +100,8 @@ def test_only_questions_that_need_a_missing_cube_go_without(folder, tmp_path):
     assert part.response(**question, restitution=0.87).source == "cube"  # from 0.83, 0.85, 0.88, 0.90
     assert whole.response(**question, restitution=0.89).source == "cube"
     assert part.response(**question, restitution=0.89).source == "solver"  # 0.94 is missing
-    assert whole.used(np.array([0.80, 0.86])) == [0, 1, 2, 3, 4, 5]
-    assert whole.used(np.array([0.83])) == [1]
+    assert whole.used(np.array([0.86, 0.81, 0.99])) == [0, 2, 1, 3, 4, 5]
+    assert whole.used(np.array([0.83, 0.79])) == [1]
 
 
 def test_cubes_say_which_levels_serve(folder):

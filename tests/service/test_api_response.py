@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from rocking.cube import write_dataset
 from rocking.response import Outcome
 from rocking.solve import peak_response
+from rocking.sweep import spectra
 from tests.service.conftest import assert_problem, client_of
 
 QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
@@ -28,6 +30,19 @@ def test_an_answer_from_a_cube(client):
     assert answer["query"] == QUESTION | {"alpha_deg": None, "method": "auto", "tolerance": 1e-4}
     stored = client.get("/v1/datasets/spectra/sine/eta-0.85").json()
     assert answer["data_version"] == stored["sha256"]
+
+
+def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
+    window = {"slenderness": np.linspace(0.5, 0.7, 41), "frequency_ratio": np.geomspace(5.0, 8.0, 31)}
+    for cube in spectra("sine", restitution=[0.82, 0.84, 0.86, 0.88, 0.90], **window):
+        write_dataset(cube, tmp_path / "spectra" / "sine" / f"eta-{float(cube.restitution):.2f}.nc")
+    with client_of(tmp_path) as client:
+        answer = ask(client, restitution=0.87).json()
+        below = client.get("/v1/datasets/spectra/sine/eta-0.86").json()
+    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.87)
+    assert answer["source"] == "cube"
+    assert answer["data_version"] == below["sha256"]
+    assert abs(answer["peak_rotation"] - truth.peak_rotation) <= answer["error_bound"] <= 1e-4
 
 
 def test_an_answer_from_the_solver_is_the_solver_s(client):
