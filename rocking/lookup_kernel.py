@@ -22,6 +22,10 @@ GAP_SHARE = 0.7
 """Weight of the errors between levels beside those within cells [-]: they are measured where they are largest, in the
 middle of the gap, and the safety factor is made for those within cells, which creases can pass by."""
 
+WORST_SHARE = 0.5
+"""Share of the largest of the errors within cells that counts, however little the cell weighs [-]: what makes it large,
+as a crease does, may lie closer at the levels between."""
+
 _OVERTURNED = int(Outcome.OVERTURNED_DIRECTLY)
 
 
@@ -84,7 +88,8 @@ def interpolate_many(
             continue
         kind, impacts = 0, -2
         peak, value, squared_all = 0.0, 0.0, True
-        in_cells, between_etas, between_angles = 0.0, 0.0, 0.0
+        # the errors of what is interpolated further go on with the sizes of the weights: levels may lie unevenly
+        in_cells, worst, between_etas, between_angles = 0.0, 0.0, 0.0, 0.0
         first_angle, count_angles = layer, 1
         if not on_angle[point]:
             choice = cubes.alpha_levels[LOWER][layer, i, j]
@@ -113,7 +118,7 @@ def interpolate_many(
                     agree = False
                     break
                 count_etas, first_eta = LEVELS[choice][0], LOWER - LEVELS[choice][1]
-                between_etas = max(between_etas, error)
+                between_etas += abs(by_angle) * error
             for b in range(count_etas):
                 e = first_eta + b
                 if not usable[e]:
@@ -127,13 +132,14 @@ def interpolate_many(
                 agree = here != 0 and (kind == 0 or kind == here) and not np.isnan(error)
                 if not agree:
                     break
-                kind, in_cells = here, max(in_cells, error)
+                kind, weight = here, level_weight(etas, first_eta, count_etas, b, eta[point])
+                in_cells += abs(by_angle * weight) * error
+                worst = max(worst, error)
                 impacts = common_impacts(cubes, layer, e, i, j, impacts)
                 if kind > 0:
                     squared = code >= SQUARED
                     shift = code - SQUARED if squared else code
                     here_value = in_cell(cubes.peak_rotation[e][layer], i, j, shift, squared, x[point], y[point], mesh)
-                    weight = level_weight(etas, first_eta, count_etas, b, eta[point])
                     layer_value += weight * here_value
                     layer_peak += weight * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
                     layer_squared = layer_squared and squared
@@ -145,7 +151,7 @@ def interpolate_many(
             continue
         found = answers[point]
         found.known = True
-        found.error = in_cells + GAP_SHARE * (between_etas + between_angles)
+        found.error = max(in_cells, WORST_SHARE * worst) + GAP_SHARE * (between_etas + between_angles)
         found.impacts = impacts
         found.overturned = kind < 0
         found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1
