@@ -139,6 +139,23 @@ def test_levels_far_apart_are_not_interpolated_between(tmp_path, etas, angles, a
         cube.response(**place, **asked, method="cube")
 
 
+def test_bounds_hold_between_levels_that_lie_unevenly(tmp_path):
+    """Beyond the dense ones the weights of the angles are large, and of both signs."""
+    coarse = {"slenderness": np.linspace(0.2, 0.35, 7), "frequency_ratio": np.geomspace(9.0, 27.0, 20)}
+    etas, angles = [0.5, 0.6, 0.7, 0.8], np.radians([10.0, 15.0, 20.0, 45.0])
+    for cube in spectra("cosine", restitution=etas, alpha=angles, **coarse):
+        write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
+    rng, n = np.random.default_rng(3), 20_000
+    asked = {"slenderness": rng.uniform(0.2, 0.35, n), "frequency_ratio": rng.uniform(9.0, 27.0, n)}
+    asked |= {"restitution": rng.uniform(0.5, 0.8, n), "alpha": rng.uniform(angles[2], angles[3], n)}
+    found = open_cube(tmp_path).response(**asked, tolerance=1e-2)
+    truth = peak_response("cosine", **asked)
+    from_cube = found.source == "cube"
+    assert from_cube.mean() > 0.5
+    np.testing.assert_array_equal(found.overturned, truth.overturned)
+    assert (np.abs(found.peak_rotation - truth.peak_rotation) <= found.error_bound)[from_cube].all()
+
+
 def test_several_cubes_want_to_know_the_restitution(folder):
     with pytest.raises(InvalidArgumentError, match="restitution"):
         open_cube(folder).response(slenderness=0.4, frequency_ratio=9.0)
