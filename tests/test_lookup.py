@@ -1,6 +1,5 @@
 """Answers from a cube: the right fate, a bound that holds, and the solver wherever the cube cannot promise."""
 
-import shutil
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
@@ -10,28 +9,18 @@ import pytest
 
 import rocking.lookup
 from rocking.boundary import overturning_boundary
-from rocking.boundary_cells import crossed_cells
 from rocking.bounded_response import SOLVER_ERROR, solve_with_bound
-from rocking.cube import NO_STENCIL, read_spectrum, write_dataset
+from rocking.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.interpolation import LEVELS
 from rocking.lookup import SAFETY
 from rocking.lookup_open import open_cube
 from rocking.response import Outcome
 from rocking.solve import peak_response
-from rocking.sweep import spectra, spectrum
+from rocking.sweep import spectrum
 from rocking.sweep_layer import largest_around
+from tests.lookup_grid import GRID, crossed, questions
 
 ETA = 0.85
-GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomspace(0.5, 12.0, 91)}
-ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 5.0, 10.0, 15.0, 20.0])
-
-
-def crossed(eta, alpha):
-    """Cells that a boundary crosses."""
-    curves = overturning_boundary("sine", restitution=eta, alpha=alpha or None, nodes=101)
-    curves["alpha"] = "curve", np.full(curves.sizes["curve"], alpha)
-    return crossed_cells(curves, alpha, *GRID.values())
 
 
 @pytest.fixture(scope="module")
@@ -45,122 +34,6 @@ def path(tmp_path_factory):
 @pytest.fixture(scope="module")
 def cube(path):
     return open_cube(path)
-
-
-def questions(count, seed=5):
-    rng = np.random.default_rng(seed)
-    frequency_ratio = np.exp(rng.uniform(np.log(0.5), np.log(12.0), count))
-    return {"slenderness": rng.uniform(0.05, 0.95, count), "frequency_ratio": frequency_ratio}
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """Cubes of several restitutions and angles."""
-    folder = tmp_path_factory.mktemp("sine")
-    barred = np.array([[crossed(eta, float(alpha)) for alpha in ANGLES] for eta in ETAS])
-    for cube in spectra("sine", restitution=ETAS, alpha=ANGLES, barred=barred, **GRID):
-        write_dataset(cube, folder / f"eta-{float(cube.restitution):.2f}.nc")
-    return folder
-
-
-@pytest.mark.parametrize(("between_etas", "between_angles"), [(False, True), (True, False), (True, True)])
-def test_restitution_and_angle_are_interpolated_too(folder, between_etas, between_angles):
-    rng = np.random.default_rng(8)
-    asked = questions(20_000, seed=9)
-    n = len(asked["slenderness"])
-    asked["restitution"] = rng.uniform(ETAS[0], ETAS[-1], n) if between_etas else rng.choice(ETAS, n)
-    asked["alpha"] = rng.uniform(ANGLES[0], ANGLES[-1], n) if between_angles else rng.choice(ANGLES, n)
-    cube = open_cube(folder)
-    for tolerance, share in ((1e-4, 0.6), (1e-6, 0.45)):
-        found = cube.response(**asked, tolerance=tolerance)
-        truth = peak_response("sine", **asked)
-        from_cube = found.source == "cube"
-        assert from_cube.mean() > share
-        np.testing.assert_array_equal(found.outcome, truth.outcome)
-        np.testing.assert_array_equal(found.exceeded_alpha, truth.exceeded_alpha)
-        stands = from_cube & ~truth.overturned
-        error = np.abs(found.peak_rotation - truth.peak_rotation)[stands]
-        assert (error <= found.error_bound[stands]).all()
-        assert (found.error_bound[stands] <= tolerance).all()
-
-
-def test_a_cube_that_was_made_with_another_neighbour_is_not_interpolated_towards_it(folder, tmp_path):
-    for eta in (0.80, 0.85, 0.88, 0.90, 0.94):  # 0.83 is missing
-        shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)
-    question = {"slenderness": 0.4, "frequency_ratio": 9.0, "restitution": 0.82}
-    assert open_cube(folder).response(**question).source == "cube"
-    assert open_cube(tmp_path).response(**question).source == "solver"
-
-
-def test_only_questions_that_need_a_missing_cube_go_without(folder, tmp_path):
-    for eta in ETAS[:-1]:
-        shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)
-    question = {"slenderness": 0.4, "frequency_ratio": 9.0}
-    whole, part = open_cube(folder), open_cube(tmp_path)
-    assert part.response(**question, restitution=0.87).source == "cube"  # from 0.83, 0.85, 0.88, 0.90
-    assert whole.response(**question, restitution=0.89).source == "cube"
-    assert part.response(**question, restitution=0.89).source == "solver"  # 0.94 is missing
-    assert whole.used(np.array([0.86, 0.81, 0.99])) == [0, 2, 1, 3, 4, 5]
-    assert whole.used(np.array([0.83, 0.79])) == [1]
-
-
-def test_cubes_say_which_levels_serve(folder):
-    cubes = [read_spectrum(folder / f"eta-{eta:.2f}.nc") for eta in ETAS]
-    for name, axis in (("restitution", ETAS), ("alpha", ANGLES)):
-        codes = np.array([cube[f"{name}_levels"].values[:, :-1, :-1] for cube in cubes])
-        errors = np.array([cube[f"{name}_error"].values[:, :-1, :-1] for cube in cubes])
-        if name == "alpha":
-            codes, errors = codes.swapaxes(0, 1), errors.swapaxes(0, 1)
-        assert (codes[-1] == NO_STENCIL).all()  # nothing lies above the last
-        assert np.isnan(errors[codes == NO_STENCIL]).all()
-        assert np.isfinite(errors).any()
-        assert len(np.unique(codes)) > 4  # boundaries and creases leave now these and now those
-        for lower, gap in enumerate(codes):
-            for code in set(gap[gap >= 0].tolist()):
-                count, below = LEVELS[code]
-                assert 0 <= lower - below <= axis.size - count
-
-
-@pytest.mark.parametrize(
-    ("etas", "angles", "asked"),
-    [
-        ([0.50, 0.62, 0.70], [0.0, 0.3], {"restitution": 0.6, "alpha": 0.0}),
-        ([0.50, 0.60, 0.70], [0.0, 0.5], {"restitution": 0.6, "alpha": 0.2}),
-    ],
-)
-def test_levels_far_apart_are_not_interpolated_between(tmp_path, etas, angles, asked):
-    coarse = {"slenderness": np.linspace(0.3, 0.6, 13), "frequency_ratio": np.geomspace(8.0, 12.0, 13)}
-    for cube in spectra("sine", restitution=etas, alpha=angles, **coarse):
-        write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
-    cube, place = open_cube(tmp_path), {"slenderness": 0.46, "frequency_ratio": 10.1, "tolerance": 1e-2}
-    assert cube.response(**place, **asked).source == "solver"
-    assert cube.response(**place, restitution=0.66, alpha=0.0).source == "cube"
-    with pytest.raises(OutsideCubeError, match="too far apart"):
-        cube.response(**place, **asked, method="cube")
-
-
-def test_bounds_hold_between_levels_that_lie_unevenly(tmp_path):
-    """Beyond the dense ones the weights of the angles are large, and of both signs."""
-    coarse = {"slenderness": np.linspace(0.2, 0.35, 7), "frequency_ratio": np.geomspace(9.0, 27.0, 20)}
-    etas, angles = [0.5, 0.6, 0.7, 0.8], np.radians([10.0, 15.0, 20.0, 45.0])
-    for cube in spectra("cosine", restitution=etas, alpha=angles, **coarse):
-        write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
-    rng, n = np.random.default_rng(3), 20_000
-    asked = {"slenderness": rng.uniform(0.2, 0.35, n), "frequency_ratio": rng.uniform(9.0, 27.0, n)}
-    asked |= {"restitution": rng.uniform(0.5, 0.8, n), "alpha": rng.uniform(angles[2], angles[3], n)}
-    found = open_cube(tmp_path).response(**asked, tolerance=1e-2)
-    truth = peak_response("cosine", **asked)
-    from_cube = found.source == "cube"
-    assert from_cube.mean() > 0.5
-    np.testing.assert_array_equal(found.overturned, truth.overturned)
-    assert (np.abs(found.peak_rotation - truth.peak_rotation) <= found.error_bound)[from_cube].all()
-
-
-def test_several_cubes_want_to_know_the_restitution(folder):
-    with pytest.raises(InvalidArgumentError, match="restitution"):
-        open_cube(folder).response(slenderness=0.4, frequency_ratio=9.0)
-    with pytest.raises(OutsideCubeError, match=r"0\.80, 0\.94"):
-        open_cube(folder).response(slenderness=0.4, frequency_ratio=9.0, restitution=0.99, method="cube")
 
 
 def test_a_cube_is_opened_by_its_address_too(path):
@@ -177,15 +50,6 @@ def test_a_cube_is_opened_by_its_address_too(path):
     finally:
         server.shutdown()
         server.server_close()
-
-
-def test_folders_that_hold_no_cubes_or_unlike_ones_are_refused(folder, path, tmp_path):
-    with pytest.raises(DatasetError, match="no spectrum cubes"):
-        open_cube(tmp_path)
-    shutil.copy(folder / "eta-0.80.nc", tmp_path)
-    shutil.copy(path, tmp_path / "eta-0.85.nc")
-    with pytest.raises(DatasetError, match="different pulses or grids"):
-        open_cube(tmp_path)
 
 
 def test_no_cell_that_a_boundary_crosses_is_interpolated(path):

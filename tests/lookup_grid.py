@@ -1,0 +1,21 @@
+"""A small grid for the tests of lookup: its nodes, the cells that boundaries cross, random questions over it."""
+
+import numpy as np
+
+from rocking.boundary import overturning_boundary
+from rocking.boundary_cells import crossed_cells
+
+GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomspace(0.5, 12.0, 91)}
+
+
+def crossed(eta, alpha):
+    """Cells that a boundary crosses."""
+    curves = overturning_boundary("sine", restitution=eta, alpha=alpha or None, nodes=101)
+    curves["alpha"] = "curve", np.full(curves.sizes["curve"], alpha)
+    return crossed_cells(curves, alpha, *GRID.values())
+
+
+def questions(count, seed=5):
+    rng = np.random.default_rng(seed)
+    frequency_ratio = np.exp(rng.uniform(np.log(0.5), np.log(12.0), count))
+    return {"slenderness": rng.uniform(0.05, 0.95, count), "frequency_ratio": frequency_ratio}
