@@ -110,11 +110,14 @@ class BlockAnswer(BaseModel):
     frequency_parameter: float = Field(description="p [rad/s]")
     restitution: float = Field(description="eta [-]")
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
-    thresholds: list[Threshold] = Field(description="all amplitudes at which the fate changes, this period, ascending")
+    thresholds: list[Threshold] | None = Field(
+        description="all amplitudes at which the fate changes, this period, ascending; null if they were not found in "
+        "time, which `warnings` tells"
+    )
     largest_safe_acceleration: float | None = Field(
         description="amplitude below which no block of this shape falls at this period [m/s2]; null: none found"
     )
-    margins: Margins
+    margins: Margins | None = Field(description="null if they were not found in time, which `warnings` tells")
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"
     )

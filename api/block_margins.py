@@ -6,6 +6,7 @@ import math
 
 from api.block_answers import BlockQuestion, Margins, PeriodThreshold, SizeThreshold
 from api.questions import FREQUENCY_RATIOS, ResponseQuestion
+from api.workshop import attempt
 from rocking.block import Block
 from rocking.boundary_frequency import critical_frequency_ratio
 
@@ -13,17 +14,19 @@ REACH = 10.0
 """Periods from a tenth to ten times that of the pulse, sizes from a hundredth to a hundred times that of the block."""
 
 
-def margins_of(question: BlockQuestion, block: Block, asked: ResponseQuestion, accelerations: list[float]) -> Margins:
-    """Nearest changes of fate; `accelerations` are the amplitudes at which it changes [m/s2]."""
+def margins_of(
+    question: BlockQuestion, block: Block, asked: ResponseQuestion, accelerations: list[float], seconds: float
+) -> Margins | None:
+    """Nearest changes of fate; `accelerations` are the amplitudes at which it changes [m/s2].
+
+    None if the periods at which it does were not found in that time [s].
+    """
     omega = asked.frequency_ratio
     low, high = max(omega / REACH, FREQUENCY_RATIOS[0]), min(omega * REACH, FREQUENCY_RATIOS[1])
-    found = critical_frequency_ratio(
-        question.pulse,
-        slenderness=asked.slenderness,
-        restitution=asked.restitution,
-        alpha=block.alpha,
-        window=(low, high),
-    )
+    groups = {"slenderness": asked.slenderness, "restitution": asked.restitution, "alpha": block.alpha}
+    found = attempt(lambda: critical_frequency_ratio(question.pulse, **groups, window=(low, high)), seconds)
+    if found is None:
+        return None
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))
 
     def period(ratio: float) -> float:

@@ -26,9 +26,10 @@ class BusyError(RuntimeError):
 
 
 class TimeLimitError(RuntimeError):
-    """The work takes longer than the service grants."""
+    """The work takes longer than the service grants, or than a `Leave` for a part of it does."""
 
-    def __init__(self, seconds: float) -> None:
+    def __init__(self, seconds: float, leave: Leave | None = None) -> None:
+        self.leave = leave
         super().__init__(f"the answer takes longer than the {seconds:g} s that a request is granted; ask for less")
 
 
@@ -63,7 +64,7 @@ class Leave:
         if self._withdrawn:
             raise ClientDisconnect
         if time.monotonic() > self._until:
-            raise TimeLimitError(self._seconds)
+            raise TimeLimitError(self._seconds, self)
 
 
 class Workshop:
@@ -147,6 +148,27 @@ def _watched(work: Callable[[], T], leave: Leave) -> T:
         return work()
     finally:
         sys.setprofile(None)
+
+
+def attempt(work: Callable[[], T], seconds: float) -> T | None:
+    """Do a part of the work of this thread within some time [s]; None if that was not enough."""
+    leave, outer = Leave(seconds), sys.getprofile()
+
+    def look(frame: FrameType, event: Any, argument: Any) -> None:
+        if outer is not None:
+            outer(frame, event, argument)
+        if event == "call" and frame.f_globals.get("__name__", "").startswith("rocking."):
+            leave.ask()
+
+    sys.setprofile(look)
+    try:
+        return work()
+    except TimeLimitError as error:
+        if error.leave is not leave:
+            raise
+        return None
+    finally:
+        sys.setprofile(outer)
 
 
 async def _gone(request: Request) -> None:

@@ -23,6 +23,9 @@ RESOLUTION = 1e-12
 ROUNDS = 32
 """Times that brackets on a line are shrunk: each may uncover a further fate between the two at its ends."""
 
+AT_ONCE = 128
+"""Points of a line asked together: a search can be given up between them, and an elastic block may take a second."""
+
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
 Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
@@ -100,7 +103,8 @@ def fates_along(
         return places
 
     grid = nodes
-    codes, _ = classify(*points(grid).T)
+    parts = np.array_split(points(grid), -(-grid.size // AT_ONCE))
+    codes = np.concatenate([classify(*part.T)[0] for part in parts])
     for _ in range(ROUNDS):
         edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
         if edge.size == 0:

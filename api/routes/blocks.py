@@ -17,6 +17,7 @@ from api.points import points_of
 from api.question_route import QuestionRoute
 from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
+from api.workshop import attempt
 from rocking.block import Block
 from rocking.boundary_amplitude import critical_amplitude
 from rocking.errors import InvalidArgumentError, in_range
@@ -28,6 +29,11 @@ router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=QuestionR
 
 MARGIN = 0.05
 """Relative distance of a change of fate that is worth a warning [-]: ground motions are not known better."""
+
+SEARCH_SHARE = 0.2
+"""Of the time of a request: what the search for changes of fate along one line is granted [-]."""
+
+NOT_FOUND = "the {} at which the fate changes were not found in time: such a block strikes the ground too often"
 
 HIGHEST_AMPLITUDE = 100.0
 """Largest a = a_g/(g tan alpha) at which changes of fate are looked for [-], if ten times the asked one is not more."""
@@ -48,8 +54,11 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
     (point,) = points_of(*ask(service.atlas, asked, **points))
     service.metrics.points(point.source, 1)
     found = response_answer(asked, point)
-    thresholds = _thresholds(question, block, asked)
-    margins = margins_of(question, block, asked, [t.peak_acceleration for t in thresholds])
+    seconds = SEARCH_SHARE * service.settings.max_seconds
+    found_thresholds = attempt(lambda: _thresholds(question, block, asked), seconds)
+    thresholds = found_thresholds or []
+    margins = margins_of(question, block, asked, [t.peak_acceleration for t in thresholds], seconds)
+    searched = {"peak accelerations": found_thresholds, "periods and sizes": margins}
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
     contact = extremes_of(motion_of(question.pulse, **points, alpha=block.alpha))
     return BlockAnswer(
@@ -65,14 +74,18 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
         frequency_parameter=block.frequency_parameter,
         restitution=asked.restitution,
         uplift_acceleration=block.uplift_acceleration,
-        thresholds=thresholds,
+        thresholds=found_thresholds,
         largest_safe_acceleration=thresholds[0].peak_acceleration if thresholds else None,
         margins=margins,
         friction_at_uplift=block.half_width / block.half_height,
         friction_demand=finite(contact.largest_friction_demand),
         friction_at_impact=contact.impulse_ratio,
         smallest_normal_reaction=contact.smallest_normal_reaction,
-        warnings=[*contact.warnings, *_more_warnings(block, question, thresholds, margins)],
+        warnings=[
+            *contact.warnings,
+            *_more_warnings(block, question, thresholds, margins),
+            *(NOT_FOUND.format(name) for name, result in searched.items() if result is None),
+        ],
         notes=_notes(found, margins),
         data_version=found.data_version,
     )
@@ -108,7 +121,9 @@ def _thresholds(question: BlockQuestion, block: Block, asked: ResponseQuestion) 
     ]
 
 
-def _more_warnings(block: Block, question: BlockQuestion, thresholds: list[Threshold], margins: Margins) -> list[str]:
+def _more_warnings(
+    block: Block, question: BlockQuestion, thresholds: list[Threshold], margins: Margins | None
+) -> list[str]:
     """Doubts about the question itself."""
     said = []
     if block.half_width > block.half_height:
@@ -121,16 +136,16 @@ def _more_warnings(block: Block, question: BlockQuestion, thresholds: list[Thres
             + ", ".join(f"{a:.4g}" for a in near)
             + " m/s2"
         )
-    if margins.period_factor is not None and abs(margins.period_factor - 1.0) < MARGIN:
+    if margins is not None and margins.period_factor is not None and abs(margins.period_factor - 1.0) < MARGIN:
         said.append(f"the fate changes within {100 * MARGIN:g} % of this period: at {margins.nearest_period:.4g} s")
     return said
 
 
-def _notes(found: ResponseAnswer, margins: Margins) -> list[str]:
+def _notes(found: ResponseAnswer, margins: Margins | None) -> list[str]:
     said = []
     if found.source == "solver":
         said.append("no data set covers this block within the tolerance; the solver answered, to its own error bound")
-    if margins.smallest_surviving_half_diagonal != margins.surviving_from_half_diagonal is not None:
+    if margins and margins.smallest_surviving_half_diagonal != margins.surviving_from_half_diagonal is not None:
         said.append(
             "size does not help steadily: above the smallest block that survives there are larger ones that fall"
         )

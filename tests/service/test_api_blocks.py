@@ -4,10 +4,11 @@ import math
 
 import pytest
 
+from api.routes import blocks
 from rocking.block import Block
 from rocking.history import time_history
 from rocking.solve import peak_response
-from tests.service.conftest import assert_problem
+from tests.service.conftest import assert_problem, client_of
 
 QUESTION = {
     "half_width": 0.2,
@@ -192,3 +193,23 @@ def test_a_change_of_fate_close_in_period_is_a_doubt(client):
 
 def test_an_answer_outside_of_the_data_sets_says_so(client):
     assert any("solver answered" in note for note in ask(client).json()["notes"])
+
+
+def test_a_search_that_takes_too_long_leaves_the_rest_of_the_answer(client, monkeypatch):
+    whole = ask(client).json()
+    monkeypatch.setattr(blocks, "SEARCH_SHARE", 0.0)
+    answer = ask(client).json()
+    assert (answer["thresholds"], answer["largest_safe_acceleration"], answer["margins"]) == (None, None, None)
+    assert [text for text in answer["warnings"] if "not found in time" in text] == answer["warnings"][-2:]
+    for name in ("response", "peak_rotation_deg", "friction_demand"):
+        assert answer[name] == whole[name]
+
+
+def test_an_elastic_block_that_strikes_without_number_is_answered(results):
+    """A hundred thousand impacts for each amplitude that is looked at: minutes of work."""
+    needle = {"half_width": 1e-4, "half_height": 450.0, "pulse": "c1", "peak_acceleration": 1e-6, "pulse_period": 450.0}
+    with client_of(results, max_seconds=10.0) as client:
+        answer = ask(client, **needle).json()
+    assert answer["response"]["outcome"] == "NO_UPLIFT"
+    assert answer["thresholds"] is None
+    assert "the peak accelerations at which the fate changes were not found in time" in answer["warnings"][-1]

@@ -12,7 +12,7 @@ from starlette.requests import ClientDisconnect
 import api.batch_answer
 from api.questions import ResponseQuestion
 from api.together import Together
-from api.workshop import BusyError, Leave, TimeLimitError, Workshop
+from api.workshop import BusyError, Leave, TimeLimitError, Workshop, attempt
 from rocking.errors import in_range
 from tests.service.conftest import assert_problem, client_of
 from tests.service.test_api_observed import metrics_of
@@ -154,6 +154,18 @@ def test_a_search_that_takes_too_long_is_504_and_leaves_its_place(results, path)
         while client.app.state.service.workshop.running:
             time.sleep(0.01)
             assert time.monotonic() - began < 5.0
+
+
+def test_a_part_of_the_work_may_have_an_end_of_its_own():
+    def work():
+        return in_range("x", 1.0, 0.0, 2.0)  # a function of the package
+
+    def both():
+        return attempt(work, 0.0), attempt(work, 10.0)
+
+    assert attempt(work, 10.0) == 1.0
+    assert asyncio.run(Workshop(1, 0, 10.0).run(both)) == (None, 1.0)
+    assert attempt(lambda: (attempt(work, 10.0), "on"), 0.0) is None  # the end of the whole is not swallowed
 
 
 def test_batches_in_pieces_are_the_same(client, monkeypatch):

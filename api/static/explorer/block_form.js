@@ -73,10 +73,11 @@ function sentence(found) {
 function facts(found) {
   const said = [["Starts to rock at", acceleration(found.uplift_acceleration)]];
   const safe = found.largest_safe_acceleration;
-  said.push(["Safe up to, at this period", safe === null ? "no limit found" : acceleration(safe)]);
+  const limit = found.thresholds === null ? "not found in time" : "no limit found";
+  said.push(["Safe up to, at this period", safe === null ? limit : acceleration(safe)]);
   const margin = marginOf(found);
   if (margin) said.push(margin);
-  const changes = found.thresholds.map(
+  const changes = (found.thresholds ?? []).map(
     (one) => `${one.overturns_above ? "falls" : "stands"} from ${number(one.peak_acceleration / GRAVITY)} g`,
   );
   if (changes.length > 1) said.push(["At this period it", changes.join(", ")]);
@@ -91,7 +92,7 @@ function facts(found) {
 function marginOf(found) {
   const asked = found.query.peak_acceleration;
   const apart = (threshold) => Math.abs(threshold.peak_acceleration / asked - 1);
-  const [nearest] = [...found.thresholds].sort((one, other) => apart(one) - apart(other));
+  const [nearest] = [...(found.thresholds ?? [])].sort((one, other) => apart(one) - apart(other));
   if (!nearest) return null;
   const way = nearest.peak_acceleration > asked ? "more" : "less";
   const share = `${number(100 * apart(nearest), 2)} %`;
