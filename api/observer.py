@@ -2,7 +2,7 @@
 
 The id is the client's `X-Request-ID` if that is sane, else a new one. It comes back with the answer and stands in the
 log, where an error of the service leaves its traceback. Requests that end in the same turn of the event loop are
-counted and logged one after another: done thirty times in a row it takes a third of the time.
+counted and logged one after another, which takes less time than each in its turn.
 """
 
 from __future__ import annotations

@@ -136,23 +136,23 @@ class Workshop:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _watched(work: Callable[[], T], leave: Leave) -> T:
-    """Work in this thread that asks for leave with each function of the package that it enters."""
-
-    def look(frame: FrameType, event: str, _: Any) -> None:
-        if event == "call" and frame.f_globals.get("__name__", "").startswith("rocking."):
-            leave.ask()
-
-    sys.setprofile(look)
-    try:
-        return work()
-    finally:
-        sys.setprofile(None)
-
-
 def attempt(work: Callable[[], T], seconds: float) -> T | None:
     """Do a part of the work of this thread within some time [s]; None if that was not enough."""
-    leave, outer = Leave(seconds), sys.getprofile()
+    leave = Leave(seconds)
+    try:
+        return _watched(work, leave)
+    except TimeLimitError as error:
+        if error.leave is not leave:
+            raise
+        return None
+
+
+def _watched(work: Callable[[], T], leave: Leave) -> T:
+    """Work in this thread that asks for leave, its own and that of the work it is part of.
+
+    It does so with each function of the package that it enters.
+    """
+    outer = sys.getprofile()
 
     def look(frame: FrameType, event: Any, argument: Any) -> None:
         if outer is not None:
@@ -163,10 +163,6 @@ def attempt(work: Callable[[], T], seconds: float) -> T | None:
     sys.setprofile(look)
     try:
         return work()
-    except TimeLimitError as error:
-        if error.leave is not leave:
-            raise
-        return None
     finally:
         sys.setprofile(outer)
 
