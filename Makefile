@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce test browser serve bench stress fuzz lock environment FORCE
+.PHONY: help reproduce verify test browser serve bench stress fuzz mutants lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -17,18 +17,24 @@ export PATH := $(CURDIR)/.venv/bin:$(PATH)
 unexport VIRTUAL_ENV PYTHONPATH PYTHONHOME
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
+# A run ends with the make that began it.
+RUN := ROCKING_RUN=$$PPID python -m workflow.run
+
 help: ## show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 18
 
 reproduce: .venv/project ## data sets, figures and claims of the paper into results/ (CONFIG=FILE for another configuration)
-	snakemake $(if $(CONFIG),--configfile $(CONFIG))
+	$(RUN) $(if $(CONFIG),--configfile $(CONFIG))
+
+verify: .venv/project ## read every product in results/ again and name what differs from the manifest
+	python -m workflow.verify
 
 test: .venv/project browser ## format, lint, types and all tests, among them a small real run of the workflow
 	ruff format --check .
 	ruff check .
 	mypy
 	snakefmt --check Snakefile workflow
-	pytest
+	pytest --numprocesses auto --dist loadfile
 
 browser: .venv/project ## a Chromium for the tests of the page, fetched if there is none (ROCKING_NO_BROWSER=1: without)
 	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.service.explorer.chromium
@@ -37,13 +43,16 @@ serve: .venv/project | results/manifest.json ## the HTTP service over results/, 
 	rocking serve --host $(HOST) --port $(PORT) --results results
 
 bench: .venv/project ## time and error beside other integrators, cost, interpolation: results/benchmarks/; ten minutes
-	snakemake $(if $(CONFIG),--configfile $(CONFIG)) bench
+	$(RUN) $(if $(CONFIG),--configfile $(CONFIG) --) bench
 
 stress: .venv/project ## 3,800 hard cases against 192-bit answers: fates, digits, symmetries, times; a minute or two
 	python -m stress
 
 fuzz: .venv/project ## ask the service 5,000 questions that a machine makes up; three minutes (SEED= for others)
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/service/test_api_fuzz.py
+
+mutants: .venv/project ## change single operators and constants, and see whether the tests notice; hours (COUNT=, SEED=)
+	python -m stress.mutations --count $(or $(COUNT),32) --seed $(or $(SEED),1)
 
 lock: ## resolve pyproject.toml anew into environment.lock (UPGRADE=--upgrade for the newest versions)
 	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
@@ -76,7 +85,6 @@ INSTALL := .venv/bin/python -m pip install --quiet --require-hashes --no-build-i
 # The project itself, as an editable install: the lock holds its build tool, so nothing is fetched.
 .venv/project: .venv/environment.lock pyproject.toml
 	@.venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
-	@echo 'Compiling the kernels (once, half a minute) ...'
-	@.venv/bin/rocking response --pulse sine --slenderness 0.5 --frequency-ratio 3 --restitution 0.9 >/dev/null
-	@.venv/bin/rocking history --pulse sine --slenderness 0.5 --frequency-ratio 3 --restitution 0.9 --csv >/dev/null
+	@echo 'Compiling the kernels (once, up to a minute) ...'
+	@.venv/bin/python -m rocking.precompile
 	@touch $@

@@ -1,15 +1,13 @@
-# Builds every product of the paper's reproduction: `snakemake` in this folder, or `make reproduce`, which sets up first.
-# Another configuration: `snakemake --configfile workflow/config/smoke.yaml`; another place: `--directory DIR`.
-from snakemake.utils import min_version, validate
+# Builds every product of the paper's reproduction. `make reproduce` (workflow/run.py) also makes again what is not as
+# recorded; `snakemake` in this folder makes what is missing or out of date. Another configuration:
+# `--configfile workflow/config/smoke.yaml`; another place: `--directory DIR`.
+from snakemake.utils import min_version
 
 min_version("9.10")
 
 if not workflow.overwrite_configfiles:  # a --configfile stands alone, it is not merged into the default
 
     configfile: f"{workflow.basedir}/workflow/config/paper.yaml"
-
-
-validate(config, "workflow/config/schema.yaml")
 
 
 include: "workflow/rules/common.smk"
@@ -22,7 +20,15 @@ include: "workflow/rules/benchmarks.smk"
 rule all:
     default_target: True
     input:
-        manifest="results/manifest.json",
-        checks="results/checks.txt",
+        *rules.manifest.input,
+        *rules.manifest.output,
+        *rules.check_results.output,
     message:
         "All products are in results/, listed in results/manifest.json"
+
+
+onstart:
+    try:
+        acquire(Path.cwd())
+    except RunningError as error:
+        raise WorkflowError(str(error)) from None

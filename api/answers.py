@@ -187,7 +187,7 @@ def arrays_of(found: BoundedResponse) -> dict[str, Column]:
     return {
         "peak_rotation": found.peak_rotation,
         "overturned": found.overturned,
-        "outcome": np.array(OUTCOMES)[found.outcome],
+        "outcome": np.array(OUTCOMES, dtype=np.object_)[found.outcome],  # each name once, not once a point
         "impacts": found.impacts,
         "exceeded_alpha": found.exceeded_alpha,
         "error_bound": found.error_bound,

@@ -16,6 +16,7 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddle
 from starlette.types import ASGIApp
 
 from api.answers import VERSION
+from api.in_flight import InFlightLayer
 from api.observer import Observer
 from api.problems import RESPONSES, Problem, add_handlers
 from api.question_route import QuestionRoute
@@ -88,6 +89,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     service = app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
     # data sets are compressed already, and a compressed answer has no ranges
     binary = ("application/x-netcdf", "application/octet-stream")
+    app.add_middleware(InFlightLayer, in_flight=service.in_flight)  # inside: what is compressed was held as a whole
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
@@ -118,17 +120,14 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         background.start_soon(_look_around, service, app.state.when_ready)
         yield
         background.cancel_scope.cancel()
-    service.workshop.close()
+    service.executor.close()
 
 
 async def _look_around(service: Service, when_ready: Callable[[], None]) -> None:
-    def work() -> bool:
-        ask = service.atlas.response
-        ask("sine", slenderness=0.5, frequency_ratio=5.0, restitution=0.85, method="solver")  # loads compiled code
-        return any(name.startswith("spectra/") for name in service.atlas.catalogue.names())
-
-    if not await anyio.to_thread.run_sync(work, abandon_on_cancel=True):
+    names = await anyio.to_thread.run_sync(service.atlas.catalogue.names, abandon_on_cancel=True)
+    if not any(name.startswith("spectra/") for name in names):
         LOG.warning("no spectrum cubes in %s; the solver answers in their place", service.settings.results)
+    await service.kernels.load()
     when_ready()
 
 

@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 
 from api.questions import LookupOptions, alpha_of, checked
 from rocking.bounded_response import BoundedResponse
+from rocking.cancellation import StopFlag
 from rocking.lookup_atlas import Atlas
 
 
@@ -16,8 +17,11 @@ def ask(
     slenderness: ArrayLike,
     frequency_ratio: ArrayLike,
     restitution: ArrayLike,
+    stop: StopFlag | None = None,
 ) -> tuple[BoundedResponse, tuple[str, ...]]:
     """Responses, and the sha256 of each data set that gave some of them; the arguments broadcast.
+
+    `stop` ends it with `StoppedError`.
 
     Raises
     ------
@@ -32,4 +36,5 @@ def ask(
         alpha=alpha_of(options.alpha_deg),
         tolerance=options.tolerance,
         method=options.method,
+        stop=stop,
     )

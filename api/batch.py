@@ -14,8 +14,9 @@ from fastapi import Request
 from numpy.typing import NDArray
 
 from api.formats import MEDIA_TYPES, Form
+from api.in_flight import Holding
 from api.problems import SlowBodyError, TooLargeError, UnsupportedBodyError
-from api.questions import BatchQuestion, LookupOptions
+from api.questions import BatchQuestion, LookupOptions, check_value
 from rocking.errors import InvalidArgumentError
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
@@ -48,8 +49,10 @@ def body_form(request: Request) -> Form:
     raise UnsupportedBodyError("Content-Type", declared, "one of " + ", ".join(MEDIA_TYPES.values()))
 
 
-async def limited_body(request: Request, limit: int, seconds: float) -> bytes:
+async def limited_body(request: Request, limit: int, seconds: float, holding: Holding) -> bytearray:
     """The body, given up as soon as it grows beyond `limit` bytes, or when it takes longer than `seconds` to arrive.
+
+    Its bytes are counted in `holding`.
 
     Raises
     ------
@@ -57,6 +60,8 @@ async def limited_body(request: Request, limit: int, seconds: float) -> bytes:
         If it does.
     UnsupportedBodyError
         If it is compressed: a few bytes could become any number.
+    BusyError
+        If too many bytes are on their way already.
     """
     coding = request.headers.get("content-encoding", "identity")
     if coding != "identity":
@@ -67,21 +72,22 @@ async def limited_body(request: Request, limit: int, seconds: float) -> bytes:
     body = bytearray()
     with anyio.move_on_after(seconds) as patience:
         async for chunk in request.stream():
+            holding.add(len(chunk))
             body += chunk
             if len(body) > limit:
                 raise TooLargeError("body", len(body), f"at most {limit} bytes")
     if patience.cancelled_caught:
         raise SlowBodyError("body", f"{len(body)} bytes", f"all of it within {seconds:g} s")
-    return bytes(body)
+    return body
 
 
-def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_points: int) -> Batch:
+def read_batch(body: bytes | bytearray, form: Form, parameters: Mapping[str, str], max_points: int) -> Batch:
     """Read a batch. JSON holds everything; for the other forms, options and missing groups are query parameters.
 
     Raises
     ------
     InvalidArgumentError
-        If the body cannot be read, a parameter is unknown, or the groups are not of one length.
+        If the body cannot be read, a parameter is unknown, the groups are not of one length, or one is out of range.
     ValidationError
         If JSON does not fit `BatchQuestion`.
     TooLargeError
@@ -112,6 +118,9 @@ def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_point
             raise InvalidArgumentError(name, f"{size} values", f"one value, or as many as the others: {points}")
     if points > max_points:
         raise TooLargeError("points", points, f"at most {max_points}")
+    options.check()
+    for name, column in columns.items():
+        check_value(name, column)
     return Batch(options, {name: np.broadcast_to(columns[name], (points,)) for name in GROUPS})
 
 
@@ -122,7 +131,7 @@ def _number(name: str, text: str) -> float:
         raise InvalidArgumentError(name, text, "a number") from None
 
 
-def _read_csv(body: bytes) -> dict[str, NDArray[np.float64]]:
+def _read_csv(body: bytes | bytearray) -> dict[str, NDArray[np.float64]]:
     try:
         header, _, rows = body.decode("utf-8-sig").partition("\n")
         names = [name.strip() for name in header.split(",")]
@@ -139,10 +148,12 @@ def _read_csv(body: bytes) -> dict[str, NDArray[np.float64]]:
     return dict(zip(names, table.T, strict=True))
 
 
-def _read_netcdf(body: bytes, max_points: int) -> dict[str, NDArray[np.float64]]:
+def _read_netcdf(body: bytes | bytearray, max_points: int) -> dict[str, NDArray[np.float64]]:
     """Variables of any dimensions; they broadcast by name, and the points follow in C order of the dimensions."""
     if not body.startswith((b"CDF\x01", b"CDF\x02")):
-        raise InvalidArgumentError("body", repr(body[:4]), "netCDF-3 (Dataset.to_netcdf(engine='scipy') writes it)")
+        raise InvalidArgumentError(
+            "body", repr(bytes(body[:4])), "netCDF-3 (Dataset.to_netcdf(engine='scipy') writes it)"
+        )
     try:
         with xr.open_dataset(io.BytesIO(body), engine="scipy", decode_times=False) as opened:
             dataset = opened.load()

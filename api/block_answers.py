@@ -8,8 +8,9 @@ from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHan
 from pydantic_core import PydanticCustomError
 
 from api.answers import VERSION, ResponseAnswer
-from api.questions import Method, PulseName, Question, Tolerance
+from api.questions import Method, PulseName, Question, Tolerance, check_value
 from rocking.block import STANDARD_GRAVITY
+from rocking.errors import in_range
 
 BORDER = {
     "half_width": (1e-4, 1e4, "m"),
@@ -45,10 +46,18 @@ class BlockQuestion(Question):
     half_height: float = _quantity("half_height", "h", examples=[0.8])
     peak_acceleration: float = _quantity("peak_acceleration", "a_g", examples=[4.0])
     pulse_period: float = _quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
-    restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4)")
+    restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
     gravity: float = _quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
     tolerance: Tolerance = 1e-4
+
+    def check(self) -> None:
+        for name, value in self:
+            if name in BORDER:
+                low, high, unit = BORDER[name]
+                in_range(name, value, low, high, unit=unit)
+            elif value != "housner":
+                check_value(name, value)
 
 
 class Threshold(BaseModel):
@@ -101,21 +110,32 @@ class BlockAnswer(BaseModel):
     query: BlockQuestion
     url: str = Field(description="path that repeats the question, defaults included")
     response: ResponseAnswer = Field(description="the same question and answer in dimensionless groups")
-    overturned: bool
-    meaning: str
+    overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
+    rocking_model_applies: bool = Field(
+        description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off; what is "
+        "said of its rocking and overturning then does not hold for a block that is free to do so"
+    )
+    meaning: str = Field(
+        description="the outcome in words; where the rocking model does not apply, first of all that and why"
+    )
     peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
     top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
     alpha_deg: float = Field(description="slenderness angle [deg]")
     half_diagonal: float = Field(description="R [m]")
     frequency_parameter: float = Field(description="p [rad/s]")
-    restitution: float = Field(description="eta [-]")
+    restitution: float = Field(description="eta [-]; with housner 0 where (2.4) is negative")
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
     thresholds: list[Threshold] | None = Field(
         description="all amplitudes at which the fate changes, this period, ascending; null if they were not found in "
         "time, which `warnings` tells"
     )
     largest_safe_acceleration: float | None = Field(
-        description="amplitude below which no block of this shape falls at this period [m/s2]; null: none found"
+        description="peak acceleration below which this block, of this size, does not overturn under this pulse at "
+        "this period [m/s2]; a smaller block of the same shape may; null: no change of outcome was found, or the "
+        "rocking model does not apply just below the lowest of `thresholds`, as `warnings` tells"
+    )
+    largest_safe_friction_demand: float | None = Field(
+        description="coefficient of friction that it needs to be safe just below that acceleration [-]; null likewise"
     )
     margins: Margins | None = Field(description="null if they were not found in time, which `warnings` tells")
     friction_at_uplift: float = Field(

@@ -6,16 +6,21 @@ import math
 
 from api.block_answers import BlockQuestion, Margins, PeriodThreshold, SizeThreshold
 from api.questions import FREQUENCY_RATIOS, ResponseQuestion
-from api.workshop import attempt
 from rocking.block import Block
-from rocking.boundary_frequency import critical_frequency_ratio
+from rocking.boundary_frequency import FrequencyThresholds, critical_frequency_ratio
+from rocking.cancellation import StopFlag, attempt
 
 REACH = 10.0
 """Periods from a tenth to ten times that of the pulse, sizes from a hundredth to a hundred times that of the block."""
 
 
 def margins_of(
-    question: BlockQuestion, block: Block, asked: ResponseQuestion, accelerations: list[float], seconds: float
+    question: BlockQuestion,
+    block: Block,
+    asked: ResponseQuestion,
+    accelerations: list[float],
+    seconds: float,
+    stop: StopFlag,
 ) -> Margins | None:
     """Nearest changes of fate; `accelerations` are the amplitudes at which it changes [m/s2].
 
@@ -24,7 +29,11 @@ def margins_of(
     omega = asked.frequency_ratio
     low, high = max(omega / REACH, FREQUENCY_RATIOS[0]), min(omega * REACH, FREQUENCY_RATIOS[1])
     groups = {"slenderness": asked.slenderness, "restitution": asked.restitution, "alpha": block.alpha}
-    found = attempt(lambda: critical_frequency_ratio(question.pulse, **groups, window=(low, high)), seconds)
+
+    def search(part: StopFlag) -> FrequencyThresholds:
+        return critical_frequency_ratio(question.pulse, **groups, window=(low, high), stop=part)
+
+    found = attempt(search, seconds, stop)
     if found is None:
         return None
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))

@@ -29,7 +29,7 @@ CONTENT: dict[int | str, dict[str, Any]] = {
 }
 """For the OpenAPI description: the other forms of an answer."""
 
-Column = NDArray[np.float64] | NDArray[np.int32] | NDArray[np.bool_] | NDArray[np.str_]
+Column = NDArray[np.float64] | NDArray[np.int32] | NDArray[np.bool_] | NDArray[np.str_] | NDArray[np.object_]
 
 ROWS = 10_000
 """Lines of CSV that are sent at once [-]."""

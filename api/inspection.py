@@ -11,7 +11,7 @@ import anyio.to_thread
 from rocking.lookup_atlas import Atlas
 from rocking.lookup_files import UnknownDatasetError
 
-PATIENCE = 1.0
+PATIENCE = 0.1
 """How long a request waits for the check to end [s]."""
 
 
@@ -53,7 +53,7 @@ class Inspection:
         for k, name in enumerate(names):
             try:
                 problem = await anyio.to_thread.run_sync(partial(self._atlas.problem, name))
-            except (UnknownDatasetError, FileNotFoundError):
+            except UnknownDatasetError:
                 problem = None  # it went away meanwhile
             if problem is not None:
                 problems[name] = problem

@@ -7,7 +7,7 @@ from functools import cache
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 from prometheus_client.process_collector import ProcessCollector
 
-from api.workshop import Workshop
+from api.workshop import BoundedExecutor
 
 CONTENT_TYPE = CONTENT_TYPE_LATEST
 
@@ -20,11 +20,11 @@ class Metrics:
 
     Parameters
     ----------
-    workshop : Workshop
+    executor : BoundedExecutor
         Whose running and waiting requests are told.
     """
 
-    def __init__(self, workshop: Workshop) -> None:
+    def __init__(self, executor: BoundedExecutor) -> None:
         self.registry = CollectorRegistry()
         self._requests = Counter(
             "rocking_requests", "Requests answered.", ["method", "route", "status"], registry=self.registry
@@ -43,8 +43,8 @@ class Metrics:
         )
         running = Gauge("rocking_heavy_running", "Requests of heavy work that are worked on.", registry=self.registry)
         waiting = Gauge("rocking_heavy_waiting", "Requests of heavy work that wait.", registry=self.registry)
-        running.set_function(lambda: workshop.running)
-        waiting.set_function(lambda: workshop.waiting)
+        running.set_function(lambda: executor.running)
+        waiting.set_function(lambda: executor.waiting)
         ProcessCollector(registry=self.registry)  # memory, processor time, open files
 
     def request(self, method: str, route: str, status: int, seconds: float) -> None:

@@ -1,4 +1,4 @@
-"""Around every request: an id, a line in the log, a count; and no exception gets past.
+"""Around every request: an id, a line in the log, a count, the headers of all answers; and no exception gets past.
 
 The id is the client's `X-Request-ID` if that is sane, else a new one. It comes back with the answer and stands in the
 log, where an error of the service leaves its traceback. Requests that end in the same turn of the event loop are
@@ -18,7 +18,7 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.metrics import Metrics
-from api.problems import internal_error
+from api.problems import NOSNIFF, internal_error
 
 ACCESS = logging.getLogger("rocking.access")
 ERRORS = logging.getLogger("rocking.service")
@@ -72,7 +72,7 @@ class Observer:
             nonlocal status, sent, whole
             if message["type"] == "http.response.start":
                 status = message["status"]
-                message["headers"] = [*message.get("headers", ()), (b"x-request-id", request_id.encode())]
+                message["headers"] = [*message.get("headers", ()), (b"x-request-id", request_id.encode()), NOSNIFF]
             else:
                 sent += len(message.get("body", b""))
                 whole = not message.get("more_body", False)

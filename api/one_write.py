@@ -18,11 +18,14 @@ class OneWrite:
         Of a connection; all else is left to it.
     loop : asyncio.AbstractEventLoop
         In which it lives.
+    seconds : float
+        What a client may take to read what is unsent when the connection is closed [s].
     """
 
-    def __init__(self, transport: asyncio.Transport, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(self, transport: asyncio.Transport, loop: asyncio.AbstractEventLoop, seconds: float) -> None:
         self._transport = transport
         self._loop = loop
+        self._seconds = seconds
         self._held: bytes | None = None
 
     def write(self, data: bytes) -> None:
@@ -36,8 +39,10 @@ class OneWrite:
             self._transport.writelines(pieces)
 
     def close(self) -> None:
-        """Close it when all is sent."""
+        """Close it when all is sent, or not read in time."""
         self._send()
+        if self._transport.get_write_buffer_size():
+            self._loop.call_later(self._seconds, self._transport.abort)
         self._transport.close()
 
     def _send(self) -> None:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from http import HTTPStatus
 from typing import Any
 
@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field, ValidationError
 from starlette.exceptions import HTTPException
 
+from api.kernels import NotReadyError
 from api.workshop import BusyError, TimeLimitError
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.lookup_files import UnknownDatasetError
@@ -42,14 +43,19 @@ STATUS: dict[type[Exception], int] = {
     SlowBodyError: HTTPStatus.REQUEST_TIMEOUT,
     DatasetError: HTTPStatus.SERVICE_UNAVAILABLE,
     BusyError: HTTPStatus.SERVICE_UNAVAILABLE,
+    NotReadyError: HTTPStatus.SERVICE_UNAVAILABLE,
     TimeLimitError: HTTPStatus.GATEWAY_TIMEOUT,
     RequestValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
     ValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
 }
 
 
+NOSNIFF = (b"x-content-type-options", b"nosniff")
+"""Of every answer: it is what its type says, and no browser is to guess."""
+
 HEADERS: dict[type[Exception], dict[str, str]] = {
     BusyError: {"Retry-After": "2"},
+    NotReadyError: {"Retry-After": "30"},
     SlowBodyError: {"Connection": "close"},  # what still arrives is not read
 }
 """What else is said."""
@@ -57,6 +63,10 @@ HEADERS: dict[type[Exception], dict[str, str]] = {
 
 LONGEST = 400
 """Characters of what is repeated to the client: a question of megabytes is not sent back."""
+
+
+LARGEST = sys.float_info.max
+"""Of the numbers that are repeated; integers beyond become text."""
 
 
 class Problem(BaseModel):
@@ -152,6 +162,8 @@ async def _handle_unknown(_: Request, __: Exception) -> Response:
 
 def _plain(value: Any) -> float | str | None:
     """A value that JSON can carry; nan and inf as words."""
-    if value is None or (isinstance(value, (int, float)) and math.isfinite(value)):
+    if value is None or (isinstance(value, (int, float)) and -LARGEST <= value <= LARGEST):
         return value
+    if isinstance(value, (bytes, bytearray)):  # a body, of any size
+        return value[:LONGEST].decode("utf-8", "backslashreplace")
     return str(value)[:LONGEST]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,6 +76,17 @@ class Question(BaseModel):
     """What all questions share. An unknown parameter is refused, so that a slip of the pen is not ignored."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def check(self) -> None:
+        """Refuse values out of range, before any work is queued.
+
+        Raises
+        ------
+        InvalidArgumentError
+            For the first that is.
+        """
+        for name, value in self:
+            check_value(name, value)
 
 
 class LookupOptions(Question):
@@ -152,6 +165,48 @@ def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
     return in_range(name, value, *FREQUENCY_RATIOS)
 
 
+def alpha_of(alpha_deg: float | None) -> float | None:
+    """Slenderness angle [rad], None for the slender limit.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is neither 0 nor in [1e-6, 89.9] degrees.
+    """
+    if not alpha_deg:
+        return None
+    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, LARGEST_ALPHA_DEG, unit="deg")))
+
+
+_CHECKS: dict[str, Callable[[Any], object]] = {
+    "pulse": get_pulse,
+    "slenderness": partial(checked, "slenderness"),
+    "frequency_ratio": partial(checked, "frequency_ratio"),
+    "restitution": partial(in_range, "restitution", low=0.0, high=1.0),
+    "alpha_deg": alpha_of,
+    "tolerance": partial(in_range, "tolerance", low=0.0, high=np.inf, closed="left"),
+    "highest_amplitude": partial(in_range, "highest_amplitude", low=1.0, high=1e6, closed="right"),
+    "duration": partial(in_range, "duration", low=0.0, high=LONGEST_DURATION, closed="right"),
+    "samples": partial(in_range, "samples", low=2, high=1_000_000),
+    "points": partial(in_range, "points", low=2, high=np.inf, closed="left"),
+    "columns": partial(in_range, "columns", low=2, high=np.inf, closed="left"),
+    "rows": partial(in_range, "rows", low=2, high=np.inf, closed="left"),
+}
+
+
+def check_value(name: str, value: Any) -> None:
+    """Refuse a parameter that is out of range, whatever the others are.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is.
+    """
+    check = _CHECKS.get(name)
+    if check is not None and value is not None:
+        check(value)
+
+
 def check_point(question: ResponseQuestion) -> None:
     """Refuse an unknown pulse and a block outside the border of the service; a microsecond where all is well.
 
@@ -169,16 +224,3 @@ def check_point(question: ResponseQuestion) -> None:
         checked("frequency_ratio", question.frequency_ratio)
     if not 0.0 <= question.restitution <= 1.0:
         in_range("restitution", question.restitution, 0.0, 1.0)
-
-
-def alpha_of(alpha_deg: float | None) -> float | None:
-    """Slenderness angle [rad], None for the slender limit.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is neither 0 nor in [1e-6, 89.9] degrees.
-    """
-    if not alpha_deg:
-        return None
-    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, LARGEST_ALPHA_DEG, unit="deg")))

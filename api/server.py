@@ -27,11 +27,12 @@ def serve(settings: Settings, host: str, port: int) -> None:
         Where to listen; port 0 takes a free one and logs it.
     """
     _lean_logging()
+    _lean_collector()
     uvicorn.run(
-        create_app(settings, when_ready=_settle),
+        create_app(settings, when_ready=gc.freeze),
         host=host,
         port=port,
-        http=guarded(settings.arrival_seconds, settings.max_header_bytes),
+        http=guarded(settings.arrival_seconds, settings.max_header_bytes, settings.reading_seconds),
         ws="none",
         log_config=CONFIG,
         access_log=False,  # the observer writes it
@@ -40,10 +41,11 @@ def serve(settings: Settings, host: str, port: int) -> None:
     )
 
 
-def _settle() -> None:
-    """Take what was loaded out of the collector's sight: to look through it all takes a tenth of a second each time.
+def _lean_collector() -> None:
+    """Take what was imported out of the collector's sight: to look through it all stops everything for 0.1 s and more.
 
-    What requests leave behind is looked through once in some hundred of them, not after each few.
+    So it is with the kernels once they are loaded. What requests leave behind is looked through once in some hundred of
+    them, not after each few.
     """
     gc.collect()
     gc.freeze()

@@ -10,11 +10,14 @@ import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
+from api.in_flight import InFlight
 from api.inspection import Inspection
+from api.kernels import Kernels
 from api.metrics import Metrics
+from api.questions import Question
 from api.settings import Settings
 from api.together import Together
-from api.workshop import Workshop
+from api.workshop import BoundedExecutor, Work
 from api.zarr_view import ZarrViews
 from rocking.lookup_atlas import Atlas
 
@@ -29,25 +32,39 @@ class Service:
     atlas: Atlas
     zarr_views: ZarrViews
     together: Together = field(init=False)
-    workshop: Workshop = field(init=False)
+    kernels: Kernels = field(init=False)
+    executor: BoundedExecutor = field(init=False)
     metrics: Metrics = field(init=False)
     inspection: Inspection = field(init=False)
     reader: CapacityLimiter = field(init=False)
+    in_flight: InFlight = field(init=False)
 
     def __post_init__(self) -> None:
         settings = self.settings
-        self.together = Together(self.atlas)
-        self.workshop = Workshop(settings.max_workers, settings.max_queue, settings.max_seconds)
-        self.metrics = Metrics(self.workshop)
+        # a thread of its own: a question about one block does not wait behind heavy work
+        alone = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
+        self.together = Together(self.atlas, alone)
+        self.kernels = Kernels(settings.max_seconds)
+        self.executor = BoundedExecutor(settings.max_workers, settings.max_queue, settings.max_seconds)
+        self.metrics = Metrics(self.executor)
         self.inspection = Inspection(self.atlas)
         self.reader = CapacityLimiter(settings.max_workers)
+        self.in_flight = InFlight(settings.max_bytes_in_flight)
 
-    async def off_loop(self, work: Callable[[], T], request: Request) -> T:
-        """Have heavy work done for a request, its body read, see `Workshop.run`."""
-        return await self.workshop.run(work, request)
+    async def off_loop(self, question: Question, work: Work[T], request: Request) -> T:
+        """Have heavy work done for a request, its body read, see `BoundedExecutor.run`.
+
+        Raises
+        ------
+        InvalidArgumentError
+            At once, if the question is out of range.
+        """
+        question.check()
+        await self.kernels.wait()
+        return await self.executor.run(work, request)
 
     async def reading(self, work: Callable[[], T]) -> T:
-        """Have files read: this does not wait behind heavy work."""
+        """Have files and bodies read: this does not wait behind heavy work."""
         return await anyio.to_thread.run_sync(work, limiter=self.reader)
 
 

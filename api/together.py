@@ -12,16 +12,21 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Hashable, Sequence
-
-import anyio.to_thread
+from functools import partial
 
 from api.ask import ask
 from api.points import Point, points_of
 from api.questions import ResponseQuestion, check_point
+from api.workshop import BoundedExecutor
+from rocking.cancellation import StopFlag
 from rocking.lookup_atlas import Atlas
 
 MOST = 256
 """Blocks of one call [-]: a few milliseconds at the very most, in which nothing else is answered."""
+
+ELASTIC = 0.9
+"""Restitution above which blocks are followed in a thread [-]: up to it none strikes more than some hundred times, half
+a millisecond; an elastic one strikes up to `rock.IMPACT_LIMIT` times, a third of a second."""
 
 A_MOMENT = 1.0
 """How long an open data set needs no second look [s]."""
@@ -36,10 +41,13 @@ class Together:
     ----------
     atlas : Atlas
         Where the answers come from.
+    executor : BoundedExecutor
+        For what takes too long for the event loop.
     """
 
-    def __init__(self, atlas: Atlas) -> None:
+    def __init__(self, atlas: Atlas, executor: BoundedExecutor) -> None:
         self._atlas = atlas
+        self._executor = executor
         self._loop: asyncio.AbstractEventLoop
         self._waiting: dict[Hashable, list[Asked]] = {}
         self._count = 0
@@ -77,14 +85,14 @@ class Together:
         questions = [question for question, _ in group]
         first = questions[0]
         try:
-            at_once = first.method == "solver" or self._is_open(first.pulse, first.restitution)
+            is_read = first.method == "solver" or self._is_open(first.pulse, first.restitution)
         except Exception as error:  # noqa: BLE001  (nobody may wait for ever)
             _tell(group, [error] * len(group))
             return
-        if at_once:
+        if is_read and first.restitution <= ELASTIC:
             _tell(group, self._outcomes(questions))
         else:
-            task = asyncio.create_task(self._answer_from_file(group, questions))
+            task = asyncio.create_task(self._answer_in_thread(group, questions))
             self._reading.add(task)
             task.add_done_callback(self._reading.discard)
 
@@ -99,11 +107,14 @@ class Together:
         self._open[pulse, restitution] = now
         return True
 
-    async def _answer_from_file(self, group: list[Asked], questions: list[ResponseQuestion]) -> None:
-        """In a thread: a data set has to be read first."""
-        _tell(group, await anyio.to_thread.run_sync(self._outcomes, questions))
+    async def _answer_in_thread(self, group: list[Asked], questions: list[ResponseQuestion]) -> None:
+        """A data set has to be read first, or blocks may strike the ground many times."""
+        try:
+            _tell(group, await self._executor.run(partial(self._outcomes, questions)))
+        except Exception as error:  # noqa: BLE001  (nobody may wait for ever)
+            _tell(group, [error] * len(group))
 
-    def _outcomes(self, questions: list[ResponseQuestion]) -> list[Point | Exception]:
+    def _outcomes(self, questions: list[ResponseQuestion], stop: StopFlag | None = None) -> list[Point | Exception]:
         """Each question's answer, or what is wrong with it."""
         try:
             found, versions = ask(
@@ -112,11 +123,12 @@ class Together:
                 slenderness=[question.slenderness for question in questions],
                 frequency_ratio=[question.frequency_ratio for question in questions],
                 restitution=questions[0].restitution,
+                stop=stop,
             )
         except Exception as error:  # noqa: BLE001  (whatever it is, it is for those who asked)
             if len(questions) == 1:
                 return [error]
-            return [outcome for question in questions for outcome in self._outcomes([question])]  # each its own
+            return [outcome for question in questions for outcome in self._outcomes([question], stop)]  # each its own
         return [*points_of(found, versions)]
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import OrderedDict
 from typing import Any
 
+import xarray as xr
 from zarr.storage import MemoryStore
 
 from rocking.lookup_files import Catalogue
@@ -36,20 +38,30 @@ class ZarrViews:
         UnknownDatasetError
             If there is no data set of that name.
         DatasetError
-            If it is damaged.
+            If it is damaged, or cannot be read.
         """
         version = self._catalogue.product(name).sha256
         with self._lock:
             if version not in self._stores:
-                self._stores[version] = self._make(name)
+                product, dataset = self._catalogue.dataset(name)
+                version = product.sha256
+                self._stores[version] = _contents(dataset)
                 while len(self._stores) > KEPT:
                     self._stores.popitem(last=False)
             self._stores.move_to_end(version)
             return version, self._stores[version]
 
-    def _make(self, name: str) -> dict[str, bytes]:
-        dataset = self._catalogue.dataset(name).drop_encoding()  # netCDF's compression is not zarr's
-        content: dict[str, Any] = {}  # zarr's buffers
-        # zarr format 2: every client reads it with consolidated metadata, which format 3 has not yet agreed upon
-        dataset.to_zarr(MemoryStore(content), zarr_format=2, consolidated=True)
-        return {key: value.to_bytes() for key, value in content.items()}
+
+def _contents(dataset: xr.Dataset) -> dict[str, bytes]:
+    known = {name: value for name, value in dataset.attrs.items() if not _is_nan(value)}  # of which JSON has none
+    content: dict[str, Any] = {}  # zarr's buffers
+    # netCDF's compression is not zarr's; format 2: every client reads it with consolidated metadata, which format 3 has
+    # not yet agreed upon
+    dataset.drop_attrs(deep=False).assign_attrs(known).drop_encoding().to_zarr(
+        MemoryStore(content), zarr_format=2, consolidated=True
+    )
+    return {key: value.to_bytes() for key, value in content.items()}
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)

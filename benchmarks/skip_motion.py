@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.skip import Skip, alternately
-from rocking.compilation import Record, Vector, kernel
+from rocking.cancellation import NEVER
+from rocking.compilation import Record, Vector, entry, kernel
 from rocking.history_motion import FALLEN, FREE_IMPACTS
 from rocking.pulses import get_pulse
 from rocking.rock import SAFE, advance, begin
@@ -72,6 +73,7 @@ def rock_on(
     steps: Record,
     followed: int,
     landings: Vector,
+    stop: Vector,
     counts: Vector,
 ) -> None:
     """One block as the solver follows it, and farther where `followed` says so."""
@@ -94,11 +96,26 @@ def rock_on(
     if not before_end and followed & FREE:
         nothing = landings[:0]
         farthest = min(FALLEN, 0.5 * math.pi / alpha) if alpha > 0.0 else FALLEN
-        counts[IMPACTS] += rock_freely(flight, steps, eta, 0.0, FOR_EVER, farthest, nothing, nothing, nothing, landings)
+        counts[IMPACTS] += rock_freely(
+            flight.end_z,
+            flight.end_w,
+            flight.end_sign,
+            alpha,
+            steps,
+            eta,
+            0.0,
+            FOR_EVER,
+            farthest,
+            nothing,
+            nothing,
+            nothing,
+            landings,
+            stop,
+        )
         counts[OTHER_FATES] += (steps.z0[0] >= farthest) != (flight.outcome > SAFE)
 
 
-@kernel
+@entry
 def rock_all(
     slenderness: Vector,
     omega: Vector,
@@ -108,12 +125,13 @@ def rock_all(
     steps: Record,
     followed: int,
     landings: Vector,
+    stop: Vector,
     counts: Vector,
     peaks: Vector,
 ) -> None:
     """Blocks one after another; `peaks` (cells,) is filled."""
     for i in range(len(slenderness)):
-        rock_on(slenderness[i], omega[i], eta, alpha, flight, steps, followed, landings, counts)
+        rock_on(slenderness[i], omega[i], eta, alpha, flight, steps, followed, landings, stop, counts)
         peaks[i] = flight.peak
 
 
@@ -128,7 +146,9 @@ def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], N
     flight = prepared(get_pulse(PULSE)).copy()
     cells, counts = plane(side), np.zeros(4)
     peaks = np.empty(side * side)
-    rock_all(*cells, RESTITUTION, alpha, flight, prepared_steps(flight), what, np.empty(FREE_IMPACTS), counts, peaks)
+    rock_all(
+        *cells, RESTITUTION, alpha, flight, prepared_steps(flight), what, np.empty(FREE_IMPACTS), NEVER, counts, peaks
+    )
     return counts, peaks
 
 

@@ -19,10 +19,10 @@ from contourpy import LineType, contour_generator
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.boundary_points import Classify, Codes, Floats, classifier, shrink
+from rocking.cancellation import StopFlag
 from rocking.errors import in_range
-from rocking.pulses import AbstractPulse
+from rocking.pulses import AbstractPulse, as_pulse
 from rocking.response import Outcome
-from rocking.solve import as_pulse
 
 DIRECTLY = int(Outcome.OVERTURNED_DIRECTLY)
 """Code of overturning without an impact."""
@@ -39,6 +39,7 @@ def overturning_boundary(
     frequency_ratio: tuple[float, float] = (0.2, 15.0),
     slenderness: tuple[float, float] = (0.02, 1.0),
     nodes: int = 401,
+    stop: StopFlag | None = None,
 ) -> xr.Dataset:
     """The boundary curves of overturning on a window of the control space.
 
@@ -52,6 +53,8 @@ def overturning_boundary(
         Window of 1/a [-], 0 < low < high <= 1.
     nodes : int
         Grid nodes in each direction, 16 to 4001: regions narrower than a cell can be missed.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Returns
     -------
@@ -65,6 +68,8 @@ def overturning_boundary(
     ------
     InvalidArgumentError
         For an argument out of range.
+    StoppedError
+        If `stop` was set.
     """
     return overturning_boundaries(
         pulse,
@@ -73,6 +78,7 @@ def overturning_boundary(
         frequency_ratio=frequency_ratio,
         slenderness=slenderness,
         nodes=nodes,
+        stop=stop,
     )[0]
 
 
@@ -84,6 +90,7 @@ def overturning_boundaries(
     frequency_ratio: tuple[float, float] = (0.2, 15.0),
     slenderness: tuple[float, float] = (0.02, 1.0),
     nodes: int = 401,
+    stop: StopFlag | None = None,
 ) -> list[xr.Dataset]:
     """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit, with less work.
 
@@ -96,7 +103,7 @@ def overturning_boundaries(
     in_range("slenderness[1]", top, bottom, 1.0, closed="right")
     etas = in_range("restitution", restitution, 0.0, 1.0)
     made = as_pulse(pulse)
-    classify = classifier(made, alpha)
+    classify = classifier(made, alpha, stop)
     axes = _spaced(bottom, top, int(nodes)), np.linspace(np.log(low), np.log(high), int(nodes))
     shares = np.array_split(axes[0], math.ceil(nodes * nodes * etas.size / AT_ONCE))
     codes = np.concatenate([classify(rows[:, None, None], axes[1][:, None], etas)[0] for rows in shares])

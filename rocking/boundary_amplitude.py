@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.boundary_points import Floats, classifier, fates_along
+from rocking.cancellation import StopFlag
 from rocking.errors import in_range
-from rocking.pulses import AbstractPulse
-from rocking.solve import as_pulse
+from rocking.pulses import AbstractPulse, as_pulse
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ def critical_amplitude(
     restitution: float,
     alpha: float | None = None,
     highest_amplitude: float = 100.0,
+    stop: StopFlag | None = None,
 ) -> Thresholds:
     """Every amplitude between 1 and `highest_amplitude` at which the fate changes.
 
@@ -51,6 +52,8 @@ def critical_amplitude(
         As for `peak_response`; scalars.
     highest_amplitude : float
         Largest a = a_g/(g tan alpha) looked at [-], (1, 1e6].
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Returns
     -------
@@ -63,13 +66,15 @@ def critical_amplitude(
     ------
     InvalidArgumentError
         For an argument out of range.
+    StoppedError
+        If `stop` was set.
     """
     in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
     log_omega = float(np.log(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
     eta = float(in_range("restitution", restitution, 0.0, 1.0))
     lowest = 1.0 / highest_amplitude
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    grid, codes = fates_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha))
+    grid, codes = fates_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha, stop))
     edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
     above = codes[edge] > 0  # 1/a falls as the amplitude rises
     falls = np.where(above, edge, edge + 1)

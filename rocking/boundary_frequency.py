@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.boundary_points import Floats, classifier, fates_along
+from rocking.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, in_range
-from rocking.pulses import AbstractPulse
-from rocking.solve import FREQUENCY_RATIOS, as_pulse
+from rocking.pulses import AbstractPulse, as_pulse
+from rocking.solve import FREQUENCY_RATIOS
 
 NODES_PER_DECADE = 1000
 """Nodes on which fates are looked for, before their changes are refined [-]."""
@@ -49,6 +50,7 @@ def critical_frequency_ratio(
     restitution: float,
     window: tuple[float, float],
     alpha: float | None = None,
+    stop: StopFlag | None = None,
 ) -> FrequencyThresholds:
     """Every frequency ratio of a window at which the fate changes, the amplitude being fixed.
 
@@ -58,6 +60,8 @@ def critical_frequency_ratio(
         As for `peak_response`; scalars.
     window : (float, float)
         Smallest and largest omega = omega_g/p looked at [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Returns
     -------
@@ -69,6 +73,8 @@ def critical_frequency_ratio(
     ------
     InvalidArgumentError
         For an argument out of range.
+    StoppedError
+        If `stop` was set.
     """
     made = as_pulse(pulse)
     low, high = (float(in_range("window", end, *FREQUENCY_RATIOS)) for end in window)
@@ -77,7 +83,7 @@ def critical_frequency_ratio(
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
     point = float(slenderness), float(nodes[0]), float(in_range("restitution", restitution, 0.0, 1.0))
-    grid, codes = fates_along(1, point, nodes, classifier(made, alpha))
+    grid, codes = fates_along(1, point, nodes, classifier(made, alpha, stop))
     falls = codes > 0
     edge = np.flatnonzero(falls[1:] != falls[:-1])
     above = falls[edge + 1]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize.elementwise import find_root
 
+from rocking.cancellation import StopFlag
 from rocking.fate_margin import fate_margin
 from rocking.pulses import AbstractPulse
 from rocking.response import Response
@@ -22,9 +23,6 @@ RESOLUTION = 1e-12
 
 ROUNDS = 32
 """Times that brackets on a line are shrunk: each may uncover a further fate between the two at its ends."""
-
-AT_ONCE = 128
-"""Points of a line asked together: a search can be given up between them, and an elastic block may take a second."""
 
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
@@ -64,12 +62,14 @@ def shrink(inside: Floats, outside: Floats, code: Codes, classify: Classify) -> 
     return first, last
 
 
-def classifier(pulse: AbstractPulse, alpha: float | None) -> Classify:
-    """The solver as a `Classify`."""
+def classifier(pulse: AbstractPulse, alpha: float | None, stop: StopFlag | None = None) -> Classify:
+    """The solver as a `Classify`, which raises `StoppedError` once `stop` is set."""
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         omega = np.clip(np.exp(log_omega), *FREQUENCY_RATIOS)  # rounding must not lead out of the range
-        found = peak_response(pulse, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha)
+        found = peak_response(
+            pulse, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha, stop=stop
+        )
         return fate_code(found), fate_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
 
     return classify
@@ -103,8 +103,7 @@ def fates_along(
         return places
 
     grid = nodes
-    parts = np.array_split(points(grid), -(-grid.size // AT_ONCE))
-    codes = np.concatenate([classify(*part.T)[0] for part in parts])
+    codes, _ = classify(*points(grid).T)
     for _ in range(ROUNDS):
         edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
         if edge.size == 0:

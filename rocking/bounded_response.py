@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.cancellation import StopFlag
 from rocking.response import Outcome
 from rocking.rock import IMPACT_LIMIT
 from rocking.solve import peak_response
@@ -81,6 +82,7 @@ def solve_with_bound(
     frequency_ratio: ArrayLike,
     restitution: ArrayLike,
     alpha: ArrayLike | None,
+    stop: StopFlag | None = None,
 ) -> BoundedResponse:
     """Ask the solver, and ask it again beside the question to learn how well the question determines the answer.
 
@@ -96,6 +98,8 @@ def solve_with_bound(
         1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
     alpha : array_like or None
         Slenderness angle [rad]; None or 0 for the slender limit.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Raises
     ------
@@ -105,7 +109,8 @@ def solve_with_bound(
     given = (slenderness, frequency_ratio, restitution, 0.0 if alpha is None else alpha)
     s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))
     shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
-    found = peak_response(pulse, slenderness=s * shift, frequency_ratio=w * shift, restitution=eta * shift, alpha=angle)
+    groups = {"slenderness": s * shift, "frequency_ratio": w * shift, "restitution": eta * shift}
+    found = peak_response(pulse, **groups, alpha=angle, stop=stop)
     peak, outcome = found.peak_rotation[0], found.outcome[0]
     with np.errstate(invalid="ignore"):
         change = np.abs(found.peak_rotation[1] - peak)

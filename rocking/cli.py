@@ -6,8 +6,7 @@ solver, the data sets and the unit registry.
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -24,7 +23,9 @@ _UNITS = "With units"
 Pulse = Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
 Slenderness = Annotated[float | None, typer.Option(help="g tan(alpha)/a_g = 1/a.", rich_help_panel=_GROUPS)]
 FrequencyRatio = Annotated[float | None, typer.Option(help="omega_g/p.", rich_help_panel=_GROUPS)]
-Restitution = Annotated[str, typer.Option(help="Coefficient eta in [0, 1]; housner for a block with units.")]
+Restitution = Annotated[
+    str, typer.Option(help="Coefficient eta in [0, 1]; housner for a block with units: (2.4), 0 where negative.")
+]
 Alpha = Annotated[
     str | None,
     typer.Option(help="Slenderness angle, such as '20 deg'; absent: the slender limit.", rich_help_panel=_GROUPS),
@@ -138,13 +139,28 @@ def boundary(
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port to listen on.", min=0, max=65535)] = 8000,
-    results: Annotated[Path, typer.Option(help="Folder that the workflow filled.")] = Path("results"),
+    results: Annotated[
+        str | None,
+        typer.Option(help="Folder that the workflow filled; ROCKING_RESULTS, or results.", show_default=False),
+    ] = None,
 ) -> None:
     """Answer over HTTP until interrupted; the routes are described under /docs."""
+    from pydantic import ValidationError
+
     from api.server import serve as listen
     from api.settings import Settings
 
-    listen(Settings(results=results), host, port)
+    given: dict[str, Any] = {} if results is None else {"results": results}
+    try:
+        settings = Settings(**given)
+    except ValidationError as error:
+        wrong = error.errors()[0]
+        (name,) = wrong["loc"]
+        name = f"--{name}" if name in given else f"ROCKING_{name}".upper()
+        allowed = wrong.get("ctx", {}).get("error", wrong["msg"])
+        typer.echo(f"Error: {name} = {wrong['input']!r} is not allowed; allowed: {allowed}", err=True)
+        raise typer.Exit(2) from None
+    listen(settings, host, port)
 
 
 if __name__ == "__main__":

@@ -34,9 +34,20 @@ def form(*, json: bool, csv: bool) -> Form:
 
 
 def response(question: Question, form: Form) -> None:
-    """Print fate and peak of one block."""
+    """Print outcome and peak of one block; of one that is not slender, whether the rocking model applies to it."""
     found = _solve(question, question.frequency_ratio)
-    answer = _groups(question) | {name: column[0] for name, column in _columns(found).items()}
+    groups = _groups(question)
+    answer = groups | {name: column[0] for name, column in _columns(found).items()}
+    sentence = Outcome[answer["outcome"]].sentence
+    if question.alpha is not None:
+        from rocking.history_contact import extremes_of
+        from rocking.history_motion import motion_of
+
+        contact = extremes_of(motion_of(**groups))
+        sentence = contact.sentence
+        answer["friction_demand"] = _number(contact.largest_friction_demand)
+        answer["lifts_off"] = contact.lifts_off
+        answer["rocking_model_applies"] = contact.rocking_applies
     peak = answer["peak_rotation"]
     if question.block is not None and peak is not None:
         answer["peak_rotation_deg"] = math.degrees(peak * question.block.alpha)
@@ -45,7 +56,7 @@ def response(question: Question, form: Form) -> None:
     elif form == "csv":
         _print_csv({name: [value] for name, value in answer.items()})
     else:
-        typer.echo(Outcome[answer["outcome"]].sentence)
+        typer.echo(sentence)
         _print_text(answer)
 
 

@@ -85,7 +85,7 @@ def read(
     block = Block(b, h)
     problem = Problem(block.alpha, block.frequency_parameter, a_g, 2.0 * math.pi / period)
     found = groups_of(problem, GroupSet.RIGID)  # (5.3)
-    eta = _housner(block) if restitution == "housner" else _eta(restitution)
+    eta = block.inelastic_restitution if restitution == "housner" else _eta(restitution)
     s, omega = float(np.asarray(found.slenderness)), float(np.asarray(found.frequency_ratio))
     return Question(pulse, s, omega, eta, block.alpha, block)
 
@@ -107,9 +107,3 @@ def _eta(text: str) -> float:
         return float(text)
     except ValueError:
         raise InvalidArgumentError("restitution", text, "a number, or housner for a block with units") from None
-
-
-def _housner(block: Block) -> float:
-    if block.housner_restitution < 0.0:
-        raise InvalidArgumentError("restitution", "housner", "a number: (2.4) is negative for so stocky a block")
-    return block.housner_restitution

@@ -29,14 +29,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from xarray.backends import NetCDF4DataStore
 
 from rocking.errors import DatasetError
 from rocking.pulses import PULSE_NAMES, get_pulse
 from rocking.response import Outcome
-from rocking.seal import flaw, seal
+from rocking.seal import PARTIAL, flaw, seal
 
 SQUARED, OVERTURNS, NO_STENCIL = 9, 18, -1
 """Values of `stencil`: from 9 on (1 - peak)^2 is interpolated; all overturn alike; not interpolated."""
@@ -208,7 +210,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     signed = dataset.assign_attrs(content_sha256=_content_digest(dataset))
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PARTIAL, dir=path.parent)
     os.close(handle)
     temporary = Path(name)
     try:
@@ -230,23 +232,49 @@ def read_dataset(path: Path | str) -> xr.Dataset:
     DatasetError
         If the file is missing, cannot be read, is not one of ours, or does not hold what was written.
     """
+    return decode_dataset(read_content(path), path)
+
+
+def read_content(path: Path | str) -> bytes:
+    """The bytes of a data set file.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing or cannot be read.
+    """
     path = Path(path)
-    if not path.is_file():
-        raise DatasetError(f"{path}: no such data set; `make reproduce` builds it")
-    damage = flaw(path)
-    if damage is not None:  # some broken files make the netCDF library run for ever
-        raise DatasetError(f"{path}: {damage}; delete it and build it again")
     try:
-        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as opened:
+        if path.is_file():
+            return path.read_bytes()
+    except OSError as error:
+        raise DatasetError(f"{path}: cannot be read: {error.strerror}") from error
+    raise DatasetError(f"{path}: no such data set; `make reproduce` builds it")
+
+
+def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
+    """The same from the bytes of such a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        If they are not those of one of our files, or not what was written.
+    """
+    damage = flaw(content)
+    if damage is not None:  # some broken files make the netCDF library run for ever
+        raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
+    try:
+        store = NetCDF4DataStore(netCDF4.Dataset("in memory", memory=content))  # type: ignore[no-untyped-call]
+        with xr.open_dataset(store, decode_times=False) as opened:
             dataset = opened.load()
         written = dataset.attrs.get("content_sha256")
         found = _content_digest(dataset)
     except (OSError, RuntimeError, ValueError, KeyError) as error:
-        raise DatasetError(f"{path}: damaged, {error}; delete it and build it again") from error
+        raise DatasetError(f"{path}: damaged, {error}; `make reproduce` builds it again") from error
     if written is None:
         raise DatasetError(f"{path}: not written by this package (no content_sha256)")
     if written != found:
-        raise DatasetError(f"{path}: damaged, its values do not match its own digest; delete it and build it again")
+        raise DatasetError(f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again")
     return dataset
 
 
@@ -258,7 +286,18 @@ def read_spectrum(path: Path | str) -> xr.Dataset:
     DatasetError
         As `read_dataset`; also if a variable is missing, of another type or shape, or an axis does not ascend.
     """
-    cube = read_dataset(path)
+    return decode_spectrum(read_content(path), path)
+
+
+def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
+    """The same from the bytes of such a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        As `read_spectrum`.
+    """
+    cube = decode_dataset(content, path)
     for name, (dtype, _) in VARIABLES.items():
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
             raise DatasetError(f"{path}: no variable `{name}` of type {dtype} over {DIMENSIONS}; build it again")

@@ -16,7 +16,8 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, kernel
-from rocking.scratch import POLYNOMIAL
+from rocking.pulse_shapes import MAX_POLYNOMIAL
+from rocking.scratch import terms_of
 
 
 @kernel
@@ -24,13 +25,13 @@ def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
     """f and df/dphi of the pulse."""
     f, slope = 0.0, 0.0
     if flight.spread > 0.0:
-        for i in range(POLYNOMIAL):
-            k = POLYNOMIAL - 1 - i
+        for i in range(MAX_POLYNOMIAL):
+            k = MAX_POLYNOMIAL - 1 - i
             slope = slope * phi + f
             f = f * phi + flight.polynomial[k]
         bell = math.exp(-phi * phi / flight.spread)
         return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         angle = flight.multiple[k] * phi + flight.shift[k]
         f += flight.amplitude[k] * math.cos(angle)
         slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
@@ -69,8 +70,8 @@ def place(flight: Record, index: int, phase: float, level: float, rise: float) -
 @kernel
 def cut(slenderness: float, flight: Record) -> int:
     """Fill `flight.cut_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
-    terms = len(flight.force)
-    single = terms == 1 and flight.multiple[0] == 1.0 and flight.spread == 0.0
+    terms = terms_of(flight)
+    single = terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.spread == 0.0
     # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
     cap = math.atan2(root, slenderness) if single else 0.0

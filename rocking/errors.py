@@ -7,11 +7,16 @@ the command line and over HTTP. Physical outcomes such as overturning are result
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import sys
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from decimal import Decimal
+from numbers import Real
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+_LARGEST = sys.float_info.max
 
 
 class InvalidArgumentError(ValueError):
@@ -41,6 +46,14 @@ class DatasetError(RuntimeError):
     """A data set file is missing, damaged or of another schema; the message says which file and what to do."""
 
 
+class SearchError(RuntimeError):
+    """A search of the solver did not end within the steps that are proved to suffice: a fault of this package."""
+
+
+class StoppedError(RuntimeError):
+    """Work was given up, as its flag was set (`cancellation.StopFlag`)."""
+
+
 class OutsideCubeError(InvalidArgumentError, LookupError):
     """A cube was asked for a point that it cannot answer with a promise (outside its axes, or a mixed cell)."""
 
@@ -54,7 +67,8 @@ def in_range(
     ----------
     parameter : str
         Name for the error message.
-    value : array_like, any shape
+    value : array_like of real numbers, any shape
+        Not flags, complex numbers, dates or text, which numpy would turn into numbers; no entry masked.
     low, high : float
         Range; `high` may be infinite.
     closed : {"both", "left", "right", "neither"}
@@ -67,10 +81,16 @@ def in_range(
     InvalidArgumentError
         With the first offending entry.
     """
+    if not _is_real(value):
+        allowed = f"real numbers, none of them masked, in {_interval(low, high, closed, unit)}"
+        raise InvalidArgumentError(parameter, value, allowed)
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         reject_range(parameter, value, low, high, closed, unit)
+    except OverflowError:  # an integer beyond all doubles: what its digits would be as a float
+        wrong = next(entry for entry in np.asarray(value, dtype=object).flat if not -_LARGEST <= entry <= _LARGEST)
+        reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
     if array.size == 0:
         return array
     # two numbers instead of arrays of flags; nan if there is one
@@ -81,6 +101,21 @@ def in_range(
     return array
 
 
+def _is_real(value: ArrayLike) -> bool:
+    """Whether all entries are real numbers; flags are not."""
+    if type(value) in (float, int):
+        return True
+    if np.ma.is_masked(value):
+        return False
+    try:
+        array = np.asarray(value)
+    except ValueError:  # lists of different lengths
+        return False
+    if array.dtype.kind == "O":
+        return all(isinstance(entry, Real | Decimal) and not isinstance(entry, bool) for entry in array.flat)
+    return array.dtype.kind in "iuf"
+
+
 def _within(value: float, low: float, high: float, closed: str) -> bool:
     above = value >= low if closed in ("both", "left") else value > low
     below = value <= high if closed in ("both", "right") else value < high
@@ -89,9 +124,64 @@ def _within(value: float, low: float, high: float, closed: str) -> bool:
 
 def reject_range(parameter: str, value: Any, low: float, high: float, closed: str, unit: str) -> NoReturn:
     """Raise `InvalidArgumentError` with the allowed range in words."""
+    raise InvalidArgumentError(parameter, value, _interval(low, high, closed, unit))
+
+
+def _interval(low: float, high: float, closed: str, unit: str) -> str:
     left = "[" if closed in ("both", "left") else "("
     right = "]" if closed in ("both", "right") and np.isfinite(high) else ")"
-    raise InvalidArgumentError(parameter, value, f"{left}{low:g}, {high:g}{right} [{unit}]")
+    return f"{left}{low:g}, {high:g}{right} [{unit}]"
+
+
+def broadcast(
+    given: Mapping[str, ArrayLike | None], checked: Sequence[NDArray[np.float64]]
+) -> list[NDArray[np.float64]]:
+    """The `checked` arrays of some arguments, broadcast against each other.
+
+    Parameters
+    ----------
+    given : mapping
+        The arguments by name, as the caller gave them.
+    checked : sequence of float arrays
+        Their values.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the shapes do not broadcast; also if labelled arguments (xarray, pandas) differ in their dimensions, the
+        order of these, or their indexes: numpy would pair their entries by position.
+    """
+    labelled = {name: _labels(value) for name, value in given.items() if np.ndim(value) > 0}  # type: ignore[arg-type]
+    first: list[tuple[Hashable, Any]] = []
+    for labels in labelled.values():
+        first = first or labels
+        if labels and not _same(labels, first):
+            dims = tuple(tuple(dim for dim, _ in one) for one in labelled.values())
+            raise InvalidArgumentError(
+                ", ".join(labelled), dims, "equal dimensions and indexes: use xarray.broadcast or align first"
+            )
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in checked))
+    except ValueError:
+        shapes = tuple(array.shape for array in checked)
+        raise InvalidArgumentError(", ".join(given), shapes, "shapes that broadcast against each other") from None
+    # copies, since views of one entry many times over are not for kernels
+    return [array if array.shape == shape else np.array(np.broadcast_to(array, shape)) for array in checked]
+
+
+def _labels(value: Any) -> list[tuple[Hashable, Any]]:
+    """Dimensions of an xarray or pandas object, each with its index or None; empty for other objects."""
+    if hasattr(value, "dims"):
+        indexes = getattr(value, "indexes", {})
+        return [(dim, indexes.get(dim)) for dim in value.dims]
+    return list(enumerate(getattr(value, "axes", ())))
+
+
+def _same(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable, Any]]) -> bool:
+    return len(labels) == len(others) and all(
+        dim == other and (index is None or one is None or index.equals(one))
+        for (dim, index), (other, one) in zip(labels, others, strict=True)
+    )
 
 
 def one_of(parameter: str, value: str, choices: Iterable[str]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from rocking.cancellation import StopFlag
 from rocking.errors import in_range
 from rocking.history_contact import with_contact
 from rocking.history_motion import motion_of, overturned
@@ -22,6 +23,7 @@ def time_history(
     duration: float | None = None,
     samples: int = 400,
     contact: bool = False,
+    stop: StopFlag | None = None,
 ) -> xr.Dataset:
     """Rotation and angular velocity of one block against time, exact at every sample.
 
@@ -36,6 +38,8 @@ def time_history(
         Uniform samples, 2 to 1,000,000; uplift, impacts and the end of the pulse are added to them.
     contact : bool
         Whether to add the reactions of the ground and the friction that they need (docs/contact.md).
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Returns
     -------
@@ -49,10 +53,12 @@ def time_history(
     ------
     InvalidArgumentError
         For an argument out of range.
+    StoppedError
+        If `stop` was set.
     """
     in_range("samples", samples, 2, 1_000_000)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
-    motion = motion_of(pulse, **groups, alpha=alpha, duration=duration)
+    motion = motion_of(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
     answer, landings = motion.events()  # they are among the samples
     events = [0.0, motion.pulse_end, float(np.nan_to_num(answer["uplift_time"]))]
     tau = np.concatenate([np.linspace(0.0, motion.horizon, int(samples)), landings, events])

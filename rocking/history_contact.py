@@ -17,6 +17,7 @@ import xarray as xr
 from rocking.compilation import Record
 from rocking.contact import Floats, Reactions, impulse_ratio, reactions
 from rocking.history_motion import Motion, overturned
+from rocking.response import Outcome
 
 FINE = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
@@ -26,6 +27,9 @@ BESIDE = 1e-12
 
 PRACTICAL_FRICTION = 0.7
 """Friction that a dry contact can be trusted with [-]: of rough concrete on concrete in EN 1992-1-1, 6.2.5."""
+
+LARGEST_FRICTION = 1.0
+"""Friction demand beyond which the rocking model is taken not to apply [-]: common dry contacts stay below."""
 
 COLUMNS = {
     "horizontal_reaction": "horizontal reaction H/(m g) of the ground at the pivot",
@@ -64,6 +68,8 @@ class Extremes:
         Horizontal over vertical impulse at its impacts; 0 if there are none.
     chatters : bool
         Whether impacts accumulate to rest while the pulse acts.
+    outcome : Outcome
+        Final outcome of the motion.
     """
 
     largest_friction_demand: float
@@ -73,6 +79,7 @@ class Extremes:
     normal_time: float
     impulse_ratio: float
     chatters: bool
+    outcome: Outcome
 
     @property
     def lifts_off(self) -> bool:
@@ -80,9 +87,38 @@ class Extremes:
         return self.smallest_normal_reaction <= 0.0
 
     @property
+    def rocking_applies(self) -> bool:
+        """Whether the block rocks without sliding or lifting off, or does not uplift at all.
+
+        False where it lifts off, or where rocking needs a coefficient of friction beyond `LARGEST_FRICTION`.
+        A block that does not uplift under friction that holds it does not uplift under less either.
+        """
+        held = not self.lifts_off and self.largest_friction_demand <= LARGEST_FRICTION
+        return held or self.outcome == Outcome.NO_UPLIFT
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in words, without a subject; where the rocking model does not apply, that comes first."""
+        outcome, demand = self.outcome.sentence, self.largest_friction_demand
+        if self.outcome == Outcome.NO_UPLIFT and demand > LARGEST_FRICTION:
+            return f"{outcome}, but slides unless the coefficient of friction is at least {demand:.3g}"
+        if self.rocking_applies:
+            return outcome
+        if self.lifts_off:
+            return (
+                "would lift off the ground: the rocking model does not apply, it needs a normal reaction of "
+                f"{self.smallest_normal_reaction:.3g} times the weight; held on the ground, it {outcome}"
+            )
+        return (
+            "would slide: the rocking model does not apply, it needs a coefficient of friction of "
+            f"{demand:.3g}; held against sliding, it {outcome}"
+        )
+
+    @property
     def warnings(self) -> list[str]:
         """Sentences that say where pure rocking is in doubt; friction is not judged in the slender limit."""
         said = []
+        kept = "rest" if self.outcome == Outcome.NO_UPLIFT else "pure rocking"
         if self.lifts_off:
             said.append(
                 f"the block lifts off: pure rocking would need a normal reaction {self.smallest_normal_reaction:.3g} "
@@ -90,7 +126,7 @@ class Extremes:
             )
         elif self.largest_friction_demand > PRACTICAL_FRICTION:
             said.append(
-                f"the block may slide: pure rocking needs a friction coefficient of {self.largest_friction_demand:.3g} "
+                f"the block may slide: {kept} needs a friction coefficient of {self.largest_friction_demand:.3g} "
                 f"at tau = {self.friction_time:.4g}, more than {PRACTICAL_FRICTION} (rough concrete)"
             )
         if PRACTICAL_FRICTION < self.impulse_ratio < math.inf:
@@ -181,6 +217,7 @@ def extremes_of(motion: Motion) -> Extremes:
         normal_time=normal_time,
         impulse_ratio=impulse_ratio(motion.restitution, motion.alpha) if landings.size else 0.0,
         chatters=bool(answer["chatter"]),
+        outcome=Outcome(int(answer["outcome"])),
     )
 
 

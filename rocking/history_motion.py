@@ -7,14 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking.cancellation import StopFlag, array_of, check
 from rocking.compilation import Record
 from rocking.errors import in_range
-from rocking.pulses import AbstractPulse
+from rocking.pulses import AbstractPulse, as_pulse
 from rocking.response import Outcome
 from rocking.rock import IMPACT_LIMIT
-from rocking.sampling import rock_and_sample, rock_freely
-from rocking.scratch import prepared, prepared_steps
-from rocking.solve import as_pulse, checked_groups
+from rocking.sampling import rock_and_sample, rock_freely, sample_arcs
+from rocking.scratch import SINGLE, has_one_sinusoid, prepared, prepared_steps
+from rocking.solve import checked_groups
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +40,8 @@ class Motion:
         1/a, omega, eta [-]; alpha [rad], 0 for the slender limit; checked by `motion_of`.
     horizon : float
         tau at which to stop [-].
+    stop : StopFlag, optional
+        Once another thread sets it, the methods raise `StoppedError`.
     """
 
     pulse: AbstractPulse
@@ -47,6 +50,7 @@ class Motion:
     restitution: float
     alpha: float
     horizon: float
+    stop: StopFlag | None = None
 
     @property
     def pulse_end(self) -> float:
@@ -89,17 +93,27 @@ class Motion:
         return self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau) / self.slenderness
 
     def _force(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
-        answer = prepared(self.pulse).copy()
         groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
-        steps = prepared_steps(answer)
-        return answer, rock_and_sample(*groups, answer, steps, self.farthest, tau, rotation, velocity, landings)
+        rest = self.farthest, tau, rotation, velocity, landings, array_of(self.stop)
+        if has_one_sinusoid(self.pulse) and self.alpha == 0.0:
+            answer = prepared(self.pulse, SINGLE).copy()
+            written = sample_arcs(*groups, answer, *rest)
+        else:
+            answer = prepared(self.pulse).copy()
+            written = rock_and_sample(*groups, answer, prepared_steps(answer), *rest)
+        check(self.stop)
+        return answer, int(written)
 
     def _free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
-        steps = prepared_steps(answer)
-        stop = self.horizon * (1 + 1e-12)  # a step fills the samples before its end: the last one has to lie inside
+        state = (*(float(answer[name]) for name in ("end_z", "end_w", "end_sign")), self.alpha)
+        steps = prepared_steps(prepared(self.pulse))
+        end = self.horizon * (1 + 1e-12)  # a step fills the samples before its end: the last one has to lie inside
+        samples = tau, rotation, velocity
+        times = self.pulse_end, end
         written = rock_freely(
-            answer, steps, self.restitution, self.pulse_end, stop, self.farthest, tau, rotation, velocity, landings
+            *state, steps, self.restitution, *times, self.farthest, *samples, landings, array_of(self.stop)
         )
+        check(self.stop)
         return int(written)
 
 
@@ -111,6 +125,7 @@ def motion_of(
     restitution: float,
     alpha: float | None = None,
     duration: float | None = None,
+    stop: StopFlag | None = None,
 ) -> Motion:
     """The motion that answers a question; arguments and errors as for `history.time_history`."""
     if duration is not None:
@@ -118,7 +133,7 @@ def motion_of(
     made = as_pulse(pulse)
     s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
     horizon = (made.end - made.start) / omega + FREE_ROCKING if duration is None else float(duration)
-    return Motion(made, s, omega, eta, angle, horizon)
+    return Motion(made, s, omega, eta, angle, horizon, stop)
 
 
 def overturned(answer: Record) -> bool:

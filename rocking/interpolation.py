@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.compilation import Vector, kernel
+from rocking.compilation import Vector, entry, kernel, plain
 from rocking.errors import InvalidArgumentError
 
 STENCIL = 4
@@ -59,7 +59,7 @@ class Mesh(NamedTuple):
         if min(shape) < STENCIL:
             raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL} nodes")
         logs = np.log(frequency_ratio)
-        return cls(slenderness, logs, _products(slenderness), _products(logs))
+        return cls(plain(slenderness), logs, _products(slenderness), _products(logs))
 
     def within(self, cells: tuple[NDArray[np.intp], ...], place: tuple[float, float]) -> tuple[Array, Array]:
         """Row and column coordinates of a place in [0, 1]^2 within each of several cells."""
@@ -117,7 +117,7 @@ def level_of(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray
     return np.where((below < levels.size - 1) | on_level, below, -1), on_level
 
 
-@kernel
+@entry
 def level_weight(levels: Vector, first: int, count: int, k: int, x: float) -> float:
     """Lagrange's weight at x of the k-th of `count` levels from `first` on."""
     weight = 1.0

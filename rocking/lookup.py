@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
+from rocking.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
 from rocking.interpolation import cell_of, level_of
 from rocking.lookup_kernel import AROUND, LOWER, interpolate_many
@@ -76,6 +77,7 @@ class Cube:
         alpha: ArrayLike | None = None,
         tolerance: float = 1e-4,
         method: str = "auto",
+        stop: StopFlag | None = None,
     ) -> BoundedResponse:
         """Peak rotation and fate with an error bound not above `tolerance`; the arguments broadcast.
 
@@ -91,6 +93,8 @@ class Cube:
             Largest error of an interpolated peak_rotation [-], >= 0.
         method : {"auto", "cube", "solver"}
             "auto" asks the solver where the cubes cannot keep the tolerance, "cube" raises there.
+        stop : StopFlag, optional
+            Once another thread sets it, this ends soon with `StoppedError`.
 
         Raises
         ------
@@ -118,7 +122,7 @@ class Cube:
         if left.size:
             if method == "cube":
                 self._refuse(points[left[:1]], limit)
-            answer.put(left, _solve(self.pulse, points[left]))
+            answer.put(left, _solve(self.pulse, points[left], stop))
         return answer.reshape(shape)
 
     def used(self, restitution: Array) -> list[int]:
@@ -235,11 +239,12 @@ def _interpolate(levels: list[Level], usable: Flags, points: Points, found: NDAr
     )
 
 
-def _solve(pulse: str, points: Points) -> BoundedResponse:
+def _solve(pulse: str, points: Points, stop: StopFlag | None) -> BoundedResponse:
     return solve_with_bound(
         pulse,
         slenderness=points.slenderness,
         frequency_ratio=points.frequency_ratio,
         restitution=points.restitution,
         alpha=points.alpha,
+        stop=stop,
     )

@@ -1,26 +1,28 @@
 """All cubes of a results folder as one source of answers; each is opened when first asked.
 
-A missing or damaged cube never gives a wrong answer: the solver answers in its place, and `Atlas.problems` says so.
-Files that the workflow replaces are read again.
+A missing, damaged or unreadable cube never gives a wrong answer: the solver answers in its place, and `Atlas.problems`
+says so. Files that change are read again.
 """
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking.bounded_response import BoundedResponse
-from rocking.cube import read_dataset
+from rocking.cancellation import StopFlag
+from rocking.cube import decode_dataset
 from rocking.errors import DatasetError
 from rocking.lookup import Cube
-from rocking.lookup_files import Catalogue, Stamp, UnknownDatasetError, stamp_of
-from rocking.lookup_level import Level, open_level
+from rocking.lookup_files import Catalogue, DataFile, FileVersion, UnknownDatasetError, version_of
+from rocking.lookup_level import Level, decode_level
 from rocking.pulses import get_pulse
 from rocking.response import Outcome
 
-Opened = tuple[Path, Stamp, Level | DatasetError]
+Opened = tuple[Path, FileVersion, Level | DatasetError]
 """The file of a cube, the version of it that was read, and the cube or what is wrong with it."""
 
 
@@ -41,22 +43,23 @@ class Atlas:
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
         self._cubes: dict[tuple[str, float], Opened] = {}
-        self._levels: dict[str, tuple[Path, int, list[float]]] = {}
-        self._checked: dict[str, tuple[Stamp, str | None]] = {}
+        self._levels: dict[str, tuple[Path, FileVersion, list[float]]] = {}
+        self._checked: dict[str, tuple[FileVersion, str | None]] = {}
 
     def levels(self, pulse: str) -> list[float]:
         """Restitutions for which a cube of the pulse lies there, ascending."""
         key = pulse.removeprefix("-")
         known = self._levels.get(key)
         folder = known[0] if known else self.catalogue.results / "spectra" / key
-        try:
-            changed = folder.stat().st_mtime_ns
-        except OSError:
+        version = version_of(folder)
+        if version is None:
             return []
-        if known is None or known[1] != changed:
-            found = sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
-            known = self._levels[key] = folder, changed, found
-        return known[2]
+        if known is not None and known[1] == version:
+            return known[2]
+        found = sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
+        if version.is_settled:
+            self._levels[key] = folder, version, found
+        return found
 
     def level(self, pulse: str, restitution: float) -> Level | None:
         """The cube of a pulse and a restitution, None if there is none.
@@ -66,27 +69,31 @@ class Atlas:
         Raises
         ------
         DatasetError
-            If the file is damaged or holds something else than its name says.
+            If the file is damaged, cannot be read, or holds something else than its name says.
         """
         key = pulse.removeprefix("-"), restitution
-        known = self._cubes.get(key)
-        try:
-            if known is None or known[1] != stamp_of(known[0]):
+        known = self._current(key)
+        if known is None:
+            try:
                 known = self._read(key)
-        except (UnknownDatasetError, FileNotFoundError):
-            return None
+            except UnknownDatasetError:
+                return None
         if isinstance(known[2], DatasetError):
             raise known[2]
         return known[2]
 
+    def _current(self, key: tuple[str, float]) -> Opened | None:
+        """The cube of a pulse and a restitution, if it is open and its file is the same still."""
+        known = self._cubes.get(key)
+        return known if known is not None and known[1] == version_of(known[0]) else None
+
     def _read(self, key: tuple[str, float]) -> Opened:
         """The cube of a pulse and a restitution, from its file unless another thread has just read it."""
-        with self.catalogue.lock:
-            path = self.catalogue.path(_cube_name(*key))
-            stamp = stamp_of(path)
+        with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
             known = self._cubes.get(key)
-            if known is None or known[1] != stamp:
-                known = self._cubes[key] = path, stamp, _open(path, *key)
+            if known is None or known[1] != file.version:
+                cube = _open(file, *key)
+                known = self._cubes[key] = file.path, file.version, cube
             return known
 
     def cube(self, pulse: str, method: str = "auto") -> Cube:
@@ -96,6 +103,7 @@ class Atlas:
         """
         restitutions = np.array(self.levels(pulse))
 
+        @cache  # one answer comes from one version of each file
         def level(k: int) -> Level | None:
             try:
                 return self.level(pulse, float(restitutions[k]))
@@ -112,19 +120,21 @@ class Atlas:
         if not levels or not levels[0] <= restitution <= levels[-1]:
             return True
         used = Cube(pulse, np.array(levels), lambda _: None).used(np.array([restitution]))
-        return all((pulse.removeprefix("-"), levels[k]) in self._cubes for k in used)
+        return all(self._current((pulse.removeprefix("-"), levels[k])) for k in used)
 
     def problems(self) -> dict[str, str]:
         """Read and check every data set, once per version of the file; what is wrong with it, by name.
 
-        The name "spectra" stands for the case that there are no cubes at all.
+        The name "spectra" stands for the case that there are no cubes at all; folders that cannot be read have theirs.
         """
-        found: dict[str, str] = {}
-        names = self.catalogue.names()
+        names, found = self.catalogue.scan()
         if not any(name.startswith("spectra/") for name in names):
-            found["spectra"] = f"no spectrum cubes in {self.catalogue.results}; `make reproduce` builds them"
+            found.setdefault("spectra", "no spectrum cubes; `make reproduce` builds them")
         for name in names:
-            problem = self.problem(name)
+            try:
+                problem = self.problem(name)
+            except UnknownDatasetError:  # it went away meanwhile
+                continue
             if problem is not None:
                 found[name] = problem
         return found
@@ -139,6 +149,7 @@ class Atlas:
         alpha: ArrayLike | None = None,
         tolerance: float = 1e-4,
         method: str = "auto",
+        stop: StopFlag | None = None,
     ) -> tuple[BoundedResponse, tuple[str, ...]]:
         """Answers as `Cube.response`, over all cubes of a pulse, and the sha256 of each cube that gave some of them.
 
@@ -154,6 +165,8 @@ class Atlas:
             Largest error of an interpolated peak_rotation [-], >= 0.
         method : {"auto", "cube", "solver"}
             As `Cube.response`; "auto" also asks the solver where a cube is missing or damaged.
+        stop : StopFlag, optional
+            Once another thread sets it, this ends soon with `StoppedError`.
 
         Raises
         ------
@@ -173,6 +186,7 @@ class Atlas:
             alpha=alpha,
             tolerance=tolerance,
             method=method,
+            stop=stop,
         )
         eta = np.asarray(restitution, dtype=np.float64)
         rocked = (answer.source == "cube") & (answer.outcome != Outcome.NO_UPLIFT)
@@ -181,14 +195,27 @@ class Atlas:
         return answer, tuple(level.sha256 for level in used if level is not None)
 
     def problem(self, name: str) -> str | None:
-        """What is wrong with a data set, read and checked once per version of its file; None if nothing is."""
+        """What is wrong with a data set; None if nothing is.
+
+        Raises
+        ------
+        UnknownDatasetError
+            If there is no data set of that name.
+        """
+        try:
+            with self.catalogue.open(name) as file:
+                return self.problem_of(file)
+        except DatasetError as error:
+            return str(error)
+
+    def problem_of(self, file: DataFile) -> str | None:
+        """The same for an open data set, read and checked once per version of its file."""
         with self.catalogue.lock:
-            path = self.catalogue.path(name)
-            stamp = stamp_of(path)
-            known = self._checked.get(name)
-            if known is None or known[0] != stamp:
-                known = self._checked[name] = (stamp, _check(path, name))
-        return known[1]
+            known = self._checked.get(file.name)
+            if known is None or known[0] != file.version:
+                problem = _check(file)
+                known = self._checked[file.name] = file.version, problem
+            return known[1]
 
 
 def _cube_name(pulse: str, restitution: float) -> str:
@@ -203,24 +230,24 @@ def _level(stem: str) -> float:
         return np.nan
 
 
-def _open(path: Path, pulse: str, restitution: float) -> Level | DatasetError:
+def _open(file: DataFile, pulse: str, restitution: float) -> Level | DatasetError:
     try:
-        cube = open_level(path)
+        cube = decode_level(file.content(), file.name)
     except DatasetError as error:
         return error
     if (cube.pulse, cube.restitution) != (pulse, restitution):
-        return DatasetError(f"{path}: holds {cube.pulse} with restitution {cube.restitution:g}; build it again")
+        return DatasetError(f"{file.name}: holds {cube.pulse} with restitution {cube.restitution:g}; build it again")
     return cube
 
 
-def _check(path: Path, name: str) -> str | None:
+def _check(file: DataFile) -> str | None:
     """Read a data set; what is wrong with it, None if nothing is."""
-    kind, *rest = name.split("/")
+    kind, *rest = file.name.split("/")
     if kind == "spectra" and len(rest) == 2:
-        found = _open(path, rest[0], _level(rest[1]))
+        found = _open(file, rest[0], _level(rest[1]))
         return str(found) if isinstance(found, DatasetError) else None
     try:
-        read_dataset(path)
+        decode_dataset(file.content(), file.name)
     except DatasetError as error:
         return str(error)
     return None

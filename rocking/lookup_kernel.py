@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rocking.compilation import Record, Vector, kernel
+from rocking.compilation import Record, Vector, entry, kernel
 from rocking.cube import OVERTURNS, SQUARED
 from rocking.interpolation import LEVELS, STENCIL, Mesh, in_cell, level_weight
 from rocking.response import Outcome
@@ -41,7 +41,7 @@ def common_impacts(cubes: Record, layer: int, e: int, i: int, j: int, before: in
     return first if before == -2 or before == first else UNKNOWN
 
 
-@kernel
+@entry
 def interpolate_many(
     row: Vector,
     column: Vector,

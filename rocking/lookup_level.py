@@ -10,9 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.cube import AXES, read_spectrum
+from rocking.compilation import plain
+from rocking.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.interpolation import Mesh
 
@@ -74,19 +76,40 @@ def open_level(path: Path | str) -> Level:
     DatasetError
         If the file is missing, damaged, or not a spectrum cube.
     """
-    cube = read_spectrum(path)
-    axes: dict[str, Any] = {name: cube[name].values for name in AXES}
-    fields: dict[str, Any] = {name: np.ascontiguousarray(cube[name].values) for name in FIELDS}
+    return decode_level(read_content(path), path)
+
+
+def decode_level(content: bytes, path: Path | str) -> Level:
+    """The same from the bytes of such a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        If they are damaged, or not those of a spectrum cube.
+    """
+    cube = decode_spectrum(content, path)
     try:
-        mesh = Mesh.of(axes["slenderness"], axes["frequency_ratio"])
+        return level_of(cube, hashlib.sha256(content).hexdigest())
     except InvalidArgumentError as error:
         raise DatasetError(f"{path}: {error}; build it again") from error
+
+
+def level_of(cube: xr.Dataset, sha256: str = "") -> Level:
+    """A spectrum cube in memory; `sha256` of its file, if there is one.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an axis has fewer than four nodes.
+    """
+    axes: dict[str, Any] = {name: cube[name].values for name in AXES}
+    fields: dict[str, Any] = {name: plain(cube[name].values) for name in FIELDS}
     return Level(
         pulse=str(cube["pulse"].attrs["pulse_name"]),
         restitution=float(cube["restitution"]),
         next_restitution=float(cube.attrs.get("next_restitution", np.nan)),
-        mesh=mesh,
-        sha256=hashlib.sha256(Path(path).read_bytes()).hexdigest(),
+        mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
+        sha256=sha256,
         **axes,
         **fields,
     )

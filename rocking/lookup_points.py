@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.compilation import plain
+from rocking.errors import broadcast, in_range
 
 Array = NDArray[np.float64]
 
@@ -39,13 +40,9 @@ class Points:
             in_range("restitution", restitution, 0.0, 1.0),
             in_range("alpha", 0.0 if alpha is None else alpha, 0.0, np.pi / 2, closed="left", unit="rad"),
         )
-        try:
-            full = np.broadcast_arrays(*groups)
-        except ValueError:
-            shapes = tuple(group.shape for group in groups)
-            names = "slenderness, frequency_ratio, restitution, alpha"
-            raise InvalidArgumentError(names, shapes, "shapes that broadcast against each other") from None
-        return cls(*(np.ascontiguousarray(group).ravel() for group in full)), full[0].shape
+        given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
+        full = broadcast(given | {"restitution": restitution, "alpha": alpha}, groups)
+        return cls(*(plain(group).ravel() for group in full)), full[0].shape
 
     def __getitem__(self, index: Any) -> Points:
         return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))

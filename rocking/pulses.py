@@ -8,84 +8,28 @@ polynomial times a Gaussian, whose response is expanded in Taylor series.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
-from itertools import pairwise
-from typing import final
+from functools import lru_cache, partial
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.pulse_shapes import (
+    AbstractPulse,
+    SinusoidalPulse,
+    WaveletPulse,
+    number,
+    peak_of,
+    sinusoids,
+    turns_of_sinusoids,
+)
 
-from rocking.errors import in_range, one_of
-
-
-@dataclass(frozen=True)
-class AbstractPulse(ABC):
-    """A pulse shape f(phi), max |f| = 1, zero outside `start` <= phi <= `end` [rad]."""
-
-    name: str
-    start: float
-    end: float
-    stationary: tuple[float, ...]
-    """Phases strictly inside the window where f' = 0 [rad], ascending."""
-
-    @abstractmethod
-    def shape(self, phi: ArrayLike) -> NDArray[np.float64]:
-        """f(phi) [-] on the window, its smooth continuation outside; `phi` [rad], any shape."""
-
-    @abstractmethod
-    def mirrored(self) -> AbstractPulse:
-        """The pulse of opposite sign, -f(phi)."""
-
-    def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
-        """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
-        phi = np.asarray(phi, dtype=np.float64)
-        return np.where((phi >= self.start) & (phi <= self.end), self.shape(phi), 0.0)
-
-    @property
-    def monotone_pieces(self) -> tuple[tuple[float, float], ...]:
-        """Intervals of phi [rad] that cover the window and on each of which f is monotone."""
-        ends = (self.start, *self.stationary, self.end)
-        return tuple(pairwise(ends))
-
-
-@final
-@dataclass(frozen=True)
-class SinusoidalPulse(AbstractPulse):
-    """f(phi) = sum of c cos(w phi + d) over `terms` (c [-], w [-], d [rad])."""
-
-    terms: tuple[tuple[float, float, float], ...]
-
-    def shape(self, phi: ArrayLike) -> NDArray[np.float64]:
-        phi = np.asarray(phi, dtype=np.float64)
-        return np.asarray(sum(c * np.cos(w * phi + d) for c, w, d in self.terms))
-
-    def mirrored(self) -> SinusoidalPulse:
-        terms = tuple((-c, w, d) for c, w, d in self.terms)
-        return SinusoidalPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, terms)
-
-
-@final
-@dataclass(frozen=True)
-class WaveletPulse(AbstractPulse):
-    """f(phi) = (sum of c_k phi^k) exp(-phi^2 / spread); `polynomial` holds c_0, c_1, ..."""
-
-    polynomial: tuple[float, ...]
-    spread: float
-
-    def shape(self, phi: ArrayLike) -> NDArray[np.float64]:
-        phi = np.asarray(phi, dtype=np.float64)
-        return np.asarray(np.polynomial.polynomial.polyval(phi, self.polynomial) * np.exp(-phi * phi / self.spread))
-
-    def mirrored(self) -> WaveletPulse:
-        polynomial = tuple(-c for c in self.polynomial)
-        return WaveletPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
-
-
-def _mirrored_name(name: str) -> str:
-    return name.removeprefix("-") if name.startswith("-") else "-" + name
+__all__ = [
+    "PULSE_NAMES",
+    "AbstractPulse",
+    "SinusoidalPulse",
+    "WaveletPulse",
+    "as_pulse",
+    "get_pulse",
+]
 
 
 def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]) -> SinusoidalPulse:
@@ -178,29 +122,12 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
         ((cycles - 1) / 2, 1 - 1 / cycles, shift),
     )
     end = math.pi * cycles
-    stationary = _stationary_phases(raw, -end, end)
-    unscaled = SinusoidalPulse("mavroeidis_papageorgiou", -end, end, stationary, raw)
-    peak = float(np.max(np.abs(unscaled.shape([-end, *stationary, end]))))
+    peak = peak_of(partial(sinusoids, raw), -end, end, turns_of_sinusoids(raw, -end, end))
     terms = tuple((c / peak, w, d) for c, w, d in raw)
-    return SinusoidalPulse(unscaled.name, -end, end, stationary, terms)
+    return SinusoidalPulse("mavroeidis_papageorgiou", -end, end, (), terms)
 
 
-def _stationary_phases(terms: tuple[tuple[float, float, float], ...], start: float, end: float) -> tuple[float, ...]:
-    """All simple zeros of f' inside the window: bracketed on a grid of 256 points a cycle, then Brent."""
-    from scipy.optimize import brentq  # see `_type_c`
-
-    def slope(phi: float) -> float:
-        return -math.fsum(c * w * math.sin(w * phi + d) for c, w, d in terms)
-
-    grid = np.linspace(start, end, int(256 * (end - start) / math.pi) + 1)
-    values = np.array([slope(phi) for phi in grid])
-    left = np.flatnonzero(values[:-1] * values[1:] < 0)
-    roots = [float(brentq(slope, grid[i], grid[i + 1], xtol=1e-15, rtol=8.9e-16)) for i in left]
-    roots += [float(phi) for phi in grid[1:-1][values[1:-1] == 0.0]]
-    return tuple(sorted(roots))
-
-
-_CATALOGUE: dict[str, Callable[..., AbstractPulse]] = {
+_CATALOGUE: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
     factory.__name__: factory
     for factory in (
         sine,
@@ -219,8 +146,20 @@ PULSE_NAMES: tuple[str, ...] = tuple(_CATALOGUE)
 """Names that `get_pulse` knows; a leading minus mirrors the pulse."""
 
 
-@lru_cache(maxsize=256)
-def get_pulse(name: str, **parameters: float) -> AbstractPulse:
+def as_pulse(pulse: str | AbstractPulse) -> SinusoidalPulse | WaveletPulse:
+    """The pulse itself, or the one of that name.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For anything else.
+    """
+    if isinstance(pulse, SinusoidalPulse | WaveletPulse):
+        return pulse
+    return get_pulse(pulse)  # type: ignore[arg-type]  # whatever it is, the message is the same
+
+
+def get_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
     """The pulse of that name; `"-sine"` is the mirrored sine.
 
     Parameters
@@ -235,12 +174,17 @@ def get_pulse(name: str, **parameters: float) -> AbstractPulse:
     InvalidArgumentError
         For an unknown name or parameter, or a parameter out of range.
     """
+    if not isinstance(name, str):
+        allowed = "a SinusoidalPulse, a WaveletPulse, or one of " + ", ".join(PULSE_NAMES)
+        raise InvalidArgumentError("pulse", name, allowed)
+    return _made(name, **{key: number(key, value) for key, value in parameters.items()})
+
+
+@lru_cache(maxsize=256)
+def _made(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
     base = one_of("pulse", name.removeprefix("-"), PULSE_NAMES)
-    if base != "mavroeidis_papageorgiou":
-        for parameter in parameters:
-            one_of(f"parameter of pulse {base}", parameter, ())
-    else:
-        for parameter in parameters:
-            one_of(f"parameter of pulse {base}", parameter, ("cycles", "phase"))
+    allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
+    for parameter in parameters:
+        one_of(f"parameter of pulse {base}", parameter, allowed)
     made = _CATALOGUE[base](**parameters)
     return made.mirrored() if name.startswith("-") else made

@@ -13,8 +13,9 @@ import math
 from rocking.chatter import settles
 from rocking.compilation import Record, kernel
 from rocking.cuts import cut
+from rocking.errors import SearchError
 from rocking.free_rocking import free_fate
-from rocking.scratch import FALLEN, IMPACT
+from rocking.scratch import FALLEN, IMPACT, terms_of
 from rocking.slender_events import fly, hop
 from rocking.slender_flight import start_arc, turn
 from rocking.taylor_flight import fly_steps
@@ -44,7 +45,7 @@ def begin(slenderness: float, omega: float, alpha: float, flight: Record) -> Non
         return
     flight.a, flight.omega, flight.alpha = 1.0 / slenderness, omega, alpha
     flight.fastest = 1.0
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         flight.rate[k] = omega * flight.multiple[k]
         flight.fastest = max(flight.fastest, flight.rate[k])
     flight.count = cut(slenderness, flight)
@@ -60,7 +61,7 @@ def uplift(flight: Record) -> bool:
     flight.next_phase, flight.next_w = flight.cut_phase[flight.interval], 0.0
     flight.next_sign = -flight.cut_level[flight.interval]  # positive ground acceleration: negative rotation
     flight.uplifts, flight.before_uplift = flight.uplifts + 1, flight.impacts
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         flight.cosine0[k] = flight.cut_cosine[flight.interval, k]
         flight.sine0[k] = flight.cut_sine[flight.interval, k]
     if flight.outcome == NO_UPLIFT:
@@ -113,8 +114,12 @@ def land(flight: Record, w: float, eta: float) -> None:
             flight, flight.next_w, eta, phase, flight.cut_phase[flight.interval + 1], flight.peak
         ):
             flight.at_rest = flight.chatter = 1
-    elif flight.next_w <= 0.0:  # eta = 0 while the ground already pushes: up again at once
-        flight.next_sign, flight.next_w = -flight.cut_level[flight.interval], 0.0
+    else:
+        # such an interval holds at most three impacts: in it no flight ends on the side to which the ground pushes
+        if flight.impacts > IMPACT_LIMIT + 3 * flight.count:
+            raise SearchError("impacts do not end")
+        if flight.next_w <= 0.0:  # eta = 0 while the ground already pushes: up again at once
+            flight.next_sign, flight.next_w = -flight.cut_level[flight.interval], 0.0
 
 
 @kernel

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from rocking.compilation import Record, Vector, kernel
-from rocking.rock import advance, begin
+from rocking.cancellation import stopped
+from rocking.compilation import Record, Vector, entry, kernel
+from rocking.rock import advance, advance_by_arc, begin
 from rocking.slender_flight import state, turn
 from rocking.taylor_events import evaluate
 from rocking.taylor_flight import impact_in_step, start_steps
@@ -20,15 +21,15 @@ def sample_step(
     steps: Record,
     sign: float,
     start: float,
-    stop: float,
+    end: float,
     tau: Vector,
     filled: int,
     rotation: Vector,
     velocity: Vector,
 ) -> int:
-    """Evaluate the Taylor step that began at time `start` at the samples before `stop`; the samples passed."""
+    """Evaluate the Taylor step that began at time `start` at the samples before `end`; the samples passed."""
     order = steps.order
-    while filled < len(tau) and tau[filled] < stop:
+    while filled < len(tau) and tau[filled] < end:
         h = max(tau[filled] - start, 0.0)  # sums of steps round differently
         rotation[filled] = sign * evaluate(steps.z, 0, order, h)
         velocity[filled] = sign * evaluate(steps.rate, 0, order - 1, h)
@@ -41,7 +42,7 @@ def sample_steps(
     flight: Record,
     steps: Record,
     start: float,
-    stop: float,
+    end: float,
     farthest: float,
     tau: Vector,
     filled: int,
@@ -61,7 +62,7 @@ def sample_steps(
             steps,
             flight.sign,
             start + elapsed,
-            stop if last else start + (elapsed + h),
+            end if last else start + (elapsed + h),
             tau,
             filled,
             rotation,
@@ -76,10 +77,10 @@ def sample_steps(
 
 @kernel
 def sample_arc(
-    flight: Record, start: float, stop: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
+    flight: Record, start: float, end: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
 ) -> tuple[int, float, float]:
     """Evaluate the arc of the last flight of `advance`; the samples passed, last z, w."""
-    while filled < len(tau) and tau[filled] < stop:
+    while filled < len(tau) and tau[filled] < end:
         h = max(tau[filled] - start, 0.0)
         turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
         z, w = state(flight, h, flight.cosine1, flight.sine1)
@@ -91,6 +92,55 @@ def sample_arc(
 
 
 @kernel
+def sample_pulse(
+    slenderness: float,
+    omega: float,
+    eta: float,
+    alpha: float,
+    flight: Record,
+    steps: Record | None,
+    farthest: float,
+    tau: Vector,
+    rotation: Vector,
+    velocity: Vector,
+    landings: Vector,
+    stop: Vector,
+) -> int:
+    """`rock_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
+    begin(slenderness, omega, alpha, flight)
+    pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
+    filled, written, going = 0, 0, flight.count > 0
+    while going and not stopped(stop):
+        flight.length = math.nan
+        going = advance_by_arc(flight, eta) if steps is None else advance(flight, steps, eta)
+        if math.isnan(flight.length):
+            break  # at rest for good
+        start = (flight.phase - flight.end_phase[0]) / omega
+        end = start + flight.length
+        if going:
+            end = (flight.next_phase - flight.end_phase[0]) / omega  # where the next flight says that it starts
+            if written < len(landings):
+                landings[written] = end
+                written += 1
+        elif end < pulse_end:  # known to overturn before the pulse ends: its last flight goes on
+            flight.length, end = pulse_end - start, pulse_end
+        while filled < len(tau) and tau[filled] < start:
+            filled += 1  # at rest
+        # `advance` has prepared the next flight: its angles must not stand in for this one's
+        turn(flight, flight.phase, flight.cosine0, flight.sine0)
+        if steps is None or flight.by_arcs == 1:
+            filled, z, w = sample_arc(flight, start, end, tau, filled, rotation, velocity)
+        else:
+            reach = math.inf if going else farthest
+            filled, z, w = sample_steps(flight, steps, start, end, reach, tau, filled, rotation, velocity)
+        if going:
+            turn(flight, flight.next_phase, flight.cosine0, flight.sine0)
+        else:
+            flight.end_z, flight.end_w = z, w
+    return written
+
+
+@entry
 def rock_and_sample(
     slenderness: float,
     omega: float,
@@ -103,6 +153,7 @@ def rock_and_sample(
     rotation: Vector,
     velocity: Vector,
     landings: Vector,
+    stop: Vector,
 ) -> int:
     """One block from rest to its final fate, sampled at the times `tau` during the pulse.
 
@@ -120,48 +171,46 @@ def rock_and_sample(
         Times from the pulse's start [-], ascending; `rotation` and `velocity` (samples,) are zero on entry.
     landings : float array
         Filled with the times of the impacts as far as it reaches.
+    stop : uint8 array (1,)
+        Once another thread sets it to 1, this returns within a flight, with samples missing.
 
     Returns
     -------
     int
         Impacts written down.
     """
-    begin(slenderness, omega, alpha, flight)
-    pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
-    filled, written, going = 0, 0, flight.count > 0
-    while going:
-        flight.length = math.nan
-        going = advance(flight, steps, eta)
-        if math.isnan(flight.length):
-            break  # at rest for good
-        start = (flight.phase - flight.end_phase[0]) / omega
-        stop = start + flight.length
-        if going:
-            stop = (flight.next_phase - flight.end_phase[0]) / omega  # where the next flight says that it starts
-            if written < len(landings):
-                landings[written] = stop
-                written += 1
-        elif stop < pulse_end:  # known to overturn before the pulse ends: its last flight goes on
-            flight.length, stop = pulse_end - start, pulse_end
-        while filled < len(tau) and tau[filled] < start:
-            filled += 1  # at rest
-        # `advance` has prepared the next flight: its angles must not stand in for this one's
-        turn(flight, flight.phase, flight.cosine0, flight.sine0)
-        if flight.by_arcs == 1:
-            filled, z, w = sample_arc(flight, start, stop, tau, filled, rotation, velocity)
-        else:
-            reach = math.inf if going else farthest
-            filled, z, w = sample_steps(flight, steps, start, stop, reach, tau, filled, rotation, velocity)
-        if going:
-            turn(flight, flight.next_phase, flight.cosine0, flight.sine0)
-        else:
-            flight.end_z, flight.end_w = z, w
-    return written
+    return sample_pulse(
+        slenderness, omega, eta, alpha, flight, steps, farthest, tau, rotation, velocity, landings, stop
+    )
 
 
-@kernel
-def rock_freely(
+@entry
+def sample_arcs(
+    slenderness: float,
+    omega: float,
+    eta: float,
+    alpha: float,
     flight: Record,
+    farthest: float,
+    tau: Vector,
+    rotation: Vector,
+    velocity: Vector,
+    landings: Vector,
+    stop: Vector,
+) -> int:
+    """`rock_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE`.
+
+    Compiled as `rock_arcs`, it has the same bits.
+    """
+    return sample_pulse(slenderness, omega, eta, alpha, flight, None, farthest, tau, rotation, velocity, landings, stop)
+
+
+@entry
+def rock_freely(
+    z: float,
+    w: float,
+    sign: float,
+    alpha: float,
     steps: Record,
     eta: float,
     start: float,
@@ -171,13 +220,18 @@ def rock_freely(
     rotation: Vector,
     velocity: Vector,
     landings: Vector,
+    stop: Vector,
 ) -> int:
     """Continue from the state that the solver left at the end of the pulse.
 
     Parameters
     ----------
-    flight, steps
-        As `rock_and_sample` left them.
+    z, w, sign : float
+        |theta|/alpha, its rate, and sgn(theta) there: the fields `end_z`, `end_w` and `end_sign` of a record.
+    alpha : float
+        Slenderness angle [rad], 0: slender.
+    steps
+        Scratch, as `scratch.prepared_steps`.
     eta : float
         Restitution [-].
     start, horizon : float
@@ -188,27 +242,28 @@ def rock_freely(
         Filled for times from `start` on.
     landings : float array
         Filled with the times of the impacts as far as it reaches.
+    stop : uint8 array (1,)
+        Once another thread sets it to 1, this returns within a flight, with samples missing.
 
     Returns
     -------
     int
         Impacts written down.
     """
-    set_block(steps, 0, flight.alpha, flight.omega)
+    set_block(steps, 0, alpha, 1.0)
     steps.strength[0], steps.lifted[0], steps.phase[0] = 0.0, 0.0, 0.0
     filled, written = 0, 0
     while filled < len(tau) and tau[filled] < start:
         filled += 1
     time = start
-    steps.z0[0], steps.w0[0] = flight.end_z, flight.end_w
-    flight.sign = flight.end_sign
+    steps.z0[0], steps.w0[0] = z, w
     grounded = False
-    while flight.sign != 0.0 and time < horizon and steps.z0[0] < farthest:
+    while sign != 0.0 and time < horizon and steps.z0[0] < farthest and not stopped(stop):
         steps.limit[0] = horizon - time
         take_step(steps)
         impact = impact_in_step(steps, 0, False, grounded)
         h = steps.h[0] if impact < 0.0 else impact
-        filled = sample_step(steps, flight.sign, time, time + h, tau, filled, rotation, velocity)
+        filled = sample_step(steps, sign, time, time + h, tau, filled, rotation, velocity)
         time += h
         grounded = impact >= 0.0
         if not grounded:
@@ -219,7 +274,7 @@ def rock_freely(
             written += 1
         steps.z0[0] = 0.0
         steps.w0[0] = -eta * evaluate(steps.rate, 0, steps.order - 1, h)  # (2.3)
-        flight.sign = -flight.sign
+        sign = -sign
         if steps.w0[0] <= INVISIBLE or written == len(landings):
             break
     return written

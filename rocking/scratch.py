@@ -1,7 +1,7 @@
 """The records on which the kernels work: a pulse with the state of a cell in hand, and the Taylor steps of several.
 
-Plain memory of fixed layout: kernels read and write it without reference counting, and loops over the sinusoids of the
-pulse have a length known when they are compiled. Records are prepared per pulse; each thread works on copies.
+Plain memory of fixed layout, one for all pulses: kernels read and write it without reference counting, and are compiled
+once. Records are prepared per pulse; each thread works on copies.
 """
 
 from __future__ import annotations
@@ -11,12 +11,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from rocking.compilation import Record
+from rocking.compilation import Record, kernel
 from rocking.lanes import BYTES, LANES
+from rocking.pulse_shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
 from rocking.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
-
-MOST_PIECES = 84
-"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
 
 COEFFICIENTS = 17
 """Length of the series of the slender arcs: degree 16 in z."""
@@ -30,27 +28,24 @@ FINEST = 1e-17
 UNDERWAY, IMPACT, PULSE_END, FALLEN = -1, 0, 1, 2
 """What ends a flight, if it has; it has fallen when nothing can bring it back, known before the pulse ends."""
 
-POLYNOMIAL = 4
-"""Coefficients of a wavelet's polynomial."""
 
-
-def layout(terms: int) -> np.dtype[np.void]:
-    """Fields of the record for a pulse of that many sinusoids c cos(w phi + d); wavelets have one of amplitude 0."""
-    per_term = (terms,)
-    ends, cuts = (MOST_PIECES + 1,), (3 * MOST_PIECES + 1,)
+def _layout(most_terms: int) -> np.dtype[np.void]:
+    per_term = (most_terms,)
+    ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
     return np.dtype(
         [
             # the pulse
+            ("terms", np.int64),  # sinusoids c cos(w phi + d) of it; wavelets have one of amplitude 0
             ("amplitude", np.float64, per_term),  # c
             ("multiple", np.float64, per_term),  # w
             ("shift", np.float64, per_term),  # d
             ("spread", np.float64),  # wavelet: f = (sum polynomial[k] phi^k) exp(-phi^2/spread); 0: sinusoids
-            ("polynomial", np.float64, (POLYNOMIAL,)),
+            ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
             ("pieces", np.int64),  # monotone pieces of f
             ("end_phase", np.float64, ends),  # their ends, with f and the angles' cosines and sines there
             ("end_shape", np.float64, ends),
-            ("end_cosine", np.float64, (*ends, terms)),
-            ("end_sine", np.float64, (*ends, terms)),
+            ("end_cosine", np.float64, (*ends, most_terms)),
+            ("end_sine", np.float64, (*ends, most_terms)),
             ("half_turn", np.float64, ends),  # single sinusoid: phase at which the piece's half-turn of it starts,
             ("upright", np.float64, ends),  # and its cosine there, +1 or -1
             # the cell
@@ -62,8 +57,8 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("cut_phase", np.float64, cuts),  # see `cuts`
             ("cut_level", np.float64, cuts),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
             ("cut_rise", np.float64, cuts),  # sign of f' there
-            ("cut_cosine", np.float64, (*cuts, terms)),
-            ("cut_sine", np.float64, (*cuts, terms)),
+            ("cut_cosine", np.float64, (*cuts, most_terms)),
+            ("cut_sine", np.float64, (*cuts, most_terms)),
             # where `rock` stands
             ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
             ("cell", np.int64),  # its place among the questions, -1: none
@@ -94,7 +89,6 @@ def layout(terms: int) -> np.dtype[np.void]:
             ("cosine1", np.float64, per_term),  # at the point last turned to
             ("sine1", np.float64, per_term),
             ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
-            ("scaled", np.float64, per_term),
             # its Taylor steps
             ("until", np.int64),  # cut at which they must end next
             ("pushed", np.int64),  # whether the ground pushes all the way there
@@ -128,9 +122,21 @@ def layout(terms: int) -> np.dtype[np.void]:
     )
 
 
-def steps_layout(terms: int) -> np.dtype[np.void]:
-    """Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
-    lanes, series = (LANES,), (ORDER + 1, LANES)
+FLIGHT = _layout(MAX_SINUSOIDS)
+"""Fields of the record of a pulse and a cell."""
+
+SINGLE = _layout(1)
+"""The same for a pulse of one sinusoid: loops over the sinusoids are gone when it is compiled."""
+
+
+@kernel
+def terms_of(flight: Record) -> int:
+    """Number of sinusoids of the pulse; known when compiled for a record `SINGLE`."""
+    return flight.terms if len(flight.force) > 1 else 1
+
+
+def _steps_layout() -> np.dtype[np.void]:
+    per_term, lanes, series = (MAX_SINUSOIDS,), (LANES,), (ORDER + 1, LANES)
     return np.dtype(
         [
             ("z", np.float64, series),  # coefficients of z,
@@ -160,18 +166,22 @@ def steps_layout(terms: int) -> np.dtype[np.void]:
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("bend", np.float64, lanes),  # bound of |w''| on it
-            # the pulse, as in `layout`
-            ("amplitude", np.float64, (terms,)),
-            ("multiple", np.float64, (terms,)),
-            ("shift", np.float64, (terms,)),
+            # the pulse, as in `FLIGHT`
+            ("terms", np.int64),
+            ("amplitude", np.float64, per_term),
+            ("multiple", np.float64, per_term),
+            ("shift", np.float64, per_term),
             ("spread", np.float64),
-            ("polynomial", np.float64, (POLYNOMIAL,)),
+            ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
             # what is asked
             ("order", np.int64),  # degree of the steps, 6 to `ORDER`
             ("log_precision", np.float64),  # log2 of the share of the motion that the last terms may have
         ]
     )
 
+
+STEPS = _steps_layout()
+"""Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
 
 ANSWER = np.dtype(
     [
@@ -191,28 +201,35 @@ ANSWER = np.dtype(
 """What is answered about a cell, as in `response.Response`."""
 
 
+def has_one_sinusoid(pulse: AbstractPulse) -> bool:
+    """Whether a record `SINGLE` holds the pulse."""
+    return isinstance(pulse, SinusoidalPulse) and len(pulse.terms) == 1
+
+
 @lru_cache(maxsize=256)
-def prepared(pulse: AbstractPulse) -> Record:
-    """The record of a pulse, to be copied before use."""
+def prepared(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT) -> Record:
+    """The record of a pulse, `FLIGHT` or `SINGLE`, to be copied before use."""
     wavelet = isinstance(pulse, WaveletPulse)
     terms = ((0.0, 1.0, 0.0),) if wavelet else pulse.terms if isinstance(pulse, SinusoidalPulse) else ()
-    record: Record = np.zeros(1, layout(len(terms)))[0]
+    count = len(terms)
+    record: Record = np.zeros(1, fields)[0]
     amplitude, multiple, shift = (np.array(column) for column in zip(*terms, strict=True))
-    record["amplitude"], record["multiple"], record["shift"] = amplitude, multiple, shift
+    record["terms"] = count
+    record["amplitude"][:count], record["multiple"][:count], record["shift"][:count] = amplitude, multiple, shift
     if isinstance(pulse, WaveletPulse):
         record["spread"] = pulse.spread
         record["polynomial"][: len(pulse.polynomial)] = pulse.polynomial
     phases = np.array([pulse.start, *pulse.stationary, pulse.end])
-    count = len(phases)
-    record["pieces"] = count - 1
-    record["end_phase"][:count] = phases
-    record["end_shape"][:count] = pulse.shape(phases)
+    ends = len(phases)
+    record["pieces"] = ends - 1
+    record["end_phase"][:ends] = phases
+    record["end_shape"][:ends] = pulse.shape(phases)
     angles = multiple * phases[:, None] + shift
-    record["end_cosine"][:count] = np.cos(angles)
-    record["end_sine"][:count] = np.sin(angles)
+    record["end_cosine"][:ends, :count] = np.cos(angles)
+    record["end_sine"][:ends, :count] = np.sin(angles)
     half_turn = np.floor((0.5 * (angles[:-1, 0] + angles[1:, 0])) / np.pi)
-    record["half_turn"][: count - 1] = half_turn * np.pi - shift[0]
-    record["upright"][: count - 1] = 1.0 - 2.0 * (half_turn % 2.0)
+    record["half_turn"][: ends - 1] = half_turn * np.pi - shift[0]
+    record["upright"][: ends - 1] = 1.0 - 2.0 * (half_turn % 2.0)
     return record
 
 
@@ -227,11 +244,10 @@ def prepared_steps(flight: Record, precision: float = FINEST) -> Record:
         Share of the motion during a step that the last terms of its series may have [-], from `FINEST` to 1e-4. The
         degree follows from it: 1 - log(precision)/2 makes the steps longest for the work, Jorba and Zou (2005).
     """
-    kind = steps_layout(len(flight["amplitude"]))
-    memory = np.zeros(kind.itemsize + BYTES, np.uint8)
+    memory = np.zeros(STEPS.itemsize + BYTES, np.uint8)
     start = -memory.ctypes.data % BYTES
-    steps: Record = memory[start : start + kind.itemsize].view(kind)[0]
-    for name in ("amplitude", "multiple", "shift", "spread", "polynomial"):
+    steps: Record = memory[start : start + STEPS.itemsize].view(STEPS)[0]
+    for name in ("terms", "amplitude", "multiple", "shift", "spread", "polynomial"):
         steps[name] = flight[name]
     steps["order"] = min(ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)

@@ -8,6 +8,9 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
+PARTIAL = ".partial"
+"""Suffix of a file that is being written; one that was killed leaves it behind."""
+
 _MARK = b"\nsha256 "
 _LENGTH = len(_MARK) + 64 + 1
 
@@ -18,9 +21,8 @@ def seal(path: Path) -> None:
         file.write(_MARK + hashlib.sha256(path.read_bytes()).hexdigest().encode() + b"\n")
 
 
-def flaw(path: Path) -> str | None:
-    """What is wrong with a sealed file: that it carries no seal, or not its own; None if it is whole."""
-    content = path.read_bytes()
+def flaw(content: bytes) -> str | None:
+    """What is wrong with the bytes of a sealed file: no seal, or not its own; None if they are whole."""
     body, end = content[:-_LENGTH], content[-_LENGTH:]
     if not end.startswith(_MARK):
         return "damaged, or not written by this package: no digest at its end"

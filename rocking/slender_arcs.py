@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, Vector, kernel
-from rocking.scratch import COEFFICIENTS
+from rocking.scratch import COEFFICIENTS, terms_of
 
 LARGEST_EXPONENT = 350.0
 """e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""
@@ -42,7 +42,7 @@ def hyperbolic(h: float) -> tuple[float, float]:
 def anchor(flight: Record) -> None:
     """Coefficients of the arc from the flight's start, once `force`, `w0`, `cosine0` and `sine0` are set."""
     x0, y0, below, slope = -1.0, flight.w0, 0.0, flight.w0
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         share = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
         flight.share[k] = share
         below -= share * flight.cosine0[k]
@@ -59,7 +59,7 @@ def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, 
     (3.4) with `share` = F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
     """
     moved, slope = flight.below, flight.slope
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         moved += flight.share[k] * cosine[k]
         slope -= flight.share[k] * flight.rate[k] * sine[k]
     cosh1, sinh = hyperbolic(h)
@@ -70,7 +70,7 @@ def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, 
 def pull(flight: Record, cosine: Vector) -> float:
     """q = 1 + F [-]: how strongly the block is pulled back towards the ground."""
     q = 1.0
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         q += flight.force[k] * cosine[k]
     return q
 
@@ -81,26 +81,27 @@ def expand(flight: Record, z: float, w: float, q: float, cosine: Vector, sine: V
 
     z'' = z - 1 - F gives (n + 1)(n + 2) z_{n+2} = z_n - F_n.
     """
-    coef, scaled = flight.coef, flight.scaled
+    coef = flight.coef
+    for n in range(1, COEFFICIENTS - 2):
+        coef[n + 2] = 0.0
+    for k in range(terms_of(flight)):  # coef[n + 2] becomes F_n
+        scaled, rate, cosine_k, sine_k = flight.force[k], flight.rate[k], cosine[k], sine[k]
+        for n in range(1, COEFFICIENTS - 2):
+            scaled *= rate * (1.0 / n)
+            turned = n % 4  # derivatives of cos run cos, -sin, -cos, sin
+            if turned == 0:
+                coef[n + 2] += scaled * cosine_k
+            elif turned == 1:
+                coef[n + 2] -= scaled * sine_k
+            elif turned == 2:
+                coef[n + 2] -= scaled * cosine_k
+            else:
+                coef[n + 2] += scaled * sine_k
     coef[0] = z
     coef[1] = w
     coef[2] = 0.5 * (z - q)
-    for k in range(len(flight.force)):
-        scaled[k] = flight.force[k]
     for n in range(1, COEFFICIENTS - 2):
-        term = 0.0
-        for k in range(len(flight.force)):
-            scaled[k] *= flight.rate[k] * (1.0 / n)
-            turned = n % 4  # derivatives of cos run cos, -sin, -cos, sin
-            if turned == 0:
-                term += scaled[k] * cosine[k]
-            elif turned == 1:
-                term -= scaled[k] * sine[k]
-            elif turned == 2:
-                term -= scaled[k] * cosine[k]
-            else:
-                term += scaled[k] * sine[k]
-        coef[n + 2] = (coef[n] - term) * (1.0 / ((n + 1.0) * (n + 2.0)))
+        coef[n + 2] = (coef[n] - coef[n + 2]) * (1.0 / ((n + 1.0) * (n + 2.0)))
 
 
 @kernel

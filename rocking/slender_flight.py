@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, Vector, kernel
+from rocking.scratch import terms_of
 from rocking.slender_arcs import RADIUS, acceleration, anchor, arc, expand, jerk, pull, rotation, velocity
 
 
 @kernel
 def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
     """Set the cosines and sines of the angles at `phase`."""
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         angle = flight.multiple[k] * phase + flight.shift[k]
         cosine[k] = math.cos(angle)
         sine[k] = math.sin(angle)
@@ -20,7 +21,7 @@ def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
 @kernel
 def start_arc(flight: Record) -> None:
     """Prepare the flight that begins at `phase`, where `cosine0` and `sine0` are set already."""
-    for k in range(len(flight.force)):
+    for k in range(terms_of(flight)):
         flight.force[k] = flight.sign * flight.a * flight.amplitude[k]
     flight.q0 = 0.0 if flight.lifted == 1 else pull(flight, flight.cosine0)  # exactly, at uplift through |a f| = 1
     anchor(flight)

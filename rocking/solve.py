@@ -7,18 +7,20 @@ import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.compilation import Record
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.cancellation import StopFlag, array_of, check
+from rocking.compilation import Record, plain
+from rocking.errors import broadcast, in_range
 from rocking.fate_margin import fate_margin
 from rocking.lanes import LANES
-from rocking.pulses import AbstractPulse, SinusoidalPulse, get_pulse
+from rocking.pulses import AbstractPulse, SinusoidalPulse, as_pulse
 from rocking.response import Response
-from rocking.rock_many import rock_many
-from rocking.scratch import ANSWER, FINEST, prepared, prepared_steps
+from rocking.rock_many import rock_arcs, rock_many
+from rocking.scratch import ANSWER, FINEST, SINGLE, has_one_sinusoid, prepared, prepared_steps
 
 SMALLEST_SHARE, LARGEST_SHARE = 2048, 4096
 """Cells handed to one thread at a time: at least a millisecond of work, as long as a thread takes to start."""
@@ -42,7 +44,8 @@ CLOSE = 1e-3
 """Margin of the fate [-] below which a block is solved as accurately as doubles allow, whatever the tolerance."""
 
 
-CORES = os.cpu_count() or 1
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+"""Cores that this process may use [-]."""
 
 
 class Scratch(threading.local):
@@ -50,6 +53,11 @@ class Scratch(threading.local):
 
     def __init__(self) -> None:
         self.of = lru_cache(maxsize=16)(_scratch_of)
+        self.single = lru_cache(maxsize=16)(_single_scratch_of)
+
+
+def _single_scratch_of(pulse: AbstractPulse) -> Record:
+    return prepared(pulse, SINGLE).copy()
 
 
 def _scratch_of(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void], Record]:
@@ -58,11 +66,6 @@ def _scratch_of(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void
 
 
 scratch = Scratch()
-
-
-def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
-    """The pulse itself, or the one of that name."""
-    return get_pulse(pulse) if isinstance(pulse, str) else pulse
 
 
 def checked_groups(
@@ -77,13 +80,8 @@ def checked_groups(
     )
     angles = groups[3]
     in_range("alpha", angles[angles > 0.0], *ALPHAS, unit="rad")
-    try:
-        return list(np.broadcast_arrays(*groups))
-    except ValueError:
-        shapes = tuple(group.shape for group in groups)
-        raise InvalidArgumentError(
-            "slenderness, frequency_ratio, restitution, alpha", shapes, "shapes that broadcast against each other"
-        ) from None
+    given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
+    return broadcast(given, groups)
 
 
 def peak_response(
@@ -95,8 +93,9 @@ def peak_response(
     alpha: ArrayLike | None = None,
     tolerance: float | None = None,
     threads: int | None = None,
+    stop: StopFlag | None = None,
 ) -> Response:
-    """Peak rotation and final fate of blocks under a pulse, exact to rounding; the arguments broadcast.
+    """Peak rotation and final fate of blocks under a pulse, exact to rounding; the arguments broadcast by position.
 
     Cells that differ in restitution alone and follow one another, as along a last axis, share their first flight.
 
@@ -117,6 +116,8 @@ def peak_response(
         blocks under sinusoids are exact in any case. Where the last bit of the question decides, nothing can be kept.
     threads : int, optional
         Threads for large arrays, >= 1; all cores by default.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Returns
     -------
@@ -126,22 +127,25 @@ def peak_response(
     Raises
     ------
     InvalidArgumentError
-        Naming the argument that is out of range, not finite, or of a shape that does not broadcast.
+        Naming the argument that is no pulse, out of range, not finite, not a real number or masked; arguments whose
+        shapes do not broadcast; labelled ones (xarray, pandas) whose dimensions or indexes differ.
+    StoppedError
+        If `stop` was set.
     """
     if threads is not None:
         in_range("threads", threads, 1, math.inf)
     made = as_pulse(pulse)
     groups = checked_groups(slenderness, frequency_ratio, restitution, alpha)
     shape = groups[0].shape
-    cells = [np.ascontiguousarray(group).ravel() for group in groups]
+    cells = [plain(group).ravel() for group in groups]
     allowed = 0.0 if tolerance is None else float(in_range("tolerance", tolerance, *TOLERANCES))
     by_arcs = isinstance(made, SinusoidalPulse) and not cells[3].any()  # which have nothing to leave out
     precision = FINEST if by_arcs else max(FINEST, RESERVE * allowed)
-    answers = _rock(made, cells, precision, threads)
+    answers = _rock(made, cells, precision, threads, stop)
     if precision > FINEST:
         margin = fate_margin(answers["end_z"], answers["end_w"], cells[2], cells[3])
         near = np.flatnonzero(np.abs(margin) < CLOSE + 100.0 * allowed)
-        answers[near] = _rock(made, [cell[near] for cell in cells], FINEST, threads)
+        answers[near] = _rock(made, [cell[near] for cell in cells], FINEST, threads, stop)
     found = {name: answers[name].reshape(shape) for name in ANSWER.names or ()}
     peak = found["peak"]
     return Response(
@@ -160,24 +164,44 @@ def peak_response(
 
 
 def _rock(
-    pulse: AbstractPulse, cells: list[NDArray[np.float64]], precision: float, threads: int | None
+    pulse: AbstractPulse,
+    cells: list[NDArray[np.float64]],
+    precision: float,
+    threads: int | None,
+    stop: StopFlag | None,
 ) -> NDArray[np.void]:
     """The answers (size,) to questions of four arrays (size,), shared out among threads."""
     size = cells[0].size
     answers = np.empty(size, ANSWER)
+    single, rigid = has_one_sinusoid(pulse), bool(cells[3].any())
+    if single and rigid and not cells[3].all():
+        for kind in (cells[3] > 0.0, cells[3] == 0.0):
+            answers[kind] = _rock(pulse, [cell[kind] for cell in cells], precision, threads, stop)
+        return answers
+    by_arcs = single and not rigid
     cores = int(threads) if threads else CORES
     share = min(max(math.ceil(size / cores), SMALLEST_SHARE), LARGEST_SHARE)
 
-    def fill(start: int) -> None:
+    def fill(start: int, flag: NDArray[np.uint8]) -> None:
         part = slice(start, start + share)
-        rock_many(*(cell[part] for cell in cells), *scratch.of(pulse, precision), answers[part])
+        questions = [cell[part] for cell in cells]
+        if by_arcs:
+            rock_arcs(*questions, scratch.single(pulse), flag, answers[part])
+        else:
+            rock_many(*questions, *scratch.of(pulse, precision), flag, answers[part])
 
     starts = range(0, size, share)
     workers = min(cores, len(starts))
     if workers <= 1:
         for start in starts:
-            fill(start)
+            fill(start, array_of(stop))
+            check(stop)
     else:
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(fill, starts))
+        with (stop or StopFlag()).part() as own, ThreadPoolExecutor(workers) as pool:
+            try:
+                list(pool.map(fill, starts, repeat(own.array)))
+            except BaseException:  # an interrupt from the keyboard among them: the pool waits for its threads
+                own.set()
+                raise
+        check(stop)
     return answers

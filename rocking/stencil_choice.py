@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from rocking.compilation import Vector, kernel
+from rocking.compilation import Vector, entry
 from rocking.cube import SQUARED
 from rocking.interpolation import SHIFTS, Mesh, in_cell
 
 _SHIFTS = len(SHIFTS)
 
 
-@kernel
+@entry
 def interpolate_cells(
     peaks: Vector, i: Vector, j: Vector, codes: Vector, x: Vector, y: Vector, mesh: Mesh, values: Vector
 ) -> None:
@@ -21,7 +21,7 @@ def interpolate_cells(
         values[c] = in_cell(peaks, i[c], j[c], codes[c] - SQUARED if squared else codes[c], squared, x[c], y[c], mesh)
 
 
-@kernel
+@entry
 def choose_stencils(
     peaks: Vector,
     i: Vector,

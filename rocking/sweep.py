@@ -13,6 +13,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.cancellation import StopFlag
+from rocking.compilation import plain
 from rocking.cube import NO_STENCIL, OVERTURNS, build_spectrum_dataset
 from rocking.errors import in_range
 from rocking.interpolation import Mesh
@@ -77,6 +79,7 @@ def spectra(
     alpha: ArrayLike = (0.0,),
     barred: NDArray[np.bool_] | None = None,
     threads: int | None = None,
+    stop: StopFlag | None = None,
 ) -> Iterator[xr.Dataset]:
     """The spectrum cubes of one pulse, one for each coefficient of restitution in turn (schema in `rocking.cube`).
 
@@ -96,6 +99,8 @@ def spectra(
         Cells that are not to be interpolated, as boundaries of overturning cross them (`boundary_cells`).
     threads : int, optional
         Threads of the solver; by default all cores.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
 
     Raises
     ------
@@ -106,7 +111,7 @@ def spectra(
     columns = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     angles = in_range("alpha", alpha, 0.0, np.pi / 2, closed="left", unit="rad")
     etas = in_range("restitution", restitution, 0.0, 1.0)
-    grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads)
+    grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
     layers: list[list[Layer]] = [[] for _ in etas]
     shape = (etas.size, angles.size, rows.size - 1, columns.size - 1)
     errors = {name: np.full(shape, np.nan) for name in ("interpolation_error", "restitution_error", "alpha_error")}
@@ -167,6 +172,7 @@ class _Grid:
     mesh: Mesh
     columns: Array
     threads: int | None
+    stop: StopFlag | None
 
     def nodes(self, etas: Array, angle: float) -> Response:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
@@ -247,7 +253,9 @@ class _Grid:
         places = PROBES[: len(peaks)]
         x, y = (np.array(axis) for axis in zip(*(self.mesh.within(cells, place) for place in places), strict=True))
         codes, least = layer.stencil[cells], np.empty(cells[0].size)
-        choose_stencils(layer.peak_rotation, *cells, x, y, np.ascontiguousarray(peaks), self.mesh, codes, least)
+        choose_stencils(
+            layer.peak_rotation, *map(plain, cells), x, y, np.ascontiguousarray(peaks), self.mesh, codes, least
+        )
         layer.stencil[cells], errors[cells] = codes, least
 
     def _probe(self, places: Sequence[tuple[float, float]], cells: Cells, etas: Array, angle: float) -> Array:
@@ -269,6 +277,7 @@ class _Grid:
             alpha=float(angle) or None,
             tolerance=tolerance,
             threads=self.threads,
+            stop=self.stop,
         )
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking.compilation import plain
 from rocking.cube import NO_STENCIL, OVERTURNS, SQUARED
 from rocking.interpolation import Mesh, stencils
 from rocking.response import Outcome, Response
@@ -63,7 +64,12 @@ class Layer:
         """What is interpolated, E or the peak, at one place within each of some smooth cells."""
         values = np.empty(cells[0].size)
         interpolate_cells(
-            self.peak_rotation, *cells, self.stencil[cells], *self.mesh.within(cells, place), self.mesh, values
+            self.peak_rotation,
+            *map(plain, cells),
+            self.stencil[cells],
+            *self.mesh.within(cells, place),
+            self.mesh,
+            values,
         )
         return values
 

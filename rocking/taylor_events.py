@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 from rocking.compilation import Series, kernel
+from rocking.errors import SearchError
+
+MAX_INTERVALS = 10_000_000
+"""Most intervals that `first_crossing` looks at. A simple zero needs some 30, one of order n up to s^(2/n - 1), where
+s = 1e-9 is the smallest interval: 3e4 for n = 4, and 3e6 for n = 7."""
 
 
 @kernel
@@ -82,7 +87,9 @@ def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, fa
     """
     left, size = lo, hi - lo
     smallest = 1e-9 * size
-    while left < hi:
+    for _ in range(MAX_INTERVALS):
+        if left >= hi:
+            return -1.0
         half = 0.5 * size
         value, rate = value_and_slope(series, lane, top, left + half)
         clear = abs(value) > abs(rate) * half + 0.5 * bend * half * half
@@ -97,7 +104,7 @@ def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, fa
             left = right
             size = min(2.0 * size, hi - left) if hi - left > smallest else hi - left
             if size <= 0.0:
-                break
+                return -1.0
         else:
             size = half
-    return -1.0
+    raise SearchError("the search for a zero of a Taylor step does not end")

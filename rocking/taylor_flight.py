@@ -11,9 +11,14 @@ from __future__ import annotations
 import math
 
 from rocking.compilation import Record, kernel
+from rocking.errors import SearchError
 from rocking.scratch import FALLEN, IMPACT, PULSE_END, UNDERWAY
 from rocking.taylor_events import bend_before, evaluate, first_crossing, polish
 from rocking.taylor_step import set_block, take_step
+
+MAX_STEPS = 1_000_000
+"""Most Taylor steps of one flight: a hundred times what is needed. A step takes a fair share of 1/max(1, rate); a pulse
+of 84 pieces lasts 264/rate, and where that is long the growing exponential ends the flight within about 50."""
 
 
 @kernel
@@ -92,13 +97,15 @@ def highest(steps: Record, lane: int, start: float, h: float, z1: float, w1: flo
         if 2.0 * abs(slope) > bend * reach:  # |w - slope (t - top)| <= bend (t - top)^2/2
             return evaluate(steps.z, lane, steps.order, top)
     largest = 0.0
-    while start < h:
+    for _ in range(4 * steps.order):  # w has fewer zeros than its degree; one may be met again for rounding
+        if start >= h:
+            return largest
         top = first_crossing(steps.rate, lane, steps.order - 1, start, h, True, bend)
         if top < 0.0:
-            break
+            return largest
         largest = max(largest, evaluate(steps.z, lane, steps.order, top))
         start = top + 1e-9 * h
-    return largest
+    raise SearchError("the search for peaks of a Taylor step does not end")
 
 
 @kernel
@@ -145,8 +152,9 @@ def fly_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
     """Follow one flight in the first lane to its end, as `follow_step`."""
     set_block(steps, 0, flight.alpha, flight.omega)
     start_steps(flight, steps, 0)
-    ended, w, z = UNDERWAY, 0.0, 0.0
-    while ended == UNDERWAY:
+    for _ in range(MAX_STEPS):
         take_step(steps)
         ended, w, z = follow_step(flight, steps, 0)
-    return ended, w, z
+        if ended != UNDERWAY:
+            return ended, w, z
+    raise SearchError("a flight does not end")

@@ -16,7 +16,7 @@ import math
 from rocking.compilation import Record, kernel
 from rocking.lane_sines import sine_and_cosine
 from rocking.lanes import LANES, everywhere, larger, load, magnitude, rough_exp2, rough_log2, smaller, store
-from rocking.scratch import POLYNOMIAL
+from rocking.pulse_shapes import MAX_POLYNOMIAL
 
 
 @kernel
@@ -43,7 +43,7 @@ def set_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
 def expand_sinusoids(steps: Record) -> None:
     """Fill `f` with the coefficients of F in powers of tau about `phase`, for a sum of sinusoids."""
     f, phase, omega, strength = steps.f, load(steps.phase, 0), load(steps.omega, 0), load(steps.strength, 0)
-    for k in range(len(steps.amplitude)):
+    for k in range(steps.terms):
         sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
         rate = omega * steps.multiple[k]
         scale, bend = strength * steps.amplitude[k], rate * rate
@@ -80,7 +80,7 @@ def expand_wavelet(steps: Record) -> None:
         if n > 1:
             total += square * load(gauss, n - 2)
         if n > 2:
-            total += p[POLYNOMIAL - 1] * load(gauss, n - 3)
+            total += p[MAX_POLYNOMIAL - 1] * load(gauss, n - 3)
         store(f, n, power * total)
         power = power * omega
 

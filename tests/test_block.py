@@ -48,6 +48,20 @@ def test_housner_restitution_conserves_angular_momentum(b, h):
     assert block.housner_restitution == pytest.approx(centre / (4 / 3 * R * R), rel=1e-12, abs=1e-12)  # (2.4)
 
 
+@given(alpha=st.floats(0.05, 1.5))
+def test_inelastic_restitution_is_that_of_a_ground_that_only_pushes(alpha):
+    """Housner's impact lets the old corner rise; where it would have to sink, the ground pushes at both corners."""
+    block = Block.from_slenderness_angle(alpha, 1.0)
+    b, h = block.half_width, block.half_height
+    # turning with unit rate about the corner (b, 0) towards the corner (-b, 0), its centre (0, h) goes (-h, -b);
+    # to stop it takes vertical impulses at the two corners over the mass, whose sum is b and whose moment is:
+    old, new = np.linalg.solve([[1, 1], [b, -b]], [b, -(h * h + 1 / 3)])
+    assert new > 0
+    if abs(block.housner_restitution) > 1e-9:
+        assert (old > 0) == (block.housner_restitution < 0)
+    assert block.inelastic_restitution == (0.0 if old > 0 else pytest.approx(block.housner_restitution, abs=1e-9))
+
+
 def test_restitution_of_slender_blocks_tends_to_one():
     assert Block.from_slenderness_angle(1e-6, 1.0).housner_restitution == pytest.approx(1, abs=2e-12)
     assert Block.from_slenderness_angle(math.radians(54.7356103), 1.0).housner_restitution == pytest.approx(0, abs=1e-8)

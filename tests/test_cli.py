@@ -83,6 +83,23 @@ def test_overturned_has_no_peak():
     assert run("response", *falls).startswith("overturns")
 
 
+def test_the_first_line_says_where_the_rocking_model_does_not_apply():
+    cube = ["--half-width", "0.5m", "--half-height", "0.5m", "--peak-acceleration", "1.5g"]
+    asked = ["response", *UNITS[:2], *cube, *UNITS[8:]]
+    first = run(*asked).splitlines()[0]
+    assert first.startswith("would slide: the rocking model does not apply")
+    answer = json.loads(run(*asked, "--json"))
+    assert (answer["outcome"], answer["rocking_model_applies"]) == ("SAFE", False)
+    assert answer["friction_demand"] == pytest.approx(17.9, abs=0.1)
+    assert json.loads(run("response", *UNITS, "--json"))["rocking_model_applies"]
+    assert "rocking_model_applies" not in json.loads(run("response", *GROUPS, "--json"))  # the slender limit
+
+
+def test_a_squat_block_does_not_uplift():
+    squat = ["--half-width", "1m", "--half-height", "0.5m", "--peak-acceleration", "1.2g"]
+    assert run("response", *UNITS[:2], *squat, *UNITS[8:]).startswith("never uplifts")
+
+
 def test_history_in_three_forms():
     truth = time_history("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, samples=20)
     answer = json.loads(run("history", *GROUPS, "--samples", "20", "--json"))
@@ -166,7 +183,6 @@ def test_boundary_in_three_forms():
         (["response", *UNITS[:3], "20", *UNITS[4:]], "--half-width", "0.3 m"),
         (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--half-width", "0.3 m"),
         (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--half-width", "(0, inf)"),
-        (["response", *UNITS[:3], "2 m", *UNITS[4:]], "--restitution", "negative"),
         (["response", *UNITS[:8], *UNITS[10:]], "--pulse-period", "required"),
         (["history", *GROUPS, "--samples", "1"], "--samples", "[2,"),
         (["spectrum", "--pulse", "sine", "--slenderness", "0.4", "--restitution", "0.85", "--points", "1"],
@@ -174,6 +190,7 @@ def test_boundary_in_three_forms():
         (["boundary", "--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-max", "0.1"],
          "--frequency-ratio-max", "(0.2, inf)"),
         (["serve", "--port", "99999"], "--port", "65535"),
+        (["serve", "--results", ""], "--results", "the name of a folder"),
     ],
 )  # fmt: skip
 def test_refusals_name_the_option_and_what_is_allowed(arguments, option, allowed):

@@ -117,3 +117,11 @@ def test_upper_solution_of_the_semi_analytical_condition_stands_for_no_event():
     semi = cf.semi_analytical_amplitudes([4.0, 4.8], 0.9)
     assert np.isfinite(semi.upper).all()
     assert not cf.within_pulse(semi.upper, [4.0, 4.8]).any()
+
+
+def test_solutions_beyond_twice_case_2_are_left_out():
+    omega, eta = np.array([4.2327731092436975, 4.921008403361344, 6.002521008403361]), np.array([0.7, 0.8, 1.0])
+    limit = 2 * cf.case_2_amplitude(omega)
+    beyond = cf.ad_hoc_margin(np.linspace(limit, limit + 1, 400), omega, eta)
+    assert ((beyond[:-1] >= 0) & (beyond[1:] < 0)).any(axis=0).all()  # there is one
+    assert np.isnan(cf.semi_analytical_amplitudes(omega, eta).upper).all()

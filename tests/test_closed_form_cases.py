@@ -82,6 +82,14 @@ def test_case_1_2_impact_against_direct_integration(a, omega):
     assert cf.free_velocity(a, omega, tau) == pytest.approx(velocity, rel=1e-10)  # (3.14)
 
 
+def test_a_block_that_falls_without_impact_has_no_velocity_of_impact():
+    omega = np.array([0.8, 1.15, 3.0])
+    above = cf.case_2_amplitude(omega) * np.array([[1.001], [1.02], [1.5]])
+    assert (cf.impact_velocity_squared(above, omega) < 0).any(axis=0).all()
+    velocity = cf.case_1_2_impact_velocity(above, omega)
+    assert np.isnan(velocity[cf.impact_velocity_squared(above, omega) < 0]).all()
+
+
 def test_case_1_2_impact_time_where_the_exponential_overflows():
     # the amplitude 1.01 is far above case 2 for slow pulses; take the last one below it
     omega = 5e-3

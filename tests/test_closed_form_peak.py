@@ -36,6 +36,22 @@ def test_closed_spectrum_is_exact_where_its_lobe_holds_the_peak():
     np.testing.assert_allclose(cf.case_1_2_peak_by_pulse(a, omega, eta) * a, closed, rtol=1e-15)
 
 
+def test_no_peak_after_an_impact_where_the_block_overturns_without_one():
+    """(4.13) and its leading term mean something below (3.10) only, and are never negative."""
+    assert np.isnan(cf.case_1_2_peak(1 / 0.3, 2, 0.9))
+    omega = np.geomspace(0.3, 12.0, 60)
+    ratio = np.concatenate([np.linspace(0.5, 0.999, 40), np.linspace(1.001, 4.0, 40)])[:, None]
+    a = cf.case_2_amplitude(omega) * ratio
+    a, omega = np.broadcast_arrays(np.maximum(a, 1.0), omega)
+    directly = peak_response("sine", slenderness=1 / a, frequency_ratio=omega, restitution=0.9).outcome == 2
+    assert 0.3 < directly.mean() < 0.7
+    for form in (cf.case_1_2_peak, cf.case_1_2_peak_by_pulse, cf.small_peak, cf.small_peak_by_pulse):
+        found = form(a, omega, 0.9)
+        assert np.isnan(found[directly]).all()
+        assert (found[np.isfinite(found)] >= 0).all()
+    assert np.isfinite(cf.scale_function(a, omega)[~directly]).mean() > 0.9
+
+
 def test_small_forms_are_the_leading_term():
     a, omega = 3.0, np.array([20.0, 40.0, 80.0])
     exact = cf.case_1_2_peak(a, omega, 0.85)
@@ -90,3 +106,14 @@ def test_scale_law_refuses_wrong_questions():
         scale_law_deviation([0.1, 0.2, 0.3], [0.8, 0.9], reference=0.8)
     with pytest.raises(InvalidArgumentError, match="`restitution`"):
         restitution_exponent([0.1, 0.2], [0.0, 0.9])
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_scale_law_of_a_block_of_peaks(axis):
+    eta, rng = np.array([0.8, 0.9, 1.0]), np.random.default_rng(2)
+    peaks = rng.uniform(0.1, 0.9, (3, 4, 5))
+    deviation = scale_law_deviation(np.moveaxis(peaks, 0, axis), eta, reference=0.9, axis=axis)
+    np.testing.assert_array_equal(np.moveaxis(deviation, axis, 0), scale_law_deviation(peaks, eta, reference=0.9))
+    for i in range(4):
+        one = scale_law_deviation(peaks[:, i], eta, reference=0.9)
+        np.testing.assert_array_equal(np.moveaxis(deviation, axis, 0)[:, i], one)

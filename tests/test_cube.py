@@ -89,6 +89,10 @@ def test_cube_survives_the_file(cube: xr.Dataset, written: Path) -> None:
     assert back.attrs["title"] == cube.attrs["title"]
 
 
+def test_files_are_readable_by_everybody_and_writable_by_their_owner(written: Path) -> None:
+    assert written.stat().st_mode & 0o777 == 0o644
+
+
 def test_same_content_gives_the_same_bytes(written: Path, tmp_path: Path) -> None:
     write_dataset(read_spectrum(written), tmp_path / "again.nc")
     assert (tmp_path / "again.nc").read_bytes() == written.read_bytes()

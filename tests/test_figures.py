@@ -88,6 +88,16 @@ def test_closed_form_of_figure_8_is_exact_on_its_main_branch(smoke_results: Path
     assert np.nanmin(np.abs(below.closed_form.values / below.spectrum[0].values - 1)) > 0.05
 
 
+def test_closed_form_of_figure_8_is_missing_where_the_block_overturns_without_impact(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-08.nc")
+    closed = data.closed_form.transpose("restitution", "slenderness", "frequency_ratio").values
+    direct = overturning_amplitudes(data.frequency_ratio.values, 0.9).direct
+    beyond = 1 / data.slenderness.values[:, None] > direct
+    assert beyond.any()
+    assert np.isnan(closed[:, beyond]).all()
+    assert np.nanmin(closed) > 0
+
+
 def test_integration_with_dimensions_falls_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-09.nc")
     above = data.threshold_overturns_above.values

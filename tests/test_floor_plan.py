@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 # independent of each other.
 FLOORS = (
     ("errors", "compilation", "provenance", "version", "lanes", "seal"),
-    ("block", "pulses", "orientation", "response"),
+    ("block", "pulse*", "orientation", "response", "cancellation"),
     ("scratch",),
     ("free_rocking", "fate_margin", "lane_sines", "contact", "cuts", "groups", "cube", "interpolation", "scale_law"),
     ("chatter", "stencil_choice"),
@@ -23,14 +23,14 @@ FLOORS = (
     ("solve*", "sampling"),
     ("sweep*", "boundary*", "history*", "bounded_response"),
     ("lookup*",),
-    ("units",),
+    ("units", "precompile"),
     ("cli*",),
 )
 FRONT_DOORS = ("rocking.cli", "api", "workflow", "tests", "benchmarks", "stress")
 # What the service may use: it asks for answers and opens no solver.
 OF_THE_SERVICE = (
     *("lookup*", "cube", "boundary*", "history*", "bounded_response", "solve*"),
-    *("errors", "block", "pulses", "response", "groups", "provenance"),
+    *("errors", "block", "pulses", "response", "groups", "provenance", "cancellation", "precompile"),
 )
 
 MODULES = {

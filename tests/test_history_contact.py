@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking.history_contact import PRACTICAL_FRICTION
+from rocking.history_contact import LARGEST_FRICTION, PRACTICAL_FRICTION, extremes_of
+from rocking.history_motion import motion_of
 from rocking.pulses import PULSE_NAMES
 
 QUESTIONS = (
@@ -91,6 +92,35 @@ def test_warnings_name_what_is_needed():
         "sine", slenderness=0.6, frequency_ratio=5.0, restitution=0.93, alpha=math.radians(12), contact=True
     )
     assert calm.warnings == ""
+
+
+def contact_of(**question):
+    return extremes_of(motion_of("sine", **question))
+
+
+def test_the_sentence_puts_first_that_the_rocking_model_does_not_apply():
+    upright = contact_of(slenderness=0.6, frequency_ratio=5.0, restitution=0.93, alpha=math.radians(12))
+    assert (upright.rocking_applies, upright.sentence) == (True, "rocks and comes to rest")
+    squat = {"restitution": 0.25, "alpha": math.radians(45)}
+    slides = contact_of(slenderness=0.9, frequency_ratio=4.0, **squat)
+    assert LARGEST_FRICTION < slides.largest_friction_demand < math.inf
+    assert not slides.rocking_applies
+    assert slides.sentence.startswith("would slide: the rocking model does not apply")
+    assert slides.sentence.endswith("rocks and comes to rest")
+    lifts = contact_of(slenderness=0.2, frequency_ratio=12.0, **squat)
+    assert lifts.sentence.startswith("would lift off the ground: the rocking model does not apply")
+    assert not lifts.rocking_applies
+
+
+def test_a_block_at_rest_may_slide_but_does_not_overturn():
+    strong, weak = "never uplifts, but slides unless the coefficient of friction is at least 1.9", "never uplifts"
+    for amplitude, sentence in ((0.95, strong), (0.4, weak)):
+        still = contact_of(slenderness=1 / amplitude, frequency_ratio=4.0, restitution=0.5, alpha=math.atan(2.0))
+        assert still.largest_friction_demand == pytest.approx(2.0 * amplitude)  # a_g/g
+        assert still.rocking_applies
+        assert still.sentence == sentence
+    slender = contact_of(slenderness=0.2, frequency_ratio=3.0, restitution=0.9)
+    assert slender.rocking_applies  # friction is not judged in the slender limit
 
 
 @pytest.mark.parametrize("alpha", [None, 1e-12, 1e-3, 0.5, 1.57])

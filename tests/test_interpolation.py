@@ -46,6 +46,14 @@ def test_cubics_are_interpolated_exactly_whichever_nodes_serve():
         np.testing.assert_allclose(found, cubic(*mesh.within(cells, place)), rtol=1e-12, atol=1e-12)
 
 
+def test_every_stencil_holds_its_cell():
+    """Between the first and the last of four nodes: a cell beside them would be extrapolated."""
+    assert {shift for both in SHIFTS for shift in both} == set(range(STENCIL - 1))
+    assert len(set(SHIFTS)) == len(SHIFTS)
+    for count, below in LEVELS:
+        assert 0 <= below <= count - 2
+
+
 def test_error_falls_with_the_fourth_power_of_the_step_on_uneven_axes_too():
     errors = []
     counts = np.array([20, 40, 80])
@@ -102,6 +110,44 @@ def test_a_block_that_overturns_within_a_cell_leaves_it_without_a_promise():
     codes, errors = np.zeros(4, dtype=np.int8), np.empty(4)
     choose_stencils(values, i, j, x, y, truth, mesh, codes, errors)
     np.testing.assert_array_equal(errors, [np.inf, 0.0, np.inf, 0.25])
+
+
+@pytest.mark.parametrize("best", range(len(SHIFTS)))
+def test_the_only_stencil_without_a_spoilt_node_is_found(best):
+    """From whichever the cell had before."""
+    axis = np.arange(8.0)
+    mesh = Mesh.of(axis, np.exp(axis))
+    i = j = np.array([3])
+    row, column = 3 - SHIFTS[best][0], 3 - SHIFTS[best][1]
+    peaks = 0.3 + 0.01 * axis[:, None] - 0.02 * axis
+    spoilt = np.ones(peaks.shape, dtype=bool)
+    spoilt[row : row + 4, column : column + 4] = False
+    x, y = (part[None] for part in mesh.within((i, j), (0.4, 0.6)))
+    truth = 0.3 + 0.01 * x - 0.02 * y
+    for before in range(len(SHIFTS)):
+        codes, errors = np.array([before], dtype=np.int8), np.empty(1)
+        choose_stencils(peaks + 0.1 * spoilt, i, j, x, y, truth, mesh, codes, errors)
+        assert codes[0] == best
+        assert errors[0] < 1e-14
+
+
+@pytest.mark.parametrize("along", ["rows", "columns"])
+def test_no_stencil_reaches_beyond_the_grid(along):
+    """Also where memory goes on with values that would fit better than those of the grid."""
+    n, wider = 8, np.arange(12.0)
+    memory = Mesh.of(wider, np.exp(wider))
+    mesh = Mesh(memory.rows[:n], memory.columns[:n], memory.row_products[: n - 3], memory.column_products[: n - 3])
+    plane = 0.01 * np.arange(12.0 * n)  # linear in rows and columns, across the ends of rows too
+    peaks = plane.copy().reshape(12, n)[:n]
+    peaks[(n - 4, slice(None)) if along == "rows" else (slice(None), n - 4)] += 0.1
+    i, j = (np.array([k]) for k in ((n - 2, 2) if along == "rows" else (2, n - 2)))
+    x, y = (part[None] for part in mesh.within((i, j), (0.5, 0.5)))
+    codes, errors = np.array([SHIFTS.index((2, 1) if along == "rows" else (1, 2))], dtype=np.int8), np.empty(1)
+    choose_stencils(peaks, i, j, x, y, 0.01 * (n * x + y), mesh, codes, errors)
+    row, column = i[0] - SHIFTS[codes[0] % SQUARED][0], j[0] - SHIFTS[codes[0] % SQUARED][1]
+    assert 0 <= row <= n - 4
+    assert 0 <= column <= n - 4
+    assert errors[0] > 1e-3
 
 
 def test_stencils_against_a_plain_loop():

@@ -98,6 +98,24 @@ def test_fate_is_right_and_the_bound_holds(cube, tolerance):
     assert from_cube.mean() > (0.5 if tolerance > 1e-5 else 0.2)  # a coarse cube still answers most
 
 
+def test_rest_is_told_by_whoever_was_asked(cube):
+    """From 1/a = 1 on nothing is solved or interpolated, whatever the axes of the cube."""
+    question = {"slenderness": 1.5, "frequency_ratio": 100.0}
+    for method, source in (("auto", "solver"), ("solver", "solver"), ("cube", "cube")):
+        found = cube.response(**question, method=method)
+        assert (found.outcome, found.source, found.error_bound) == (Outcome.NO_UPLIFT, source, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"), [("slenderness", 0.96, "[0.05, 0.95]"), ("alpha", 0.3, "0 [rad]")]
+)
+def test_axes_of_a_cube_are_told(cube, name, value, allowed):
+    question = {"slenderness": 0.5, "frequency_ratio": 3.0} | {name: value}
+    with pytest.raises(OutsideCubeError) as caught:
+        cube.response(**question, method="cube")
+    assert caught.value.allowed.startswith(allowed)
+
+
 def test_method_cube_is_refused_or_right(cube):
     asked = questions(300, seed=6)
     refused = 0
@@ -228,3 +246,15 @@ def test_missing_and_damaged_files_say_so(tmp_path, path):
     damaged.write_bytes(path.read_bytes()[:2000])
     with pytest.raises(DatasetError, match="damaged"):
         open_cube(damaged)
+
+
+def test_bound_of_the_solver_is_the_change_when_all_groups_shrink_together():
+    rng = np.random.default_rng(7)
+    groups = {"slenderness": rng.uniform(0.1, 0.9, 200), "frequency_ratio": rng.uniform(0.5, 9.0, 200)}
+    groups["restitution"] = rng.uniform(0.6, 1.0, 200)
+    smaller = {name: value * (1 - SOLVER_ERROR) for name, value in groups.items()}
+    found = solve_with_bound("sine", **groups, alpha=0.2)
+    peak, beside = (peak_response("sine", **these, alpha=0.2).peak_rotation for these in (groups, smaller))
+    expected = SOLVER_ERROR * peak + 3 * np.abs(beside - peak)
+    np.testing.assert_allclose(found.error_bound, expected, rtol=1e-12)
+    assert np.isfinite(expected).sum() > 100

@@ -45,6 +45,55 @@ def test_restitution_and_angle_are_interpolated_too(folder, between_etas, betwee
         error = np.abs(found.peak_rotation - truth.peak_rotation)[stands]
         assert (error <= found.error_bound[stands]).all()
         assert (found.error_bound[stands] <= tolerance).all()
+        counted = from_cube & (found.impacts >= 0) & ~truth.chatter
+        assert counted.sum() > 0.5 * from_cube.sum()
+        np.testing.assert_array_equal(found.impacts[counted], truth.impacts[counted])
+
+
+def test_impacts_are_told_where_all_nodes_that_serve_agree_in_them(folder):
+    """Half-way between two cells of two restitutions and two angles: 16 nodes, more where more levels serve."""
+    cubes = [read_spectrum(folder / f"eta-{eta:.2f}.nc") for eta in ETAS]
+    rows, columns = (0.5 * (axis[1:] + axis[:-1]) for axis in GRID.values())
+    found = open_cube(folder).response(
+        slenderness=rows[:, None],
+        frequency_ratio=columns,
+        restitution=0.5 * (ETAS[1] + ETAS[2]),
+        alpha=0.5 * (ANGLES[1] + ANGLES[2]),
+        tolerance=1e-2,
+    )
+
+    def all_agree(etas, angles):
+        nodes = np.array([cubes[e].impacts.values[a] for e in etas for a in angles])
+        corners = np.stack([nodes[:, i : i + 90, j : j + 90] for i in (0, 1) for j in (0, 1)])
+        return (corners == corners[0, 0]).all(axis=(0, 1))
+
+    from_cube = found.source == "cube"
+    every, next_ones = all_agree(range(4), range(4)), all_agree((1, 2), (1, 2))
+    told = found.impacts >= 0
+    assert told[from_cube & every].all()
+    assert not told[from_cube & ~next_ones].any()
+    assert (from_cube & every).sum() > 1000
+    assert (from_cube & ~next_ones).sum() > 20
+
+
+def test_errors_between_levels_are_those_in_the_middle_of_the_gap(tmp_path):
+    """Where they are largest; those within the cells are next to nothing on this grid."""
+    fine = {"slenderness": np.linspace(0.3, 0.4, 21), "frequency_ratio": np.geomspace(9.0, 10.0, 21)}
+    etas = [0.5, 0.6, 0.7, 0.8, 0.9]
+    for cube in spectra("sine", restitution=etas, **fine):
+        write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
+    lower, upper = (read_spectrum(tmp_path / f"eta-{eta:.2f}.nc") for eta in (0.7, 0.8))
+    rows = 0.5 * (fine["slenderness"][1:] + fine["slenderness"][:-1])
+    columns = np.sqrt(fine["frequency_ratio"][1:] * fine["frequency_ratio"][:-1])
+    asked = {"slenderness": rows[:, None], "frequency_ratio": columns, "restitution": 0.75}
+    found = open_cube(tmp_path).response(**asked, tolerance=1.0)
+    truth = peak_response("sine", **asked)
+    between = lower.restitution_error.values[0, :-1, :-1]
+    within = np.maximum(*(cube.interpolation_error.values[0, :-1, :-1] for cube in (lower, upper)))
+    counts = (found.source == "cube") & ~truth.overturned & (within < 0.03 * between)
+    assert counts.sum() > 40
+    error = np.abs(found.peak_rotation - truth.peak_rotation)[counts]
+    assert (error <= 1.1 * between[counts]).all()
 
 
 def test_a_cube_that_was_made_with_another_neighbour_is_not_interpolated_towards_it(folder, tmp_path):

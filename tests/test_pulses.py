@@ -5,10 +5,20 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from numpy import cos, exp, pi, sin, sqrt
 
+import rocking
 from rocking.errors import InvalidArgumentError
-from rocking.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse, get_pulse
+from rocking.pulse_shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+from rocking.pulses import (
+    PULSE_NAMES,
+    AbstractPulse,
+    SinusoidalPulse,
+    WaveletPulse,
+    get_pulse,
+)
 
 PHI_1, PHI_2 = 0.0697034 * pi, 0.0409760 * pi
 BETA = sqrt(6) * sqrt(3 - sqrt(6)) * exp(-(3 - sqrt(6)) / 2)
@@ -186,3 +196,125 @@ def test_parameters_belong_to_one_pulse():
 def test_abstract_pulse_cannot_be_made():
     with pytest.raises(TypeError, match="abstract"):
         AbstractPulse("none", 0.0, 1.0, ())
+
+
+def without_stationary(pulse):
+    """The same shape, made by somebody who does not know its turns."""
+    own = (pulse.terms,) if isinstance(pulse, SinusoidalPulse) else (pulse.polynomial, pulse.spread)
+    return type(pulse)(pulse.name, pulse.start, pulse.end, (), *own)
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_stationary_phases_are_found_if_not_given(pulse):
+    made = without_stationary(pulse)
+    np.testing.assert_allclose(made.stationary, pulse.stationary, rtol=0, atol=3e-15 * max(1.0, pulse.end))
+
+
+@pytest.mark.parametrize("name", PULSE_NAMES)
+def test_a_pulse_made_by_hand_answers_as_the_one_of_the_catalogue(name):
+    groups = {"slenderness": [0.2, 0.5, 0.8], "frequency_ratio": [[1.0], [4.0]], "restitution": 0.85}
+    for alpha in (None, 0.3):
+        own, known = (
+            rocking.peak_response(pulse, **groups, alpha=alpha) for pulse in (without_stationary(get_pulse(name)), name)
+        )
+        np.testing.assert_array_equal(own.outcome, known.outcome)
+        np.testing.assert_allclose(own.peak_rotation, known.peak_rotation, rtol=1e-11)
+
+
+def scaled(kind, start, end, *shape):
+    """A pulse of that shape with unit peak, and its largest value before."""
+    probe = np.linspace(start, end, 20_001)
+
+    def divided(peak):
+        if kind is SinusoidalPulse:
+            return (tuple((c / peak, w, d) for c, w, d in shape[0]),)
+        return tuple(c / peak for c in shape[0]), shape[1]
+
+    peak = 1.0
+    for _ in range(8):  # the largest value lies between two points: the refusal says how much larger it is
+        try:
+            return kind("drawn", start, end, (), *divided(peak))
+        except InvalidArgumentError as error:
+            assume(error.parameter == "max |f|" and error.value > 1e-3)
+            peak *= error.value
+    raise AssertionError(probe)
+
+
+NUMBER = st.floats(-3.0, 3.0)
+TERMS = st.lists(st.tuples(st.floats(0.1, 2.0), st.floats(0.0, 5.0), NUMBER), min_size=1, max_size=MAX_SINUSOIDS)
+POLYNOMIALS = st.lists(NUMBER.map(lambda x: round(x, 3)), min_size=1, max_size=MAX_POLYNOMIAL)
+
+
+def assert_monotone_between_turns(pulse):
+    for low, high in pulse.monotone_pieces:
+        assert low < high
+        slope = np.diff(pulse.shape(np.linspace(low, high, 2001)))
+        assert (slope > -4e-15).all() or (slope < 4e-15).all()
+    assert np.abs(pulse.shape(np.linspace(pulse.start, pulse.end, 2001))).max() <= 1 + 2e-12
+
+
+@given(terms=TERMS, start=NUMBER, length=st.floats(0.1, 20.0))
+def test_no_turn_of_a_sum_of_sinusoids_is_missed(terms, start, length):
+    assert_monotone_between_turns(scaled(SinusoidalPulse, start, start + length, tuple(terms)))
+
+
+@given(polynomial=POLYNOMIALS, spread=st.floats(0.5, 20.0), start=NUMBER, length=st.floats(0.1, 20.0))
+def test_no_turn_of_a_wavelet_is_missed(polynomial, spread, start, length):
+    assert_monotone_between_turns(scaled(WaveletPulse, start, start + length, tuple(polynomial), spread))
+
+
+def test_a_turn_of_order_three_is_one_and_of_order_two_is_none():
+    flat = WaveletPulse("flat", -1.0, 1.0, (), (0.0, 0.0, 0.0, math.exp(0.01)), 100.0)  # phi^3: f' touches 0 at 0
+    assert flat.stationary == ()
+    assert flat.mirrored().stationary == ()
+    cusp = SinusoidalPulse("flat top", -2.0, 2.0, (), ((4 / 3, 1.0, 0.0), (-1 / 3, 2.0, 0.0)))  # f'' = 0 at its top too
+    assert cusp.stationary == pytest.approx((0.0,), abs=1e-5)
+
+
+def test_a_window_without_the_top_of_its_sinusoid():
+    start, end = pi / 3, 2 * pi / 3
+    one = SinusoidalPulse("one", start, end, (), ((2.0, 1.0, 0.0),))
+    two = SinusoidalPulse("two", start, end, (), ((1.0, 1.0, 0.0), (1.0, 1.0, 0.0)))
+    groups = {"slenderness": [0.3, 0.6, 0.9], "frequency_ratio": [[0.5], [2.0]], "restitution": 0.8}
+    ours, theirs = (rocking.peak_response(pulse, **groups) for pulse in (one, two))
+    np.testing.assert_array_equal(ours.outcome, theirs.outcome)
+    np.testing.assert_allclose(ours.peak_rotation, theirs.peak_rotation, rtol=1e-12)
+
+
+SINE = ((1.0, 1.0, -pi / 2),)
+WRONG = {
+    "name": lambda: SinusoidalPulse("", 0.0, 1.0, (), ((1.0, 0.0, 0.0),)),
+    "start": lambda: SinusoidalPulse("x", math.nan, 1.0, (), ((1.0, 0.0, 0.0),)),
+    "end": lambda: SinusoidalPulse("x", 1.0, 1.0, (), ((1.0, 0.0, 0.0),)),
+    "stationary": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (pi / 2,), SINE),
+    "stationary ": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (3 * pi / 2, pi / 2), SINE),
+    "stationary  ": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (pi / 2, 4.0), SINE),
+    "stationary   ": lambda: SinusoidalPulse("x", 0.0, MAX_PIECES * pi + 0.1, (), ((1.0, 1.0, 0.0),)),
+    "max |f|": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (), ((2.0, 1.0, -pi / 2),)),
+    "max |f| ": lambda: WaveletPulse("x", 1.0, 2.0, (), (1.0,), 4.0),
+    "terms": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ()),
+    "terms ": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ((1.0, 0.0),)),
+    "terms  ": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ((1.0, -1.0, 0.0),)),
+    "terms   ": lambda: SinusoidalPulse(
+        "x", 0.0, 1.0, (), ((1 / (MAX_SINUSOIDS + 1), 0.0, 0.0),) * (MAX_SINUSOIDS + 1)
+    ),
+    "polynomial": lambda: WaveletPulse("x", -1.0, 1.0, (), (), 4.0),
+    "polynomial ": lambda: WaveletPulse("x", -1.0, 1.0, (), (1.0,) + (0.0,) * MAX_POLYNOMIAL, 4.0),
+    "spread": lambda: WaveletPulse("x", -1.0, 1.0, (), (1.0,), 0.0),
+    "pulse": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ((1.0, 0.0, 0.0), (0.5, 1.0, 0.0), (-0.5, 1.0, 0.0))),
+}
+
+
+@pytest.mark.parametrize("parameter", WRONG)
+def test_what_the_solver_cannot_follow_is_refused_when_it_is_made(parameter):
+    with pytest.raises(InvalidArgumentError) as error:
+        WRONG[parameter]()
+    assert error.value.parameter == parameter.strip()
+
+
+def test_the_longest_pulse_is_followed():
+    pulse = SinusoidalPulse("long", 0.0, MAX_PIECES * pi, (), ((1.0, 1.0, 0.0),))
+    assert len(pulse.monotone_pieces) == MAX_PIECES
+    found = rocking.peak_response(pulse, slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
+    short = rocking.peak_response("cosine", slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
+    assert found.peak_rotation >= short.peak_rotation > 0.0

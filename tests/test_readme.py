@@ -79,7 +79,8 @@ def test_every_command_has_a_test() -> None:
 
 
 @pytest.mark.parametrize(
-    ("target", "program"), [("reproduce", "snakemake"), ("test", "pytest"), ("serve", "rocking serve")]
+    ("target", "program"),
+    [("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"), ("test", "pytest"), ("serve", "rocking serve")],
 )
 def test_make_targets_of_the_readme(target: str, program: str) -> None:
     assert ["make", target] in MAKE

@@ -47,7 +47,7 @@ def texts() -> dict[str, str]:
     contents = {
         path.relative_to(ROOT).as_posix(): path.read_bytes()
         for path in paths
-        if path.is_file() and "__pycache__" not in path.parts and path.name != "environment.lock"
+        if path.is_file() and "__pycache__" not in path.parts and path.name not in ("environment.lock", ".git")
     }
     return {name: content.decode() for name, content in sorted(contents.items()) if b"\0" not in content}
 

@@ -77,6 +77,12 @@ def test_where_a_block_overturns_at_a_probe_none_serve():
     assert np.isinf(gap.choose(CELLS, [((CENTRE, HALF), np.full(2, np.nan))])).all()
 
 
+def test_levels_are_judged_by_their_largest_error():
+    gap = gap_of([layer(0.3)] * 6, 2)
+    probes = [((CENTRE, share), np.full(2, 0.3 + error)) for share, error in ((0.5, 0.0), (0.25, 0.1), (0.75, -0.02))]
+    assert gap.choose(CELLS, probes) == pytest.approx(0.1)
+
+
 def test_blocks_that_overturn_in_different_ways_are_of_no_kind():
     ways = [(Outcome.OVERTURNED_DIRECTLY, 0), (Outcome.OVERTURNED_AFTER_IMPACT, 1)]
     gap = gap_of([layer(np.nan, ways[0])] * 3 + [layer(np.nan, ways[1])] * 3, 2)

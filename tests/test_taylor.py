@@ -12,6 +12,7 @@ import rocking
 from rocking.lanes import LANES
 from rocking.pulses import PULSE_NAMES
 from rocking.scratch import FINEST, ORDER, prepared, prepared_steps
+from rocking.solve import Scratch
 from rocking.taylor_events import evaluate, first_crossing, polish, value_and_slope
 from rocking.taylor_step import set_block, take_step
 
@@ -227,3 +228,26 @@ def test_fates_reach_the_slender_limit(name):
     for alpha in (1e-8, 1e-5):
         found = rocking.peak_response(name, **question, alpha=alpha)
         np.testing.assert_array_equal(found.outcome, slender.outcome)
+
+
+@pytest.mark.parametrize("pulse", ["sine", "ricker"])
+def test_terms_beyond_the_degree_do_not_count(pulse, monkeypatch):
+    """Series of a lower degree leave rows of the scratch memory unused, whatever these hold."""
+    rng, n = np.random.default_rng(5), 4000
+    groups = {"slenderness": rng.uniform(0.05, 0.99, n), "frequency_ratio": rng.uniform(0.3, 8.0, n)}
+    groups |= {"restitution": rng.uniform(0.3, 0.95, n), "alpha": rng.uniform(0.05, 0.6, n)}
+    clean = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
+
+    def spoilt(flight, precision):
+        steps = prepared_steps(flight, precision)
+        order = int(steps["order"])
+        for name in ("z", "f", "gauss", "s", "c"):
+            steps[name][order + 1 :] = np.nan
+        steps["rate"][order:] = np.nan
+        return steps
+
+    monkeypatch.setattr("rocking.solve.prepared_steps", spoilt)
+    monkeypatch.setattr("rocking.solve.scratch", Scratch())
+    found = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
+    for name in ("peak_rotation", "outcome", "impacts", "end_rotation", "end_velocity"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(clean, name))

@@ -51,12 +51,12 @@ def test_the_service_answers_from_the_wheel(wheel: Path, tmp_path: Path) -> None
     install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--quiet", "--target"]
     subprocess.run([*install, str(installed), str(wheel)], check=True)
     program = "import rocking, sys; print(rocking.__file__); from rocking.cli import app; app()"
-    path = {"PYTHONPATH": str(installed)}
+    path = {"PYTHONPATH": str(installed), "ROCKING_MAX_SECONDS": "600"}
     with serving(tmp_path, tmp_path / "log", (sys.executable, "-c", program), cwd=tmp_path, **path) as server:
         assert str(installed) in server.log.read_text()
         for page in ("/", "/docs", "/openapi.json", "/health", "/metrics", "/static/docs.js"):
             assert httpx2.get(server.address + page).status_code == 200, page
         question = "/v1/response?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=0.85"
-        answer = httpx2.get(server.address + question, timeout=60).json()  # compiled anew, in a folder of its own
+        answer = httpx2.get(server.address + question, timeout=600).json()  # compiled anew, in a folder of its own
         assert answer["outcome"] == "SAFE"
         assert server.stop() in (0, -15)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -14,24 +17,49 @@ SMOKE = PROJECT / "workflow/config/smoke.yaml"
 
 
 def snakemake(
-    directory: Path, *arguments: str, configuration: Path = SMOKE, project: Path = PROJECT
+    directory: Path,
+    *arguments: str,
+    configuration: Path = SMOKE,
+    project: Path = PROJECT,
+    module: str = "snakemake",
 ) -> subprocess.CompletedProcess[str]:
     """Run the workflow of `project` in `directory` as a user would; stdout and stderr are joined in stdout."""
     command: Sequence[str | Path] = (
-        sys.executable, "-m", "snakemake", "--snakefile", project / "Snakefile", "--directory", directory,
+        sys.executable, "-m", module, "--snakefile", project / "Snakefile", "--directory", directory,
         "--configfile", configuration, "--nocolor", *arguments,
     )  # fmt: skip
     return subprocess.run(
-        command, cwd=project, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600, check=False
+        command, cwd=project, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=1200, check=False
     )
 
 
+def reproduce(directory: Path) -> subprocess.CompletedProcess[str]:
+    """What `make reproduce` runs."""
+    return snakemake(directory, module="workflow.run")
+
+
+def rules_to_run(output: str) -> set[str]:
+    """Names in the job table of a dry run."""
+    table = output.partition("Job stats:")[2].partition("total")[0]
+    return set(re.findall(r"^(\w+) +\d+$", table, flags=re.MULTILINE))
+
+
 @pytest.fixture(scope="session")
-def smoke_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder in which the workflow ran with smoke.yaml; do not change anything in it."""
-    directory = tmp_path_factory.mktemp("smoke")
-    finished = snakemake(directory)
-    assert finished.returncode == 0, finished.stdout
+def smoke_run(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Path:
+    """Folder in which the workflow ran with smoke.yaml; do not change anything in it.
+
+    The first worker process of a test run that needs it makes it; the others wait for it.
+    """
+    base = tmp_path_factory.getbasetemp()
+    if os.environ.get("PYTEST_XDIST_WORKER"):
+        base = base.parent  # shared by all workers
+    directory = base / f"smoke-{testrun_uid}"
+    with (base / "smoke.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (base / "smoke.complete").exists():
+            finished = reproduce(directory)
+            assert finished.returncode == 0, finished.stdout
+            (base / "smoke.complete").touch()
     return directory
 
 

@@ -11,19 +11,19 @@ from fastapi import APIRouter, Query, Request
 
 from api.answers import ResponseAnswer, finite, response_answer
 from api.ask import ask
-from api.block_answers import BORDER, BlockAnswer, BlockQuestion, Margins, Threshold
+from api.block_answers import BlockAnswer, BlockQuestion, Margins, Threshold
 from api.block_margins import margins_of
 from api.points import points_of
 from api.question_route import QuestionRoute
 from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
-from api.workshop import attempt
 from rocking.block import Block
 from rocking.boundary_amplitude import critical_amplitude
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.cancellation import StopFlag, attempt
 from rocking.groups import GroupSet, Problem, groups_of
-from rocking.history_contact import extremes_of
+from rocking.history_contact import Extremes, extremes_of
 from rocking.history_motion import motion_of
+from rocking.response import Outcome
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=QuestionRoute)
 
@@ -35,6 +35,9 @@ SEARCH_SHARE = 0.2
 
 NOT_FOUND = "the {} at which the fate changes were not found in time: such a block strikes the ground too often"
 
+BELOW = 1e-9
+"""Relative distance below the lowest change of outcome at which the contact is judged [-]."""
+
 HIGHEST_AMPLITUDE = 100.0
 """Largest a = a_g/(g tan alpha) at which changes of fate are looked for [-], if ten times the asked one is not more."""
 
@@ -42,31 +45,32 @@ HIGHEST_AMPLITUDE = 100.0
 @router.get("/response", summary="A block in SI units")
 async def get_block(question: Annotated[BlockQuestion, Query()], request: Request, service: ServiceDep) -> BlockAnswer:
     """Fate, rotation in degrees, displacement in metres, distance to another fate, friction, by (2.2)."""
-    return await service.off_loop(lambda: _block(service, question), request)
+    return await service.off_loop(question, lambda stop: _block(service, question, stop), request)
 
 
-def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
-    for name, (low, high, unit) in BORDER.items():
-        in_range(name, getattr(question, name), low, high, unit=unit)
+def _block(service: Service, question: BlockQuestion, stop: StopFlag) -> BlockAnswer:
     block = Block(question.half_width, question.half_height, question.gravity)
     asked = _in_groups(question, block)
     points = {name: getattr(asked, name) for name in ("slenderness", "frequency_ratio", "restitution")}
-    (point,) = points_of(*ask(service.atlas, asked, **points))
+    (point,) = points_of(*ask(service.atlas, asked, **points, stop=stop))
     service.metrics.points(point.source, 1)
     found = response_answer(asked, point)
     seconds = SEARCH_SHARE * service.settings.max_seconds
-    found_thresholds = attempt(lambda: _thresholds(question, block, asked), seconds)
+    found_thresholds = attempt(lambda part: _thresholds(question, block, asked, part), seconds, stop)
     thresholds = found_thresholds or []
-    margins = margins_of(question, block, asked, [t.peak_acceleration for t in thresholds], seconds)
+    margins = margins_of(question, block, asked, [t.peak_acceleration for t in thresholds], seconds, stop)
     searched = {"peak accelerations": found_thresholds, "periods and sizes": margins}
+    below = _contact_below(thresholds[0].peak_acceleration, question, block, asked, stop) if thresholds else None
+    safe = below is not None and below.rocking_applies
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
-    contact = extremes_of(motion_of(question.pulse, **points, alpha=block.alpha))
+    contact = extremes_of(motion_of(question.pulse, **points, alpha=block.alpha, stop=stop))
     return BlockAnswer(
         query=question,
         url="/v1/blocks/response?" + urlencode(question.model_dump()),
         response=found,
         overturned=found.overturned,
-        meaning=found.meaning,
+        rocking_model_applies=contact.rocking_applies,
+        meaning=contact.sentence,
         peak_rotation_deg=None if peak is None else math.degrees(peak),
         top_displacement=None if peak is None else _top_displacement(block, peak),
         alpha_deg=math.degrees(block.alpha),
@@ -75,7 +79,8 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
         restitution=asked.restitution,
         uplift_acceleration=block.uplift_acceleration,
         thresholds=found_thresholds,
-        largest_safe_acceleration=thresholds[0].peak_acceleration if thresholds else None,
+        largest_safe_acceleration=thresholds[0].peak_acceleration if safe else None,
+        largest_safe_friction_demand=below.largest_friction_demand if below is not None and safe else None,
         margins=margins,
         friction_at_uplift=block.half_width / block.half_height,
         friction_demand=finite(contact.largest_friction_demand),
@@ -83,7 +88,8 @@ def _block(service: Service, question: BlockQuestion) -> BlockAnswer:
         smallest_normal_reaction=contact.smallest_normal_reaction,
         warnings=[
             *contact.warnings,
-            *_more_warnings(block, question, thresholds, margins),
+            *_more_warnings(block, question, contact, thresholds, margins),
+            *_safety_warnings(below, thresholds),
             *(NOT_FOUND.format(name) for name, result in searched.items() if result is None),
         ],
         notes=_notes(found, margins),
@@ -103,17 +109,18 @@ def _in_groups(question: BlockQuestion, block: Block) -> ResponseQuestion:
         alpha_deg=math.degrees(block.alpha),
         slenderness=float(np.asarray(groups.slenderness)),
         frequency_ratio=float(np.asarray(groups.frequency_ratio)),
-        restitution=_restitution(block, question.restitution),
+        restitution=block.inelastic_restitution if question.restitution == "housner" else question.restitution,
     )
 
 
-def _thresholds(question: BlockQuestion, block: Block, asked: ResponseQuestion) -> list[Threshold]:
+def _thresholds(question: BlockQuestion, block: Block, asked: ResponseQuestion, stop: StopFlag) -> list[Threshold]:
     changes = critical_amplitude(
         question.pulse,
         frequency_ratio=asked.frequency_ratio,
         restitution=asked.restitution,
         alpha=block.alpha,
         highest_amplitude=min(max(HIGHEST_AMPLITUDE, 10.0 / asked.slenderness), 1e6),
+        stop=stop,
     )
     return [
         Threshold(peak_acceleration=float(a) * block.uplift_acceleration, overturns_above=bool(above))
@@ -122,10 +129,15 @@ def _thresholds(question: BlockQuestion, block: Block, asked: ResponseQuestion) 
 
 
 def _more_warnings(
-    block: Block, question: BlockQuestion, thresholds: list[Threshold], margins: Margins | None
+    block: Block, question: BlockQuestion, contact: Extremes, thresholds: list[Threshold], margins: Margins | None
 ) -> list[str]:
     """Doubts about the question itself."""
     said = []
+    if question.restitution == "housner" and block.housner_restitution < 0.0 and contact.outcome != Outcome.NO_UPLIFT:
+        said.append(
+            f"the restitution (2.4) of this shape is negative ({block.housner_restitution:.3g}): the block stops at "
+            "an impact, eta = 0; give a number for another restitution"
+        )
     if block.half_width > block.half_height:
         said.append("the block is wider than high: it would rather slide or bounce than rock")
     here = question.peak_acceleration
@@ -152,12 +164,28 @@ def _notes(found: ResponseAnswer, margins: Margins | None) -> list[str]:
     return said
 
 
-def _restitution(block: Block, asked: str | float) -> float:
-    if isinstance(asked, float):
-        return asked
-    if block.housner_restitution < 0.0:
-        raise InvalidArgumentError("restitution", "housner", "a number: (2.4) is negative for so stocky a block")
-    return block.housner_restitution
+def _contact_below(
+    acceleration: float, question: BlockQuestion, block: Block, asked: ResponseQuestion, stop: StopFlag
+) -> Extremes:
+    """Contact of the motion just below a change of outcome."""
+    motion = motion_of(
+        question.pulse,
+        slenderness=block.uplift_acceleration / acceleration * (1.0 + BELOW),
+        frequency_ratio=asked.frequency_ratio,
+        restitution=asked.restitution,
+        alpha=block.alpha,
+        stop=stop,
+    )
+    return extremes_of(motion)
+
+
+def _safety_warnings(below: Extremes | None, thresholds: list[Threshold]) -> list[str]:
+    if below is None or below.rocking_applies:
+        return []
+    needs = f"it needs a coefficient of friction of {below.largest_friction_demand:.3g}"
+    why = "the block lifts off" if below.lifts_off else needs
+    lowest = f"{thresholds[0].peak_acceleration:.4g} m/s2, the lowest acceleration at which it overturns"
+    return [f"no largest safe acceleration is given: just below {lowest} by the rocking model, {why}"]
 
 
 def _top_displacement(block: Block, rotation: float) -> float:

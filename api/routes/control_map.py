@@ -28,6 +28,7 @@ from api.questions import (
     alpha_of,
 )
 from api.service import Service, ServiceDep
+from rocking.cancellation import StopFlag
 from rocking.cube import AXES, MODEL_RESULT, VARIABLES
 from rocking.errors import in_range
 from rocking.response import Response as Found
@@ -81,7 +82,8 @@ class MapAnswer(BaseModel):
 async def get_map(question: Annotated[MapQuestion, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; the solver always answers, and without error bounds."""
     form = form_of(request, question.format)
-    answer = await service.off_loop(lambda: _map(service, question, form), request)
+    axes = _axes(service, question)
+    answer = await service.off_loop(question, lambda stop: _map(question, *axes, form, stop), request)
     digest = hashlib.sha256(answer.body).hexdigest()
     known = not_modified(request, digest)
     response = answer if known is None else known
@@ -90,14 +92,20 @@ async def get_map(question: Annotated[MapQuestion, Query()], request: Request, s
     return response
 
 
-def _map(service: Service, question: MapQuestion, form: str) -> Response:
-    frequency_ratio, slenderness = _axes(service, question)
+def _map(
+    question: MapQuestion,
+    frequency_ratio: NDArray[np.float64],
+    slenderness: NDArray[np.float64],
+    form: str,
+    stop: StopFlag,
+) -> Response:
     found = peak_response(
         question.pulse,
         slenderness=slenderness[:, None],
         frequency_ratio=frequency_ratio,
         restitution=question.restitution,
         alpha=alpha_of(question.alpha_deg),
+        stop=stop,
     )
     query = question.model_dump(exclude={"format"})
     if form == "nc":

@@ -9,10 +9,10 @@ from pydantic import BaseModel, Field
 
 from api.answers import VERSION
 from api.question_route import QuestionRoute
-from api.questions import AlphaDeg, FrequencyRatio, PulseName, Question, Restitution, alpha_of, checked
+from api.questions import AlphaDeg, FrequencyRatio, PulseName, Question, Restitution, alpha_of
 from api.service import ServiceDep
 from rocking.boundary_amplitude import Thresholds, critical_amplitude
-from rocking.pulses import get_pulse
+from rocking.cancellation import StopFlag
 from rocking.response import Outcome
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
@@ -60,17 +60,17 @@ async def get_critical_amplitude(
     question: Annotated[AmplitudeQuestion, Query()], request: Request, service: ServiceDep
 ) -> AmplitudeAnswer:
     """Every threshold between standing and falling; the solver always answers, each good to 1e-12 in 1/a."""
-    return await service.off_loop(lambda: _answer(question), request)
+    return await service.off_loop(question, lambda stop: _answer(question, stop), request)
 
 
-def _answer(question: AmplitudeQuestion) -> AmplitudeAnswer:
-    get_pulse(question.pulse)
+def _answer(question: AmplitudeQuestion, stop: StopFlag) -> AmplitudeAnswer:
     found = critical_amplitude(
         question.pulse,
-        frequency_ratio=float(checked("frequency_ratio", question.frequency_ratio)),
+        frequency_ratio=question.frequency_ratio,
         restitution=question.restitution,
         alpha=alpha_of(question.alpha_deg),
         highest_amplitude=question.highest_amplitude,
+        stop=stop,
     )
     thresholds = _thresholds(found)
     lowest = thresholds[0].amplitude if thresholds else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 from typing import Annotated, Any
 
@@ -15,18 +16,22 @@ from api.caching import IMMUTABLE, not_modified, validators
 from api.download import file_response
 from api.service import Service, ServiceDep
 from rocking.errors import DatasetError
-from rocking.lookup_files import Product
+from rocking.lookup_files import DataFile, Product, UnknownDatasetError
 
 router = APIRouter(prefix="/v1/datasets", tags=["datasets"])
 
 
 @router.get("", summary="Catalogue")
 async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
-    """All data sets in the results folder."""
+    """All data sets in the results folder that can be read."""
 
     def work() -> list[Product]:
         catalogue = service.atlas.catalogue
-        return [catalogue.product(name) for name in catalogue.names()]
+        found = []
+        for name in catalogue.names():
+            with suppress(UnknownDatasetError, DatasetError):  # gone meanwhile, or unreadable: /health tells
+                found.append(catalogue.product(name))
+        return found
 
     products = await service.reading(work)
     return DatasetCatalogue(datasets=[DatasetSummary(**_summary(product)) for product in products])
@@ -53,12 +58,13 @@ async def get_netcdf(
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
-    product = await service.reading(partial(_sound, service, name))
+    file, product = await service.reading(partial(_sound, service, name))
     if sha256 is None:
-        return file_response(request, product)
+        return file_response(request, file, product)
     if sha256 != product.sha256:
+        file.close()
         raise HTTPException(404, f"`{name}` has another version now: sha256 {product.sha256}")
-    return file_response(request, product, IMMUTABLE)
+    return file_response(request, file, product, IMMUTABLE)
 
 
 @router.head("/{name:path}.zarr/{key:path}", include_in_schema=False)
@@ -90,18 +96,22 @@ async def get_dataset(name: str, service: ServiceDep) -> DatasetDescription:
     return await service.reading(partial(_description, service, name))
 
 
-def _sound(service: Service, name: str) -> Product:
-    """The product, unless it is damaged: a broken file is refused rather than handed on."""
-    product = service.atlas.catalogue.product(name)
-    problem = service.atlas.problem(name)
-    if problem is not None:
-        raise DatasetError(problem)
-    return product
+def _sound(service: Service, name: str) -> tuple[DataFile, Product]:
+    """The open file of a data set, unless it is damaged: a broken file is refused rather than handed on."""
+    file = service.atlas.catalogue.open(name)
+    try:
+        product = service.atlas.catalogue.product_of(file)
+        problem = service.atlas.problem_of(file)
+        if problem is not None:
+            raise DatasetError(problem)
+    except BaseException:
+        file.close()
+        raise
+    return file, product
 
 
 def _description(service: Service, name: str) -> DatasetDescription:
-    product = service.atlas.catalogue.product(name)
-    dataset = service.atlas.catalogue.dataset(name)
+    product, dataset = service.atlas.catalogue.dataset(name)
     return DatasetDescription(
         **_summary(product),
         dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},

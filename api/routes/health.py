@@ -12,7 +12,7 @@ router = APIRouter(tags=["health"])
 
 @router.get("/health", summary="State and versions")
 async def get_health(service: ServiceDep) -> Health:
-    """Every data set is read and checked, once per version of its file, in the background; this waits a second for it.
+    """Every data set is read and checked, once per version of its file, in the background; this waits 0.1 s for it.
 
     It does not wait behind heavy work.
     """

@@ -11,9 +11,9 @@ from api.answers import ContactAnswer, HistoryAnswer, finite
 from api.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
 from api.problems import TooLargeError
 from api.question_route import QuestionRoute
-from api.questions import LONGEST_DURATION, HistoryQuestion, alpha_of, checked
+from api.questions import HistoryQuestion, alpha_of
 from api.service import ServiceDep
-from rocking.errors import in_range
+from rocking.cancellation import StopFlag
 from rocking.history import time_history
 from rocking.history_contact import ATTRIBUTES, COLUMNS
 
@@ -29,21 +29,20 @@ async def get_history(question: Annotated[HistoryQuestion, Query()], request: Re
     if question.samples > service.settings.max_samples:
         raise TooLargeError("samples", question.samples, f"at most {service.settings.max_samples}")
     form = form_of(request, question.format)
-    return await service.off_loop(lambda: _history(question, form), request)
+    return await service.off_loop(question, lambda stop: _history(question, form, stop), request)
 
 
-def _history(question: HistoryQuestion, form: str) -> Response:
-    if question.duration is not None:
-        in_range("duration", question.duration, 0.0, LONGEST_DURATION, closed="right")
+def _history(question: HistoryQuestion, form: str, stop: StopFlag) -> Response:
     motion = time_history(
         question.pulse,
-        slenderness=float(checked("slenderness", question.slenderness)),
-        frequency_ratio=float(checked("frequency_ratio", question.frequency_ratio)),
+        slenderness=question.slenderness,
+        frequency_ratio=question.frequency_ratio,
         restitution=question.restitution,
         alpha=alpha_of(question.alpha_deg),
         duration=question.duration,
         samples=question.samples,
         contact=question.contact,
+        stop=stop,
     )
     if form == "nc":
         return netcdf_response(motion, "history")

@@ -17,9 +17,9 @@ from api.questions import OverturningQuestion, alpha_of
 from api.service import Service, ServiceDep
 from rocking.boundary import overturning_boundary
 from rocking.boundary_curves import curves_at
-from rocking.errors import DatasetError, in_range
+from rocking.cancellation import StopFlag
+from rocking.errors import DatasetError
 from rocking.lookup_files import UnknownDatasetError
-from rocking.pulses import get_pulse
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
 
@@ -36,15 +36,13 @@ async def get_overturning(
 ) -> Response:
     """The curves of the workflow; where there are none for this restitution, they are traced, once for all who ask."""
     form = form_of(request, question.format)
-    return await service.off_loop(lambda: _overturning(service, question, form), request)
+    return await service.off_loop(question, lambda stop: _overturning(service, question, form, stop), request)
 
 
-def _overturning(service: Service, question: OverturningQuestion, form: str) -> Response:
-    get_pulse(question.pulse)
-    in_range("restitution", question.restitution, 0.0, 1.0)
+def _overturning(service: Service, question: OverturningQuestion, form: str, stop: StopFlag) -> Response:
     curves, version = _read(service, question)
     if curves is None:
-        curves = _traced(question.pulse, question.restitution, alpha_of(question.alpha_deg))
+        curves = _traced(question.pulse, question.restitution, alpha_of(question.alpha_deg), stop)
     if form == "nc":
         return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
     if form == "csv":
@@ -67,20 +65,27 @@ def _read(service: Service, question: OverturningQuestion) -> tuple[xr.Dataset |
     name = f"overturning/{question.pulse.removeprefix('-')}/eta-{question.restitution:.2f}"
     catalogue = service.atlas.catalogue
     try:
-        stored = catalogue.dataset(name)
-        version = catalogue.product(name).sha256
+        product, stored = catalogue.dataset(name)
     except (UnknownDatasetError, DatasetError):
-        return None, None  # /health tells of a damaged one
+        return None, None  # /health tells of a damaged or unreadable one
     found = curves_at(stored, alpha_of(question.alpha_deg) or 0.0)
     if float(stored["restitution"]) != question.restitution or not found.sizes["curve"]:
         return None, None
-    return found, version
+    return found, product.sha256
+
+
+def _traced(pulse: str, restitution: float, alpha: float | None, stop: StopFlag) -> xr.Dataset:
+    """Curves for which there is no data set; whoever moves a slider back and forth does not trace them again."""
+    kept = _kept(pulse, restitution, alpha)
+    if not kept:
+        kept.append(overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=NODES, stop=stop))
+    return kept[0]
 
 
 @lru_cache(maxsize=KEPT)
-def _traced(pulse: str, restitution: float, alpha: float | None) -> xr.Dataset:
-    """Curves for which there is no data set; whoever moves a slider back and forth does not trace them again."""
-    return overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=NODES)
+def _kept(_pulse: str, _restitution: float, _alpha: float | None) -> list[xr.Dataset]:
+    """Where the curves of a question are kept once they are traced."""
+    return []
 
 
 def _names(curves: xr.Dataset) -> NDArray[np.str_]:

@@ -8,7 +8,9 @@ from pathlib import Path
 from fastapi import APIRouter, Response
 from fastapi.responses import FileResponse
 from starlette.staticfiles import StaticFiles
-from starlette.types import Scope
+from starlette.types import Receive, Scope, Send
+
+from api.download import without_range
 
 STATIC = Path(__file__).parents[1] / "static"
 
@@ -32,8 +34,18 @@ async def get_documentation() -> FileResponse:
     return _page("docs.html", _SWAGGER)
 
 
+class _Page(FileResponse):
+    """A page, always as a whole."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await super().__call__(without_range(scope), receive, send)
+
+
 class PageFiles(StaticFiles):
-    """Scripts, styles and libraries of the pages."""
+    """Scripts, styles and libraries of the pages, always as a whole."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await super().__call__(without_range(scope), receive, send)
 
     def file_response(
         self, full_path: str | os.PathLike[str], stat_result: os.stat_result, scope: Scope, status_code: int = 200
@@ -44,5 +56,5 @@ class PageFiles(StaticFiles):
 
 
 def _page(name: str, policy: str) -> FileResponse:
-    headers = {"Content-Security-Policy": policy, "X-Content-Type-Options": "nosniff", **_ASK_AGAIN}
-    return FileResponse(STATIC / name, media_type="text/html", headers=headers)
+    headers = {"Content-Security-Policy": policy, **_ASK_AGAIN}
+    return _Page(STATIC / name, media_type="text/html", headers=headers)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
@@ -10,9 +11,11 @@ from api.answers import BatchAnswer, ResponseAnswer, response_answer
 from api.batch import Batch, body_form, limited_body, read_batch
 from api.batch_answer import answer_batch, batch_response
 from api.formats import CONTENT, MEDIA_TYPES, Form, form_of
+from api.in_flight import Holding, holding_of
 from api.question_route import QuestionRoute, single_parameters
 from api.questions import ResponseQuestion
 from api.service import Service, ServiceDep
+from rocking.cancellation import StopFlag
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
 
@@ -20,6 +23,7 @@ router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
 @router.get("/response", summary="One block")
 async def get_response(question: Annotated[ResponseQuestion, Query()], service: ServiceDep) -> ResponseAnswer:
     """Whether it falls, and how far it rocks."""
+    await service.kernels.wait()
     point = await service.together.ask(question)
     service.metrics.points(point.source, 1)
     return response_answer(question, point)
@@ -51,17 +55,15 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     form = form_of(request, None, default=given)
     parameters = single_parameters(request)
     settings = service.settings
-    body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds)
-
-    def work() -> Response:
-        return _answered(service, read_batch(body, given, parameters, settings.max_points), form)
-
-    return await service.off_loop(work, request)
+    holding = holding_of(request)
+    body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds, holding)
+    batch = await service.reading(partial(read_batch, body, given, parameters, settings.max_points))
+    return await service.off_loop(batch.options, lambda stop: _answered(service, batch, form, holding, stop), request)
 
 
-def _answered(service: Service, batch: Batch, form: Form) -> Response:
-    found, versions = answer_batch(service.atlas, batch)
+def _answered(service: Service, batch: Batch, form: Form, holding: Holding, stop: StopFlag) -> Response:
+    found, versions = answer_batch(service.atlas, batch, stop)
     from_cubes = int((found.source == "cube").sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)
-    return batch_response(batch, found, versions, form)
+    return batch_response(batch, found, versions, form, holding)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
+from numpy.typing import NDArray
 
 from api.answers import SpectrumAnswer, columns_of
 from api.ask import ask
@@ -14,6 +15,7 @@ from api.problems import TooLargeError
 from api.question_route import QuestionRoute
 from api.questions import FREQUENCY_RATIOS, SpectrumQuestion
 from api.service import Service, ServiceDep
+from rocking.cancellation import StopFlag
 from rocking.errors import in_range
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
@@ -27,23 +29,33 @@ async def get_spectrum(
 ) -> Response:
     """Blocks of one slenderness over a window of the frequency ratio."""
     form = form_of(request, question.format)
-    return await service.off_loop(lambda: _spectrum(service, question, form), request)
+    frequency_ratio = _axis(service, question)
+    return await service.off_loop(
+        question, lambda stop: _spectrum(service, question, frequency_ratio, form, stop), request
+    )
 
 
-def _spectrum(service: Service, question: SpectrumQuestion, form: str) -> Response:
+def _axis(service: Service, question: SpectrumQuestion) -> NDArray[np.float64]:
+    """The points of the curve, inside the border of the service."""
     smallest, largest = FREQUENCY_RATIOS
     low = float(in_range("frequency_ratio_min", question.frequency_ratio_min, smallest, largest))
     high = float(in_range("frequency_ratio_max", question.frequency_ratio_max, low, largest, closed="right"))
     in_range("points", question.points, 2, np.inf, closed="left")
     if question.points > service.settings.max_samples:
         raise TooLargeError("points", question.points, f"at most {service.settings.max_samples}")
-    frequency_ratio = np.geomspace(low, high, question.points)
+    return np.geomspace(low, high, question.points)
+
+
+def _spectrum(
+    service: Service, question: SpectrumQuestion, frequency_ratio: NDArray[np.float64], form: str, stop: StopFlag
+) -> Response:
     found, versions = ask(
         service.atlas,
         question,
         slenderness=question.slenderness,
         frequency_ratio=frequency_ratio,
         restitution=question.restitution,
+        stop=stop,
     )
     query = question.model_dump(exclude={"format"})
     if form == "nc":

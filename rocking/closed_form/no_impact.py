@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from rocking.errors import in_range
-from rocking.pulses import AbstractPulse, SinusoidalPulse, get_pulse
+from rocking.pulses import AbstractPulse, SinusoidalPulse, as_pulse
 
 _NEGLIGIBLE = 50.0  # times beyond which e^-s < 2e-22 no longer counts
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
@@ -35,7 +35,7 @@ def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
     float
         phi [rad]; nan if the block never uplifts.
     """
-    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    shape = as_pulse(pulse)
     a = float(in_range("amplitude", amplitude, 0.0, math.inf, closed="neither"))
     if abs(a * float(shape.shape(shape.start))) >= 1:
         return shape.start
@@ -57,7 +57,7 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
     start_phase : float
         phi at tau_0 [rad], within the pulse.
     """
-    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    shape = as_pulse(pulse)
     omega = float(in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"))
     phi0 = float(in_range("start_phase", start_phase, shape.start, shape.end, unit="rad"))
     length = (shape.end - phi0) / omega
@@ -94,7 +94,7 @@ def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequenc
         the block overturns directly, provided that it is not back on the ground before the pulse ends. -1 if it
         never uplifts. For the sine it vanishes on (3.10).
     """
-    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    shape = as_pulse(pulse)
     phi0 = first_uplift_phase(shape, amplitude)
     if math.isnan(phi0):
         return -1.0
@@ -133,7 +133,7 @@ def margin_after_impact(
         eta |v| - (sign of v) a * integral of f e^{-(s - tau_1)} ds - 1 [-], positive where the block overturns. For the
         sine it vanishes on (3.18) and on (3.20).
     """
-    shape = get_pulse(pulse) if isinstance(pulse, str) else pulse
+    shape = as_pulse(pulse)
     eta = float(in_range("restitution", restitution, 0.0, 1.0))
     forced = discounted_integral(shape, frequency_ratio, impact_phase) if impact_phase < shape.end else 0.0
     return eta * abs(impact_velocity) - math.copysign(amplitude, impact_velocity) * forced - 1

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking.closed_form.case_1_2 import impact_velocity_squared
+from rocking.closed_form.case_2 import case_2_margin
 from rocking.closed_form.coefficients import Array
 from rocking.errors import in_range
 
@@ -54,8 +55,9 @@ def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
     Returns
     -------
     ndarray
-        [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2. Exact where the
-        first impact comes after the pulse (above (3.31)) and the rotation before it was smaller; approximate else.
+        [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2, and where there is
+        no impact, as it overturns directly, above (3.10). Exact where the first impact comes after the pulse (above
+        (3.31)) and the rotation before it was smaller; approximate else.
     """
     eta = in_range("restitution", restitution, 0.0, 1.0)
     return _peak(_energy(amplitude, frequency_ratio, eta))  # (4.13), first form
@@ -72,6 +74,11 @@ def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, res
         omega [-], (0, inf).
     restitution : array_like
         eta [-], [0, 1].
+
+    Returns
+    -------
+    ndarray
+        [-]; nan as in `case_1_2_peak`.
     """
     peak = case_1_2_peak(amplitude, frequency_ratio, restitution)
     return np.asarray(peak / np.asarray(amplitude))  # (4.13), second form
@@ -87,16 +94,25 @@ def scale_function(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     frequency_ratio : array_like
         omega [-], (0, inf).
 
+    Returns
+    -------
+    ndarray
+        [-], >= 0; nan above (3.10), where the block overturns without an impact.
+
     Notes
     -----
     The paper prints sqrt(1 - D0*) here and in (4.14) and (4.15). Since 1 - sqrt(1 - x^2) = x^2/2 + ... with
     x = eta sqrt(1 - D0*), the square root does not belong there.
     """
-    return impact_velocity_squared(amplitude, frequency_ratio)  # (4.16), f without the root
+    squared = impact_velocity_squared(amplitude, frequency_ratio)
+    falls_back = case_2_margin(amplitude, frequency_ratio) <= 0  # (3.10): else there is no impact
+    return np.asarray(np.where(falls_back & (squared >= 0), squared, np.nan))  # (4.16), f without the root
 
 
 def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Leading term of the peak rotation theta_m/alpha [-] for small eta v_i2, (4.14) corrected, the law (4.16).
+
+    As `scale_function`, nan above (3.10).
 
     Parameters
     ----------
@@ -112,7 +128,7 @@ def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: Ar
 
 
 def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """Leading term of g theta_m/a_g [-] for small eta v_i2, (4.15) corrected.
+    """Leading term of g theta_m/a_g [-] for small eta v_i2, (4.15) corrected; nan above (3.10).
 
     Parameters
     ----------
@@ -129,4 +145,4 @@ def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restit
 def _energy(amplitude: ArrayLike, frequency_ratio: ArrayLike, eta: Array) -> Array:
     """(eta v_i2)^2; nan where infinite times zero."""
     with np.errstate(invalid="ignore"):
-        return np.asarray(eta**2 * impact_velocity_squared(amplitude, frequency_ratio))
+        return np.asarray(eta**2 * scale_function(amplitude, frequency_ratio))

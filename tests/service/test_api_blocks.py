@@ -5,7 +5,7 @@ import math
 import pytest
 
 from api.routes import blocks
-from rocking.block import Block
+from rocking.block import STANDARD_GRAVITY, Block
 from rocking.history import time_history
 from rocking.solve import peak_response
 from tests.service.conftest import assert_problem, client_of
@@ -115,7 +115,6 @@ def test_doubts_are_told(client, changes, words, overturned):
         ({"pulse": "sinus"}, "pulse"),
         ({"restitution": 1.5}, "restitution"),
         ({"restitution": "bouncy"}, "restitution"),
-        ({"half_width": 2.0}, "restitution"),
         ({"half_depth": 1.0}, "half_depth"),
         ({"method": "cube"}, "restitution"),
     ],
@@ -129,6 +128,75 @@ def test_a_restitution_may_be_housner_or_a_number(client, odd):
     problem = assert_problem(ask(client, restitution=odd), 422, "restitution")
     assert "[0, 1]" in problem["allowed"]
     assert odd == "nan" or "housner" in problem["allowed"]
+
+
+def test_the_largest_safe_acceleration_holds_for_this_size_only(client):
+    """A block of 0.6 m x 2.4 m is safe up to 0.496 g; under 0.45 g the same shape at 0.2 m x 0.8 m overturns."""
+    question = {"pulse_period": 0.6, "peak_acceleration": 0.45 * STANDARD_GRAVITY}
+    large = ask(client, half_width=0.3, half_height=1.2, **question).json()
+    small = ask(client, half_width=0.1, half_height=0.4, **question).json()
+    assert large["largest_safe_acceleration"] == pytest.approx(0.496 * STANDARD_GRAVITY, rel=1e-3)
+    assert small["overturned"]
+    assert small["largest_safe_acceleration"] < 0.45 * STANDARD_GRAVITY < large["largest_safe_acceleration"]
+    said = client.get("/openapi.json").json()["components"]["schemas"]["BlockAnswer"]["properties"]
+    assert "this block, of this size" in said["largest_safe_acceleration"]["description"]
+
+
+def test_the_largest_safe_acceleration_comes_with_its_friction(client):
+    answer = ask(client).json()
+    just_below = ask(client, peak_acceleration=answer["largest_safe_acceleration"] * (1 - 1e-9)).json()
+    assert not just_below["overturned"]
+    assert answer["largest_safe_friction_demand"] == pytest.approx(just_below["friction_demand"], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "first"),
+    [
+        ({"half_width": 0.5, "half_height": 0.5, "peak_acceleration": 1.5 * STANDARD_GRAVITY}, "would slide: "),
+        ({"half_width": 0.8, "peak_acceleration": 60.0, "pulse_period": 0.1, "restitution": 0.9}, "would lift off"),
+        ({"peak_acceleration": 3 * STANDARD_GRAVITY}, "would slide: "),  # and overturns, if held against sliding
+    ],
+)
+def test_where_the_rocking_model_does_not_apply_the_first_sentence_says_so(client, changes, first):
+    answer = ask(client, **changes).json()
+    assert not answer["rocking_model_applies"]
+    assert answer["meaning"].startswith(first)
+    assert "the rocking model does not apply" in answer["meaning"]
+    assert answer["meaning"].endswith(answer["response"]["meaning"])  # what a block that is held would do
+    demand = answer["friction_demand"]
+    assert demand is None or (demand > 1 and f"{demand:.3g}" in answer["meaning"])
+
+
+def test_no_acceleration_is_called_safe_where_the_rocking_model_does_not_apply(client):
+    cube = {"half_width": 0.5, "half_height": 0.5, "peak_acceleration": 1.5 * STANDARD_GRAVITY}
+    answer = ask(client, **cube).json()
+    assert answer["friction_demand"] == pytest.approx(17.9, abs=0.1)
+    assert answer["thresholds"][0]["peak_acceleration"] == pytest.approx(5.67 * STANDARD_GRAVITY, rel=1e-3)
+    assert answer["largest_safe_acceleration"] is answer["largest_safe_friction_demand"] is None
+    assert any("no largest safe acceleration" in warning for warning in answer["warnings"])
+
+
+def test_a_squat_block_that_does_not_uplift_is_answered(client):
+    """2 m x 1 m under 1.2 g: it uplifts from 2 g on, and no impact asks for the negative restitution of (2.4)."""
+    squat = {"half_width": 1.0, "half_height": 0.5}
+    answer = ask(client, **squat, peak_acceleration=1.2 * STANDARD_GRAVITY).json()
+    assert answer["response"]["outcome"] == "NO_UPLIFT"
+    assert not answer["overturned"]
+    assert answer["uplift_acceleration"] == pytest.approx(2 * STANDARD_GRAVITY)
+    assert answer["friction_demand"] == pytest.approx(1.2)
+    assert answer["meaning"] == "never uplifts, but slides unless the coefficient of friction is at least 1.2"
+    assert ask(client, **squat, peak_acceleration=5.0).json()["meaning"] == "never uplifts"
+
+
+def test_a_squat_block_that_uplifts_stops_at_an_impact(client):
+    squat = {"half_width": 1.0, "half_height": 0.5, "peak_acceleration": 2.1 * STANDARD_GRAVITY}
+    answer = ask(client, **squat).json()
+    assert answer["response"]["impacts"] > 0
+    assert answer["restitution"] == 0.0
+    assert any("negative (-0.2)" in warning and "eta = 0" in warning for warning in answer["warnings"])
+    given = ask(client, **squat, restitution=0.0).json()
+    assert given["peak_rotation_deg"] == answer["peak_rotation_deg"]
+    assert not any("(2.4)" in warning for warning in given["warnings"])
 
 
 def overturned(client, **changes):

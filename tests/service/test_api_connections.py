@@ -29,6 +29,12 @@ def connection(server):
 
 def answer_of(connection):
     """Status and body of what comes until the server closes the connection."""
+    status, _, body = whole_answer_of(connection)
+    return status, body
+
+
+def whole_answer_of(connection):
+    """The same, with the head."""
     received = bytearray()
     try:
         while part := connection.recv(65536):
@@ -36,7 +42,7 @@ def answer_of(connection):
     except ConnectionResetError:
         pass  # it closed while we were still talking
     head, _, body = bytes(received).partition(b"\r\n\r\n")
-    return (int(head.split()[1]) if head else None), body
+    return (int(head.split()[1]) if head else None), head.lower(), body
 
 
 def test_headers_that_do_not_arrive_end_the_connection(connection):
@@ -109,7 +115,31 @@ def test_headers_without_measure_are_431(connection, part):
 )
 def test_what_is_not_http_is_400(connection, said):
     connection.sendall(said)
-    assert answer_of(connection)[0] == 400
+    status, head, body = whole_answer_of(connection)
+    assert status == 400
+    assert b"content-type: application/problem+json" in head
+    assert b"x-content-type-options: nosniff" in head
+    assert json.loads(body)["status"] == 400
+
+
+UPGRADE = b"Host: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+
+
+def test_a_request_to_go_on_in_another_protocol_is_answered_in_this_one(connection, server):
+    connection.sendall(b"GET /health HTTP/1.1\r\n" + UPGRADE + b"\r\n")
+    assert connection.recv(65536).startswith(b"HTTP/1.1 200 ")
+    connection.sendall(b"GET /nowhere HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
+    assert answer_of(connection)[0] == 404
+    assert "pip install" not in server.log.read_text()
+    assert "upgrade" not in server.log.read_text().lower()
+
+
+@pytest.mark.parametrize("length", [b"Content-Length: 2", b"Transfer-Encoding: chunked"])
+def test_a_body_is_not_taken_for_another_protocol(connection, length):
+    connection.sendall(b"POST /v1/response HTTP/1.1\r\n" + UPGRADE + length + b"\r\n\r\n{}")
+    status, body = answer_of(connection)
+    assert status == 400
+    assert "another protocol" in json.loads(body)["detail"]
 
 
 def test_a_declared_body_beyond_the_limit_is_not_waited_for(connection):

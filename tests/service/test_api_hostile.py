@@ -65,6 +65,19 @@ def test_counts_that_are_none(client, route, name, value):
     assert client.get(f"/v1/{route}", params=asked).status_code in (413, 422)
 
 
+@pytest.mark.parametrize(
+    ("route", "name"),
+    [("spectrum", "points"), ("history", "samples"), ("map", "columns"), ("map", "rows")],
+)
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_integers_beyond_all_doubles(client, route, name, sign):
+    asked = {key: POINT[key] for key in ("pulse", "slenderness", "restitution", "frequency_ratio")}
+    unknown = {"spectrum": ["frequency_ratio"], "map": ["slenderness", "frequency_ratio"]}.get(route, [])
+    asked = {key: value for key, value in asked.items() if key not in unknown} | {name: sign + "9" * 400}
+    answer = client.get(f"/v1/{route}", params=asked)
+    assert_problem(answer, 413 if route == "history" and not sign else 422, name)
+
+
 NESTED = b"[" * 100_000 + b"]" * 100_000
 BODIES = [
     b"",
@@ -156,6 +169,8 @@ def test_a_netcdf_file_damaged_anywhere(client):
         "file:%2f%2f%2fetc%2fpasswd",
         "spectra/sine/%2e/eta-0.85",
         "~root/x",
+        "a" * 256,
+        "spectra/" + "a" * 256,
         "a" * 5000,
         "a/" * 2000 + "a",
         "spectra/\ud7ff/x",

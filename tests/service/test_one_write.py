@@ -18,6 +18,9 @@ class Transport:
     def close(self):
         self.sent.append("closed")
 
+    def get_write_buffer_size(self):
+        return 0
+
     def is_closing(self):
         return "closed" in self.sent
 
@@ -27,7 +30,7 @@ def sent(*steps):
 
     async def scenario():
         transport = Transport()
-        wrapped = OneWrite(transport, asyncio.get_running_loop())
+        wrapped = OneWrite(transport, asyncio.get_running_loop(), 1.0)
         for step in steps:
             step(wrapped)
         at_once = [*transport.sent]

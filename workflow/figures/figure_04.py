@@ -38,7 +38,7 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
     return xr.Dataset(
         {
             "falls_from": plotted(
-                dims, closed.falls_from, "overturns after one impact from here", equation="3.18, 3.30"
+                dims, closed.falls_from, "overturns after one impact from here", equation="3.18, 3.20, 3.21"
             ),
             "safe_again": plotted(dims, closed.safe_again, "overturns after one impact up to here", equation="3.18"),
             "direct": plotted("frequency_ratio", closed.direct[0], "overturns without impact above", equation="3.10"),

@@ -40,7 +40,7 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
         {
             **line_variables(list(files.values())),
             "falls_from": plotted(
-                dims, closed.falls_from, "slender: overturns after one impact", equation="3.18, 3.20"
+                dims, closed.falls_from, "slender: overturns after one impact", equation="3.18, 3.20, 3.21"
             ),
             "safe_again": plotted(dims, closed.safe_again, "slender: stands again", equation="3.18"),
             "direct": plotted(dims, closed.direct, "slender: overturns without impact", equation="3.10"),

@@ -26,6 +26,7 @@ rule spectra:
         boundaries=overturning_files("{pulse}", ETAS),
     output:
         cubes=spectrum_files("{pulse}", ETAS),
+        record=record_of("spectra/{pulse}"),
     log:
         "logs/spectra/{pulse}.log",
     benchmark:
@@ -44,6 +45,7 @@ rule spectra:
 rule overturning:
     output:
         boundaries=overturning_files("{pulse}", ETAS),
+        record=record_of("overturning/{pulse}"),
     log:
         "logs/overturning/{pulse}.log",
     benchmark:

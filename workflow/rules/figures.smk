@@ -1,16 +1,16 @@
 # One rule per figure: workflow/figures/figure_03.py makes figure-03.svg, .png and the plotted data in figure-03.nc.
-from itertools import chain
-
 _figures = config["figures"]
 FIGURE_INPUTS = {
-    "figure-04": {"boundaries": overturning_files("sine", restitutions("figure-04"))},
-    "figure-08": {pulse: spectrum_files(pulse, restitutions("figure-08")) for pulse in ("sine", "cosine")},
+    "figure-04": {"boundaries": overturning_files("sine", restitutions(config, "figure-04"))},
+    "figure-08": {pulse: spectrum_files(pulse, restitutions(config, "figure-08")) for pulse in ("sine", "cosine")},
     "figure-09": {
-        "boundaries": [overturning_files(pulse, restitutions("figure-09"))[0] for pulse in ("sine", "cosine")]
+        "boundaries": [overturning_files(pulse, restitutions(config, "figure-09"))[0] for pulse in ("sine", "cosine")]
     },
-    "figure-10": {pulse: overturning_files(pulse, restitutions("figure-10"))[0] for pulse in ("sine", "cosine")},
-    "figure-13": {pulse: spectrum_files(pulse, restitutions("figure-13"))[0] for pulse in ("sine", "cosine")},
-    "figure-scale-law": {"cubes": spectrum_files("sine", restitutions("figure-scale-law"))},
+    "figure-10": {
+        pulse: overturning_files(pulse, restitutions(config, "figure-10"))[0] for pulse in ("sine", "cosine")
+    },
+    "figure-13": {pulse: spectrum_files(pulse, restitutions(config, "figure-13"))[0] for pulse in ("sine", "cosine")},
+    "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
 READ_BY_CLAIMS = ["figure-06", "figure-09", "figure-11", "figure-12"]
@@ -25,6 +25,7 @@ for _figure, _files in FIGURES.items():
             **FIGURE_INPUTS.get(_figure, {}),
         output:
             **_files,
+            record=record_of(f"figures/{_figure}"),
         log:
             f"logs/figures/{_figure}.log",
         benchmark:
@@ -40,6 +41,3 @@ for _figure, _files in FIGURES.items():
             f"Drawing {_figure}"
         script:
             "../scripts/figure.py"
-
-
-FIGURE_FILES = list(chain.from_iterable(files.values() for files in FIGURES.values()))

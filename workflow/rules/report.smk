@@ -11,6 +11,7 @@ rule claims:
         histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
     output:
         **CLAIM_FILES,
+        record=record_of("claims"),
     log:
         "logs/claims.log",
     benchmark:
@@ -25,11 +26,20 @@ rule claims:
         "../scripts/claims.py"
 
 
+RECORDS = [
+    *expand(record_of("{kind}/{pulse}"), kind=["overturning", "spectra"], pulse=PULSES),
+    *(record_of(f"figures/{figure}") for figure in FIGURES),
+    record_of("claims"),
+]
+
+
 rule manifest:
     input:
         products=list(PRODUCTS),
+        records=RECORDS,
     output:
         manifest="results/manifest.json",
+        record=record_of("manifest"),
     log:
         "logs/manifest.log",
     benchmark:
@@ -50,6 +60,7 @@ rule check_results:
         tests=[str(path) for path in sorted((PROJECT / "workflow/checks").glob("*.py"))],
     output:
         report="results/checks.txt",
+        record=record_of("check_results"),
     log:
         "logs/check_results.log",
     benchmark:

@@ -8,9 +8,14 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
+from workflow.records import write_record
+from workflow.run_lock import join_run
+
 
 def run(task: Callable[..., None], snakemake: Any) -> None:
     """Call `task` with the named inputs, outputs and parameters of the job; what it prints goes to the job's log.
+
+    The output `record` is not the task's: it takes the digests of the others when the task is done.
 
     Parameters
     ----------
@@ -19,12 +24,15 @@ def run(task: Callable[..., None], snakemake: Any) -> None:
     snakemake : snakemake.iocontainers.Snakemake
         The job, as Snakemake hands it to a script.
     """
+    join_run()
     paths = {name: _paths(value) for part in (snakemake.input, snakemake.output) for name, value in part.items()}
+    record = paths.pop("record")
     log = Path(snakemake.log[0])
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as stream, redirect_stdout(stream), redirect_stderr(stream):
         try:
             task(**paths, **dict(snakemake.params.items()))
+            write_record(record, (path for path in map(Path, snakemake.output) if path != record))
         except BaseException:
             traceback.print_exc()  # into the log, which Snakemake shows when a job fails
             raise

@@ -1,15 +1,21 @@
 """Lists every product with its size, sha256, rule and the digests of the code and the settings behind it."""
 
-import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from workflow.records import read_record
 from workflow.scripts.job import run
 
 
 def main(
-    *, products: Sequence[Path], sources: Mapping[str, Mapping[str, str]], title: str, manifest: Path, code: str
+    *,
+    products: Sequence[Path],
+    records: Sequence[Path],
+    sources: Mapping[str, Mapping[str, str]],
+    title: str,
+    manifest: Path,
+    code: str,
 ) -> None:
     """Write the manifest; paths in it are relative to the folder that holds it, so that the folder can be moved.
 
@@ -17,6 +23,8 @@ def main(
     ----------
     products : sequence of paths
         All products.
+    records : sequence of paths
+        What the jobs noted of them.
     sources : mapping
         For the path of each product its `rule`, `code_sha256` and `settings_sha256`.
     title : str
@@ -26,12 +34,9 @@ def main(
     code : str
         Digest of this script, so that Snakemake runs it again when it changes.
     """
+    recorded = {name: entry for record in records for name, entry in read_record(record).items()}
     listed = {
-        path.relative_to(manifest.parent).as_posix(): {
-            "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
-            "size": path.stat().st_size,
-            **sources[str(path)],
-        }
+        path.relative_to(manifest.parent).as_posix(): {**recorded[str(path)], **sources[str(path)]}
         for path in sorted(products)
     }
     content = {"title": title, "manifest_code_sha256": code, "products": listed}

@@ -83,7 +83,8 @@ def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> d
         "closed_form_slenderness": xr.Variable(
             "point",
             expected,
-            {**MODEL_RESULT, "long_name": "slenderness of the boundary in closed form", "equation": "3.10, 3.18, 3.20",
+            {**MODEL_RESULT, "long_name": "slenderness of the boundary in closed form",
+             "equation": "3.10, 3.18, 3.20, 3.21",
              "comment": "missing for overturning after three or more impacts, and for alpha > 0: no closed form"},
         ),
         "closed_form_difference": xr.Variable(

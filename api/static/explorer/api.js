@@ -1,8 +1,8 @@
-// Questions to the service: a newer one on the same channel takes the place of the older, and answers are kept.
+// Questions to the service; answers are kept. Whoever asks owns the signal that ends the question.
 
 const KEPT = 60;
+const ATTEMPTS = 4;
 const answers = new Map();
-const running = new Map();
 
 /** A refusal of the service (problem+json): `parameter`, `value` and `allowed` as it names them. */
 export class Problem extends Error {
@@ -20,30 +20,45 @@ export function urlOf(path, question) {
   return `${path}?${new URLSearchParams(told)}`;
 }
 
-/** The answer, or null if a newer question on the channel took its place. Throws Problem. */
-export async function ask(channel, path, question) {
-  running.get(channel)?.abort();
-  running.delete(channel);
+/** The answer. Throws Problem, or the reason with which the signal was aborted. */
+export async function ask(path, question, signal) {
   const url = urlOf(path, question);
-  if (answers.has(url)) return answers.get(url);
-  const control = new AbortController();
-  running.set(channel, control);
+  if (!answers.has(url)) keep(url, await fetched(url, signal));
+  return answers.get(url);
+}
+
+/** Wait some ms, or until the signal is aborted; throws its reason then. */
+export function pause(milliseconds, signal) {
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, milliseconds);
+    signal.addEventListener("abort", () => {
+      clearTimeout(timer);
+      reject(signal.reason);
+    });
+  });
+}
+
+/** A busy service says when to ask again. */
+async function fetched(url, signal) {
+  for (let attempt = 1; ; attempt += 1) {
+    const { ok, found, after } = await exchanged(url, signal);
+    if (ok) return found;
+    if (!after || attempt === ATTEMPTS) throw new Problem(found);
+    await pause(1000 * after, signal);
+  }
+}
+
+async function exchanged(url, signal) {
   try {
-    const response = await fetch(url, { signal: control.signal });
-    const found = await response.json();
-    if (!response.ok) throw new Problem(found);
-    keep(url, found);
-    return found;
+    const response = await fetch(url, { signal });
+    return { ok: response.ok, found: await response.json(), after: Number(response.headers.get("Retry-After")) };
   } catch (error) {
-    if (error.name === "AbortError") return null;
-    if (error instanceof Problem) throw error;
+    if (signal.aborted) throw signal.reason;
     throw new Problem({ detail: `the service does not answer (${error.message})` });
-  } finally {
-    if (running.get(channel) === control) running.delete(channel);
   }
 }
 
 function keep(url, found) {
+  if (answers.size === KEPT) answers.delete(answers.keys().next().value);
   answers.set(url, found);
-  if (answers.size > KEPT) answers.delete(answers.keys().next().value);
 }

@@ -10,8 +10,8 @@ const QUANTITIES = Object.keys(UNITS);
 const form = document.getElementById("block");
 const answer = document.getElementById("answer");
 
-/** Wire the form: `submit(parts)` gets what to write into the state. */
-export function wireForm(submit) {
+/** Wire the form: `submit(parts)` gets what to write into the state, `edit()` is told of each edit. */
+export function wireForm(submit, edit) {
   for (const name of QUANTITIES) {
     const units = form.elements[`${name}_unit`];
     for (const unit of Object.keys(UNITS[name])) units.append(element("option", unit));
@@ -19,14 +19,20 @@ export function wireForm(submit) {
   form.elements.how.addEventListener("change", showHow);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    const parts = { pulse: form.elements.pulse.value };
-    for (const name of QUANTITIES) {
-      parts[name] = `${form.elements[name].value.trim() || MISSING} ${form.elements[`${name}_unit`].value}`;
-    }
-    parts.restitution = form.elements.how.value === "housner" ? "housner" : form.elements.eta.value.trim() || MISSING;
-    submit(parts);
+    submit(formParts());
   });
+  form.addEventListener("input", edit);
   showHow();
+}
+
+/** What the form says of a block, as parts of a state. */
+export function formParts() {
+  const parts = { pulse: form.elements.pulse.value };
+  for (const name of QUANTITIES) {
+    parts[name] = `${form.elements[name].value.trim() || MISSING} ${form.elements[`${name}_unit`].value}`;
+  }
+  parts.restitution = form.elements.how.value === "housner" ? "housner" : form.elements.eta.value.trim() || MISSING;
+  return parts;
 }
 
 /** Fill the form with the block of a state. */
@@ -49,21 +55,28 @@ export function showAnswer(found) {
   answer.hidden = found === null;
   if (found === null) return;
   answer.append(
-    element("p", found.overturned ? "It falls." : "It stands.", {
-      class: `verdict ${found.overturned ? "falls" : "stands"}`,
-    }),
+    element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
     element("p", sentence(found)),
     list(facts(found)),
   );
   if (found.warnings.length) {
     const lines = found.warnings.map((warning) => element("li", warning));
-    answer.append(element("p", "Doubt this answer, for:", { class: "doubt" }), element("ul", lines));
+    answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
   }
 }
 
+function safe(found) {
+  return found.rocking_model_applies && !found.overturned;
+}
+
+function verdict(found) {
+  if (!found.rocking_model_applies) return "The rocking model does not apply.";
+  if (found.overturned) return "It overturns.";
+  return found.response.outcome === "NO_UPLIFT" ? "It does not uplift." : "It survives (comes to rest).";
+}
+
 function sentence(found) {
-  if (found.response.outcome === "NO_UPLIFT") return "The ground motion is too weak to lift it off its base.";
-  if (found.overturned) return `It ${found.meaning}.`;
+  if (!safe(found) || found.response.outcome === "NO_UPLIFT") return `It ${found.meaning}.`;
   return (
     `It rocks by at most ${number(found.peak_rotation_deg)}°; its top moves ${length(found.top_displacement)} ` +
     "to the side. Then it comes to rest."
@@ -71,24 +84,27 @@ function sentence(found) {
 }
 
 function facts(found) {
-  const said = [["Starts to rock at", acceleration(found.uplift_acceleration)]];
-  const safe = found.largest_safe_acceleration;
-  const limit = found.thresholds === null ? "not found in time" : "no limit found";
-  said.push(["Safe up to, at this period", safe === null ? limit : acceleration(safe)]);
-  const margin = marginOf(found);
+  const said = [["Uplifts at", acceleration(found.uplift_acceleration)]];
+  const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
+  said.push(["This block does not overturn below, at this period", largest === null ? whyNone(found) : acceleration(largest)]);
+  if (largest !== null) said.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
+  const margin = applies && marginOf(found);
   if (margin) said.push(margin);
-  const changes = (found.thresholds ?? []).map(
-    (one) => `${one.overturns_above ? "falls" : "stands"} from ${number(one.peak_acceleration / GRAVITY)} g`,
+  const changes = (applies ? (found.thresholds ?? []) : []).map(
+    (one) => `${one.overturns_above ? "overturns" : "survives"} from ${number(one.peak_acceleration / GRAVITY)} g`,
   );
   if (changes.length > 1) said.push(["At this period it", changes.join(", ")]);
-  const friction = found.friction_demand;
-  if (found.response.outcome !== "NO_UPLIFT") {
-    said.push(["Friction it needs, so as not to slide", friction === null ? "it lifts off" : number(friction, 2)]);
-  }
+  said.push(["Coefficient of friction that it needs, so as not to slide", friction === null ? "it lifts off" : number(friction, 2)]);
   return said;
 }
 
-/** The nearest change of fate, as a share of the acceleration asked about. */
+/** Why there is no largest safe acceleration. */
+function whyNone({ thresholds }) {
+  if (thresholds === null) return "not found in time";
+  return thresholds.length ? "not known: the rocking model does not apply" : "no limit found";
+}
+
+/** The nearest change of outcome, as a share of the acceleration asked about. */
 function marginOf(found) {
   const asked = found.query.peak_acceleration;
   const apart = (threshold) => Math.abs(threshold.peak_acceleration / asked - 1);
@@ -96,7 +112,7 @@ function marginOf(found) {
   if (!nearest) return null;
   const way = nearest.peak_acceleration > asked ? "more" : "less";
   const share = `${number(100 * apart(nearest), 2)} %`;
-  return ["Margin of acceleration", `${found.overturned ? "stands" : "falls"} with ${share} ${way}`];
+  return ["Margin of acceleration", `${found.overturned ? "survives" : "overturns"} with ${share} ${way}`];
 }
 
 function acceleration(value) {

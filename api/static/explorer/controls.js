@@ -1,7 +1,7 @@
 // Pulse, restitution and slenderness angle of the map, as a choice and two sliders.
 
 import { element } from "./page.js";
-import { isBlock } from "./state.js";
+import { DEFAULTS, isBlock } from "./state.js";
 import { number, PULSES } from "./words.js";
 
 const pulse = document.getElementById("pulse");
@@ -21,20 +21,23 @@ export function wireControls(look, set) {
   }
 }
 
-/** Show what a situation holds. */
-export function showControls({ pulse: name, restitution, alpha_deg }) {
-  pulse.value = name;
-  sliders.restitution.value = restitution;
-  sliders.alpha_deg.value = alpha_deg;
-  told.restitution.textContent = Number.isFinite(Number(restitution)) ? number(restitution) : restitution;
-  told.alpha_deg.textContent = Number(alpha_deg) === 0 ? "slender limit" : `${number(alpha_deg)}°`;
+/** Show what a state says, and what its situation (null: not known yet) adds. */
+export function showControls(state, situation) {
+  pulse.value = state.pulse;
+  const { restitution, alpha_deg } = situation ?? { restitution: state.restitution, alpha_deg: null };
+  told.restitution.textContent = Number.isFinite(Number(restitution)) ? number(restitution) : "…";
+  if (told.restitution.textContent !== "…") sliders.restitution.value = restitution;
+  told.alpha_deg.textContent = alpha_deg === null ? "…" : Number(alpha_deg) === 0 ? "slender limit" : `${number(alpha_deg)}°`;
+  if (alpha_deg !== null) sliders.alpha_deg.value = alpha_deg;
 }
 
-/** Another slenderness angle is another block: the one in metres is let go, its point and restitution stay. */
+/** Another slenderness angle is another block: the one in metres is left, its point and restitution stay if known. */
 function withoutBlock({ state, situation }) {
   if (!isBlock(state)) return {};
+  const left = { width: "", height: "", acceleration: "", period: "" };
+  if (!situation?.point) return { ...left, restitution: DEFAULTS.restitution };
   const { restitution, point } = situation;
   const [frequency_ratio, slenderness] = [point.frequency_ratio, point.slenderness].map((x) => x.toPrecision(5));
   const eta = Number(restitution.toPrecision(4)).toString();
-  return { width: "", height: "", acceleration: "", period: "", restitution: eta, frequency_ratio, slenderness };
+  return { ...left, restitution: eta, frequency_ratio, slenderness };
 }

@@ -7,9 +7,12 @@ import { say } from "./page.js";
 
 const FOOT = 34;
 
-/** Set the links of one part of the page: `urls` by form. */
+/** Set the links of one part of the page, `urls` by form; those without one go. */
 export function setLinks(part, urls) {
-  for (const link of document.querySelectorAll(`[data-links=${part}] a`)) link.href = urls[link.dataset.form];
+  for (const link of document.querySelectorAll(`[data-links=${part}] a`)) {
+    if (urls[link.dataset.form]) link.href = urls[link.dataset.form];
+    else link.removeAttribute("href");
+  }
 }
 
 /** Wire the picture buttons and the link button; `caption()` words what is shown. */

@@ -3,10 +3,10 @@
 import { BROUGHT_BACK, colourOfPeak, hatch, onTheme, scaleGradient, themed } from "./colours.js";
 
 const ENTRIES = [
-  ["BROUGHT_BACK", "passes α, brought back"],
-  ["OVERTURNED_AFTER_IMPACT", "falls after impacts"],
-  ["OVERTURNED_DIRECTLY", "falls without impact"],
-  ["NO_UPLIFT", "never lifts off"],
+  ["BROUGHT_BACK", "exceeds α, survives"],
+  ["OVERTURNED_AFTER_IMPACT", "overturns after impacts"],
+  ["OVERTURNED_DIRECTLY", "overturns without impact"],
+  ["NO_UPLIFT", "no uplift"],
 ];
 
 const legend = document.getElementById("legend");

@@ -1,41 +1,85 @@
 // The map of the control space: asks for its grid and its curves, draws them, and marks the chosen point.
 
-import { ask, urlOf } from "./api.js";
+import { ask, pause, urlOf } from "./api.js";
 import { scale } from "./axes.js";
 import { onTheme, themed } from "./colours.js";
 import { MARGIN, MARGIN_OF_BLOCK, drawFrame } from "./map_frame.js";
 import { drawPicture } from "./map_picture.js";
-import { say, settled } from "./page.js";
+import { once, pane } from "./pane.js";
 
 const COARSE = { columns: 120, rows: 90 };
 const FINE = { columns: 400, rows: 240 };
 
 const canvas = document.getElementById("map");
 const over = document.getElementById("map-marks");
-const status = document.getElementById("map-status");
 
-let scene = null; // what is shown: situation, view, grid, curves
+let wanted = null; // what the controls say: key, situation, view
+let scene = null; // what is drawn: the same, and the grid
+let traced = null; // boundaries, and the key of the groups that they belong to
 let hovered = null;
 
-/** Show the map of a situation in a window; sharpened, and given its boundaries, once it has settled. */
-export function showMap(situation, view) {
-  const same = scene && groupsOf(scene.situation) === groupsOf(situation);
-  const inView = same && JSON.stringify(scene.view) === JSON.stringify(view);
-  scene = { situation, view, grid: inView ? scene.grid : null, curves: same ? scene.curves : null };
-  if (inView && scene.grid) draw();
-  else load(scene, COARSE, "map");
-  settled("fine map", 150, () => load(scene, FINE, "map"));
-  if (!scene.curves) settled("curves", 250, () => loadCurves(scene));
+const grid = pane({
+  box: document.querySelector(".map"),
+  status: document.getElementById("map-status"),
+  doing: "Computing the map …",
+  picture: "map",
+  draw: (found) => {
+    scene = { ...wanted, grid: found };
+    draw();
+    canvas.dataset.drawn = JSON.stringify(found.query);
+  },
+  clear: () => {
+    scene = null;
+    canvas.width = over.width = 0;
+    delete canvas.dataset.drawn;
+  },
+});
+const boundaries = pane({
+  box: document.getElementById("curves-status"),
+  status: document.getElementById("curves-status"),
+  doing: "Tracing the boundaries …",
+  delay: 250,
+  draw: (found) => {
+    traced = { key: groupsOf(wanted.situation), curves: found.curves };
+    draw();
+    canvas.dataset.curves = JSON.stringify(found.query);
+  },
+  clear: () => {
+    traced = null;
+    draw();
+    delete canvas.dataset.curves;
+  },
+});
+
+/** Show the map of a situation in a window, coarse at first, and its boundaries; null: the situation is not known. */
+export function showMap(situation, view, lasting) {
+  if (!situation) {
+    grid.wait({ lasting });
+    boundaries.wait({ lasting });
+    return;
+  }
+  const shape = shapeOf(situation);
+  wanted = { key: JSON.stringify([shape, view, situation.size]), situation, view };
+  if (scene?.key === wanted.key) {
+    scene.situation = situation; // another point of the same map
+    drawMarks();
+  }
+  grid.show(wanted.key, async function* load(signal) {
+    yield await ask("/v1/map", { ...shape, ...view, ...COARSE }, signal);
+    await pause(150, signal);
+    yield await ask("/v1/map", { ...shape, ...view, ...FINE }, signal);
+  });
+  boundaries.show(groupsOf(situation), once("/v1/overturning", shape));
 }
 
 /** The question that the map answers, for a download. */
 export function mapQuestion() {
-  return { ...shapeOf(scene.situation), ...scene.view, ...FINE };
+  return { ...shapeOf(wanted.situation), ...wanted.view, ...FINE };
 }
 
 /** The address of the boundary curves. */
 export function curvesUrl() {
-  return urlOf("/v1/overturning", shapeOf(scene.situation));
+  return urlOf("/v1/overturning", shapeOf(wanted.situation));
 }
 
 /** The point of the control space under a place of the canvas [px], or null outside the frame. */
@@ -44,27 +88,6 @@ export function pointAt(x, y) {
   const { frame, scales } = layout(1);
   const inside = x >= frame.left && x <= frame.left + frame.width && y >= frame.top && y <= frame.top + frame.height;
   return inside ? { frequency_ratio: scales.x.value(x), slenderness: scales.y.value(y) } : null;
-}
-
-/** The point that lies some shares of the window's sides away. */
-export function pointBeside(point, across, up) {
-  const { frame, scales } = layout(1);
-  const x = scales.x.place(point.frequency_ratio) + across * frame.width;
-  const y = scales.y.place(point.slenderness) - up * frame.height;
-  const within = (value, from, length) => Math.min(Math.max(value, from), from + length);
-  return {
-    frequency_ratio: scales.x.value(within(x, frame.left, frame.width)),
-    slenderness: scales.y.value(within(y, frame.top, frame.height)),
-  };
-}
-
-/** The point in the middle of the window. */
-export function middle() {
-  const { frame, scales } = layout(1);
-  return {
-    frequency_ratio: scales.x.value(frame.left + frame.width / 2),
-    slenderness: scales.y.value(frame.top + frame.height / 2),
-  };
 }
 
 /** Mark a point under the pointer, or none. */
@@ -79,36 +102,6 @@ function shapeOf({ pulse, restitution, alpha_deg }) {
 
 function groupsOf(situation) {
   return JSON.stringify(shapeOf(situation));
-}
-
-async function load(wanted, size, channel) {
-  if (wanted !== scene) return;
-  if (!wanted.grid) say(status, "Drawing the map …");
-  try {
-    const grid = await ask(channel, "/v1/map", { ...shapeOf(wanted.situation), ...wanted.view, ...size });
-    if (!grid || wanted !== scene) return;
-    wanted.grid = grid;
-    draw();
-    canvas.dataset.drawn = JSON.stringify({ ...grid.query, curves: wanted.curves?.length ?? 0 });
-    if (wanted.curves) say(status, "");
-  } catch (problem) {
-    say(status, problem);
-  }
-}
-
-async function loadCurves(wanted) {
-  if (wanted !== scene) return;
-  say(status, "Tracing the boundaries …");
-  try {
-    const found = await ask("curves", "/v1/overturning", shapeOf(wanted.situation));
-    if (!found || groupsOf(wanted.situation) !== groupsOf(scene.situation)) return;
-    scene.curves = found.curves;
-    draw();
-    canvas.dataset.curves = JSON.stringify(found.query);
-    say(status, "");
-  } catch (problem) {
-    say(status, problem);
-  }
 }
 
 function layout(ratio) {
@@ -139,7 +132,8 @@ function draw() {
   const pen = canvas.getContext("2d");
   pen.fillStyle = themed("paper");
   pen.fillRect(0, 0, canvas.width, canvas.height);
-  drawPicture(pen, frame, scales, scene.grid, scene.curves, ratio);
+  const curves = traced?.key === groupsOf(scene.situation) ? traced.curves : null;
+  drawPicture(pen, frame, scales, scene.grid, curves, ratio);
   drawFrame(pen, frame, scales, scene.situation.size, ratio);
   drawMarks();
 }

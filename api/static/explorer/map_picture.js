@@ -71,7 +71,7 @@ function drawCurve(pen, scales, curve, ratio) {
   }
 }
 
-/** From 1/a = 1 on the block never lifts off. */
+/** From 1/a = 1 on the block does not uplift. */
 function drawLimit(pen, frame, scales, ratio) {
   const y = scales.y.place(1);
   pen.strokeStyle = themed("muted");

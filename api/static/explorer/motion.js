@@ -1,46 +1,42 @@
 // The time history of the chosen block: its film, its rotation and the ground under it, one clock for all.
 
-import { ask, urlOf } from "./api.js";
+import { urlOf } from "./api.js";
 import { axis, chart } from "./chart.js";
 import { themed } from "./colours.js";
 import { DRAWN_ALPHA, filmOf } from "./film.js";
-import { say } from "./page.js";
-import { refresh, seek, wind } from "./player.js";
+import { once, pane } from "./pane.js";
+import { repeat, seek, unwind, wind } from "./player.js";
+import { caveatOf } from "./situation.js";
 import { showFrame } from "./stage.js";
 import { FATES, number } from "./words.js";
 
 const section = document.getElementById("motion");
-const status = document.getElementById("motion-status");
 const caption = document.getElementById("motion-caption");
 const clock = document.getElementById("clock");
 const places = [document.getElementById("rotation"), document.getElementById("acceleration-chart")];
 
 const SMALL = { space: 22 };
 
-let asked = "";
+let asked = null; // the situation
 let charts = [];
+const motion = pane({
+  box: section.querySelector(".motion"),
+  status: document.getElementById("motion-status"),
+  doing: "Computing the time history …",
+  delay: 120,
+  picture: "motion",
+  draw: (history) => show(history, asked),
+  clear: unwind,
+});
 
-/** Show the motion at the point of a situation; nothing without one. */
-export async function showMotion(situation) {
+/** Show the motion at the point of a situation; nothing without one; null: the situation is not known. */
+export function showMotion(situation, lasting) {
+  if (!situation) return motion.wait({ lasting });
   section.classList.toggle("empty", !situation.point);
-  if (!situation.point) {
-    asked = "";
-    return;
-  }
+  if (!situation.point) return motion.nothing();
+  asked = situation;
   const question = motionQuestion(situation);
-  const wanted = JSON.stringify([question, situation.size]);
-  if (wanted === asked) return;
-  asked = wanted;
-  say(status, "Following the block …");
-  try {
-    const history = await ask("history", "/v1/history", question);
-    if (!history || wanted !== asked) return;
-    say(status, "");
-    show(history, situation);
-  } catch (problem) {
-    asked = "";
-    say(status, problem);
-  }
+  return motion.show(JSON.stringify([question, situation.size]), once("/v1/history", question));
 }
 
 /** The question that the charts answer, for a download. */
@@ -53,14 +49,15 @@ export function motionUrl(situation, format) {
   return urlOf("/v1/history", { ...motionQuestion(situation), format });
 }
 
-function show(history, { size, alpha_deg }) {
+function show(history, situation) {
+  const { size, alpha_deg } = situation;
   const alpha = alpha_deg > 0 ? (alpha_deg * Math.PI) / 180 : DRAWN_ALPHA;
   const film = filmOf(history, alpha);
   const units = size
     ? { time: 1 / size.p, angle: size.alpha * (180 / Math.PI), ground: size.uplift_in_g }
     : { time: 1, angle: 1, ground: 1 };
   drawCharts(history, units, Boolean(size));
-  const notes = [`It ${FATES[history.outcome]}.`];
+  const notes = [caveatOf(situation), `It ${FATES[history.outcome]}.`].filter(Boolean);
   if (!(alpha_deg > 0)) notes.push(`The slender limit has no shape; drawn with α = ${number((alpha * 180) / Math.PI)}°.`);
   if (history.overturned) notes.push("The last part of the fall is drawn by gravity alone.");
   caption.textContent = notes.join(" ");
@@ -90,7 +87,7 @@ function drawCharts(history, units, dimensional) {
   ];
   for (const one of charts) {
     one.over.addEventListener("click", (event) => seek(one.posToVal(event.offsetX, "x") / units.time));
-    one.hooks.setSize = [refresh];
+    one.hooks.setSize = [repeat];
   }
 }
 

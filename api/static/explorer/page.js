@@ -1,21 +1,17 @@
 // Small things that all parts of the page share.
 
-const timers = new Map();
-
-/** Do `work` once nothing of this name has been asked for during `wait` ms. */
-export function settled(name, wait, work) {
-  clearTimeout(timers.get(name));
-  timers.set(name, setTimeout(work, wait));
-}
-
-/** Say a sentence, or what went wrong (an Error), where people and screen readers find it. */
-export function say(place, what) {
+/** Say a sentence, or what went wrong (an Error) with a way to try `again`, where people and screen readers find it. */
+export function say(place, what, again) {
   const wrong = what instanceof Error;
   place.classList.toggle("wrong", wrong);
   if (!wrong) place.textContent = what;
   else if (blame(what, place.closest("form") ?? document.getElementById("controls"))) {
     place.textContent = "No answer: see the field marked in red.";
-  } else place.textContent = `No answer: ${what.message}`;
+  } else {
+    const button = element("button", "Try again", { type: "button" });
+    button.addEventListener("click", again);
+    place.replaceChildren(`No answer: ${what.message}. `, button);
+  }
 }
 
 /** An element with text or children in it. */

@@ -22,19 +22,27 @@ export function wind(end, size, show, atOnce) {
   else pause();
 }
 
+/** Take the film off. */
+export function unwind() {
+  pause();
+  reel = null;
+}
+
 /** Go to a time. */
 export function seek(to) {
+  if (!reel) return;
   tau = Math.min(Math.max(to, 0), reel.end);
   slider.value = tau;
   slider.setAttribute("aria-valuetext", reel.show(tau));
 }
 
 /** Show the time that is on again. */
-export function refresh() {
-  if (reel) seek(tau);
+export function repeat() {
+  seek(tau);
 }
 
 function play() {
+  if (!reel) return;
   if (tau >= reel.end) seek(0);
   const running = last !== null;
   last = performance.now();

@@ -1,22 +1,28 @@
 // What is looked at: the groups in the address, or those of a block in metres, which the service works out.
+// A situation is pulse, restitution, alpha_deg and point (or null); of a block also its size and its answer.
 
-import { ask } from "./api.js";
-import { isBlock } from "./state.js";
+import { DEFAULTS } from "./state.js";
 import { inUnitOf, toSI } from "./units.js";
 
 const GRAVITY = 9.80665; // [m/s2], the service's own unless it is told otherwise
 
-/**
- * The situation of a state: pulse, restitution, alpha_deg, point (or null); of a block also its size and its answer.
- * Null if a newer block was asked about meanwhile. Throws Problem.
- */
-export async function situationOf(state) {
-  if (!isBlock(state)) return { ...groupsOf(state), size: null, answer: null };
-  const answer = await ask("block", "/v1/blocks/response", blockQuestion(state));
-  if (!answer) return null;
+/** The situation of a state in groups. */
+export function situationOf({ pulse, restitution, alpha_deg, frequency_ratio, slenderness }) {
+  const chosen = frequency_ratio !== "" && slenderness !== "";
+  const point = chosen ? numbers({ frequency_ratio, slenderness }) : null;
+  return { pulse, restitution, alpha_deg, point, size: null, answer: null };
+}
+
+/** The situation of a state whose block the service does not answer: its pulse, and no block. */
+export function situationWithoutAnswer({ pulse }) {
+  return situationOf({ ...DEFAULTS, pulse });
+}
+
+/** The situation of a block, by the answer of /v1/blocks/response. */
+export function situationOfBlock(answer) {
   const { slenderness, frequency_ratio } = answer.response.query;
   return {
-    pulse: state.pulse,
+    pulse: answer.query.pulse,
     restitution: answer.restitution,
     alpha_deg: answer.alpha_deg,
     point: { frequency_ratio, slenderness },
@@ -28,6 +34,11 @@ export async function situationOf(state) {
     },
     answer,
   };
+}
+
+/** Said beside the motion of a block that would slide or lift off; empty where the rocking model applies. */
+export function caveatOf({ answer }) {
+  return answer && !answer.rocking_model_applies ? "The rocking model does not apply; held in place:" : "";
 }
 
 /** The question about a block in SI units. */
@@ -54,11 +65,6 @@ export function movedTo(state, situation, { frequency_ratio, slenderness }) {
     acceleration: inUnitOf("acceleration", state.acceleration, (uplift_in_g * GRAVITY) / slenderness), // a_g = g tan(alpha)/s
     period: inUnitOf("period", state.period, (2 * Math.PI) / (p * frequency_ratio)), // omega = omega_g/p
   };
-}
-
-function groupsOf({ pulse, restitution, alpha_deg, frequency_ratio, slenderness }) {
-  const chosen = frequency_ratio !== "" && slenderness !== "";
-  return { pulse, restitution, alpha_deg, point: chosen ? numbers({ frequency_ratio, slenderness }) : null };
 }
 
 /** Numbers for drawing; what is none stays as it is, for the service to refuse. */

@@ -3,38 +3,39 @@
 import { ask, urlOf } from "./api.js";
 import { axis, chart } from "./chart.js";
 import { hatch, themed } from "./colours.js";
-import { say } from "./page.js";
+import { pane } from "./pane.js";
 import { number } from "./words.js";
 
 const OTHERS = [0.8, 0.88, 0.96];
 const POINTS = 400;
 
 const section = document.getElementById("spectrum");
-const status = document.getElementById("spectrum-status");
 const caption = document.getElementById("spectrum-caption");
 const place = document.getElementById("spectrum-chart");
 
-let latest = null;
+let asked = null; // the situation
+const spectrum = pane({
+  box: section.querySelector(".picture"),
+  status: document.getElementById("spectrum-status"),
+  doing: "Computing the spectrum …",
+  delay: 120,
+  picture: "spectrum",
+  draw: (found) => draw(asked, found),
+  clear: () => {},
+});
 
-/** Show the spectrum through the point of a situation, over the window of the map. */
-export async function showSpectrum(situation, view) {
+/** Show the spectrum through the point of a situation (null: not known), over the window of the map. */
+export function showSpectrum(situation, view, lasting) {
+  if (!situation) return spectrum.wait({ lasting });
   section.classList.toggle("empty", !situation.point);
-  if (!situation.point) return;
-  latest = situation;
-  say(status, "Drawing the spectrum …");
+  if (!situation.point) return spectrum.nothing();
+  asked = situation;
   const question = spectrumQuestion(situation, view);
-  try {
-    const found = await Promise.all(
-      [question.restitution, ...OTHERS].map((restitution, at) =>
-        ask(`spectrum ${at}`, "/v1/spectrum", { ...question, restitution }),
-      ),
-    );
-    if (found.includes(null) || latest !== situation) return;
-    say(status, "");
-    draw(situation, found);
-  } catch (problem) {
-    say(status, problem);
-  }
+  const key = JSON.stringify([question, situation.point.frequency_ratio]);
+  return spectrum.show(key, async function* load(signal) {
+    const all = [question.restitution, ...OTHERS];
+    yield await Promise.all(all.map((restitution) => ask("/v1/spectrum", { ...question, restitution }, signal)));
+  });
 }
 
 /** The address of the spectrum with all its digits, in a form. */
@@ -78,12 +79,12 @@ function draw(situation, [chosen, ...others]) {
 function inWords({ restitution, point }, chosen, at) {
   if (at !== null && at !== undefined) {
     const omega = `ω ${number(chosen.frequency_ratio[at])}`;
-    return chosen.overturned[at] ? `${omega}: falls` : `${omega}: peak ${chosen.peak_rotation[at].toFixed(4)} α`;
+    return chosen.overturned[at] ? `${omega}: overturns` : `${omega}: peak ${chosen.peak_rotation[at].toFixed(4)} α`;
   }
   const others = OTHERS.map((eta) => number(eta, 2)).join(", ");
   return (
     `1/a = ${number(point.slenderness)}, η = ${number(restitution)}; thin: η = ${others}. ` +
-    "Hatched: the block falls; dashed: the chosen frequency ratio."
+    "Hatched: the block overturns; dashed: the chosen frequency ratio."
   );
 }
 
@@ -93,7 +94,7 @@ function label(value) {
   return ["1", "2", "3", "5", "7"].includes(digit) ? number(value, 3) : "";
 }
 
-/** Hatch the frequency ratios at which the chosen block falls. */
+/** Hatch the frequency ratios at which the chosen block overturns. */
 function shadeFalls(u, chosen) {
   const { ctx, bbox } = u;
   const omega = chosen.frequency_ratio;

@@ -57,7 +57,7 @@ export function change(parts, { keep = true } = {}) {
     history.pushState(null, "", address);
     step = address;
   } else history.replaceState(null, "", address);
-  tell();
+  refresh();
 }
 
 /** Call `listener(state)` after every change, the back and forward buttons among them. */
@@ -65,12 +65,13 @@ export function onChange(listener) {
   listeners.push(listener);
 }
 
-function tell() {
+/** Tell everybody the state again, so that what failed is asked for once more. */
+export function refresh() {
   for (const listener of listeners) listener(current);
 }
 
 addEventListener("popstate", () => {
   current = read();
   step = addressOf(current);
-  tell();
+  refresh();
 });

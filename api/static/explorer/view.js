@@ -41,6 +41,27 @@ export function zoomed(view, about, factor) {
   return parts;
 }
 
+/** The point in the middle of the window. */
+export function middleOf(view) {
+  return pointAt(view, 0.5, 0.5);
+}
+
+/** The point that lies some shares of the window's sides away, within the window. */
+export function pointBeside(view, { frequency_ratio, slenderness }, across, up) {
+  const x = Math.log(frequency_ratio / view.frequency_ratio_min) / Math.log(view.frequency_ratio_max / view.frequency_ratio_min);
+  const y = (slenderness - view.slenderness_min) / (view.slenderness_max - view.slenderness_min);
+  const within = (share) => Math.min(Math.max(share, 0), 1);
+  return pointAt(view, within(x + across), within(y + up));
+}
+
+/** The point at some shares of the window's sides. */
+function pointAt(view, x, y) {
+  return {
+    frequency_ratio: view.frequency_ratio_min * (view.frequency_ratio_max / view.frequency_ratio_min) ** x,
+    slenderness: view.slenderness_min + y * (view.slenderness_max - view.slenderness_min),
+  };
+}
+
 function asked(state) {
   return Object.keys(WHOLE).some((name) => state[name] !== "");
 }

@@ -1,10 +1,10 @@
 // Numbers and fates as people say them.
 
 export const FATES = {
-  NO_UPLIFT: "never lifts off the ground",
-  SAFE: "rocks and comes to rest",
-  OVERTURNED_DIRECTLY: "falls without an impact",
-  OVERTURNED_AFTER_IMPACT: "falls after impacts",
+  NO_UPLIFT: "does not uplift",
+  SAFE: "survives (comes to rest)",
+  OVERTURNED_DIRECTLY: "overturns without an impact",
+  OVERTURNED_AFTER_IMPACT: "overturns after impacts",
 };
 
 export const PULSES = {
@@ -48,9 +48,9 @@ export function impacts(count) {
 /** What the solver says of one point, in a line. */
 export function answerInWords(found) {
   const fate = FATES[found.outcome];
-  if (found.overturned) return found.impacts ? `falls after ${impacts(found.impacts)}` : fate;
+  if (found.overturned) return found.impacts > 0 ? `overturns after ${impacts(found.impacts)}` : fate;
   if (found.outcome === "NO_UPLIFT") return fate;
   const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
-  const beyond = found.exceeded_alpha ? "; it passes α and is brought back" : "";
+  const beyond = found.exceeded_alpha ? "; it exceeds α" : "";
   return `${fate}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${beyond}`;
 }

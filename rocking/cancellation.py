@@ -1,0 +1,117 @@
+"""Stops work that takes too long: a flag that any thread sets, read by searches and by the loops of the kernels.
+
+Functions that may take long have an argument `stop`. They raise `StoppedError` soon after the flag was set, hundredths
+of a second as a rule, and return nothing: what a kernel that was stopped has written is not complete.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import numpy as np
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba.core import types
+from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+from rocking.errors import StoppedError
+
+T = TypeVar("T")
+
+NEVER = np.zeros(1, np.uint8)
+"""For kernels that nobody stops."""
+
+
+class StopFlag:
+    """Asks for an end of the work that was given this flag; once set it stays set.
+
+    Attributes
+    ----------
+    array : uint8 array (1,)
+        What the kernels read: 0, or 1 when set.
+    """
+
+    def __init__(self) -> None:
+        self.array: NDArray[np.uint8] = np.zeros(1, np.uint8)
+        self._parts: list[StopFlag] = []
+
+    def set(self) -> None:
+        """Ask the work, and its parts, to stop; from any thread."""
+        self.array[0] = 1
+        for part in self._parts.copy():
+            part.set()
+
+    def is_set(self) -> bool:
+        """Whether the work shall stop."""
+        return bool(self.array[0])
+
+    def check(self) -> None:
+        """Go on, or not.
+
+        Raises
+        ------
+        StoppedError
+            If the flag is set.
+        """
+        if self.array[0]:
+            raise StoppedError("the work was stopped before its end")
+
+    @contextmanager
+    def part(self) -> Iterator[StopFlag]:
+        """A flag for a part of the work: it is set with this one, or by itself."""
+        part = StopFlag()
+        self._parts.append(part)
+        try:
+            if self.is_set():
+                part.set()
+            yield part
+        finally:
+            self._parts.remove(part)
+
+
+def attempt(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T | None:
+    """Do a part of the work of this thread within some time [s]; None if that was not enough.
+
+    Raises
+    ------
+    StoppedError
+        If `stop`, the flag of the whole, was set meanwhile.
+    """
+    with stop.part() as part:
+        timer = threading.Timer(seconds, part.set)
+        timer.daemon = True
+        timer.start()
+        try:
+            return work(part)
+        except StoppedError:
+            stop.check()
+            return None
+        finally:
+            timer.cancel()
+
+
+def check(stop: StopFlag | None) -> None:
+    """Raise `StoppedError` if there is a flag and it is set."""
+    if stop is not None:
+        stop.check()
+
+
+def array_of(stop: StopFlag | None) -> NDArray[np.uint8]:
+    """What kernels read."""
+    return NEVER if stop is None else stop.array
+
+
+def _flag_is_set(_: Any, flag: Any) -> Any:
+    def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        place = context.make_array(signature.args[0])(context, builder, values[0]).data
+        value = builder.load_atomic(place, ordering="monotonic", align=1)
+        return builder.icmp_unsigned("!=", value, ir.Constant(value.type, 0))
+
+    return types.boolean(flag), lower
+
+
+stopped: Any = intrinsic(_flag_is_set)
+"""stopped(array): whether the flag is set, for kernels; an atomic load, which the compiler leaves in the loop."""

@@ -1,0 +1,55 @@
+"""Compiles every kernel, or loads it from the cache, by asking each a small question: `python -m rocking.precompile`.
+
+`make environment` and the start of the service run it, so that no question of a user waits for the compiler.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.compilation import cache_folder
+from rocking.history import time_history
+from rocking.lookup import Cube
+from rocking.lookup_level import level_of
+from rocking.pulses import PULSE_NAMES, get_pulse
+from rocking.solve import peak_response
+from rocking.sweep import spectra
+
+COMPLETE = "complete"
+"""File in the cache folder that says that all kernels are in it."""
+
+
+def is_missing() -> bool:
+    """Whether machine code can be kept on disk and is not all there yet."""
+    folder = cache_folder()
+    return folder is not None and not (Path(folder) / COMPLETE).exists()
+
+
+def load_kernels() -> None:
+    """Load the machine code of all kernels into this process, compiled before if it is not in the cache."""
+    for name in PULSE_NAMES:
+        get_pulse(name)  # three of them load a part of scipy
+    block: dict[str, Any] = {"slenderness": 0.8, "frequency_ratio": 3.0, "restitution": 0.85}
+    peak_response("sine", **block)
+    peak_response("sine", **block, alpha=0.3)
+    time_history("sine", **block, samples=2)
+    time_history("sine", **block, alpha=0.3, samples=2)
+    axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}
+    levels = [level_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
+    cube = Cube("sine", np.array([level.restitution for level in levels]), levels.__getitem__)
+    cube.response(**block)
+
+
+def main() -> None:
+    """Compile what is not in the cache yet."""
+    folder = cache_folder()
+    if folder is not None and is_missing():
+        load_kernels()
+        (Path(folder) / COMPLETE).touch()
+
+
+if __name__ == "__main__":
+    main()

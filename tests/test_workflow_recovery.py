@@ -1,0 +1,182 @@
+"""The workflow after what goes wrong: killed runs, two runs at once, products that are missing, damaged or replaced."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from stress.kills import KILLED, content, interrupt, project
+from stress.kills import reproduce as make_reproduce
+from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
+from workflow.records import forget_false_records
+from workflow.run_lock import RunningError, acquire
+from workflow.verify import problems
+
+CUBE, FIGURE, DATA = "spectra/sine/eta-0.85.nc", "figures/figure-04.svg", "figures/figure-07.nc"
+
+
+@pytest.fixture
+def run(smoke_run: Path, tmp_path: Path) -> Path:
+    """A finished run that a test may spoil; times of files are kept, or Snakemake would build all of them again."""
+    return Path(shutil.copytree(smoke_run, tmp_path / "run"))
+
+
+def deleted(path: Path) -> None:
+    path.unlink()
+
+
+def flipped(path: Path) -> None:
+    """One bit of it, with the size and the time that it had."""
+    stat, content = path.stat(), bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+
+
+def emptied(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def replaced(path: Path) -> None:
+    """By another file that is whole."""
+    other = path.with_name(path.name.replace("figure-04", "figure-03").replace("0.85", "0.90"))
+    path.write_bytes(other.read_bytes() if other != path else b'{"title": "Smoke run", "products": {}}')
+
+
+FAULTS = [
+    (CUBE, deleted, "spectra/sine"), (CUBE, flipped, "spectra/sine"), (CUBE, replaced, "spectra/sine"),
+    (FIGURE, deleted, "figures/figure-04"), (FIGURE, flipped, "figures/figure-04"),
+    (FIGURE, replaced, "figures/figure-04"), (DATA, emptied, "figures/figure-07"), ("claims.md", deleted, "claims"),
+    ("claims.json", flipped, "claims"), ("manifest.json", deleted, "manifest"), ("manifest.json", emptied, "manifest"),
+    ("manifest.json", replaced, "manifest"), ("manifest.json", flipped, "manifest"),
+    ("checks.txt", deleted, "check_results"), ("checks.txt", flipped, "check_results"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "spoil", "job"), FAULTS, ids=lambda value: getattr(value, "__name__", None))
+def test_a_fault_is_named_and_its_job_forgotten(name: str, spoil: Callable[[Path], None], job: str, run: Path) -> None:
+    records = set((run / "results/.records").rglob("*.json"))
+    assert [*problems(run)] == []
+    assert [*forget_false_records(run)] == []
+    spoil(run / "results" / name)
+    (line,) = problems(run)
+    assert line.startswith(f"{run / 'results' / name}: ")
+    assert [*forget_false_records(run)] == [line]
+    assert records - set((run / "results/.records").rglob("*.json")) == {run / f"results/.records/{job}.json"}
+
+
+@pytest.mark.parametrize("spoil", [flipped, emptied])
+def test_a_damaged_record_is_forgotten_too(spoil: Callable[[Path], None], run: Path) -> None:
+    record = run / "results/.records/figures/figure-04.json"
+    spoil(record)
+    assert [*forget_false_records(run)] != []
+    assert not record.exists()
+
+
+def test_each_missing_product_or_record_is_planned(run: Path) -> None:
+    for name in (CUBE, FIGURE, "claims.md", ".records/figures/figure-07.json", ".records/check_results.json"):
+        (run / "results" / name).unlink()
+    planned = rules_to_run(snakemake(run, "--dry-run").stdout)
+    of_cube = {"spectra", "figure_08", "figure_13", "figure_scale_law", "claims"}
+    assert planned == of_cube | {"figure_04", "figure_07", "manifest", "check_results", "all"}
+
+
+@pytest.mark.slow
+def test_one_command_makes_again_what_is_missing_damaged_or_replaced(run: Path) -> None:
+    before = content(run)
+    spoiled = {CUBE: flipped, FIGURE: deleted, "figures/figure-03.png": flipped, "manifest.json": replaced}
+    for name, spoil in spoiled.items():
+        spoil(run / "results" / name)
+    assert {line.partition(": ")[0] for line in problems(run)} == {str(run / "results" / name) for name in spoiled}
+    verified = subprocess.run(
+        [sys.executable, "-m", "workflow.verify", run], cwd=PROJECT, capture_output=True, text=True, check=False
+    )
+    assert verified.returncode == 1
+    assert f"{len(spoiled)} found; `make reproduce`" in verified.stderr
+    repaired = reproduce(run)
+    assert repaired.returncode == 0, repaired.stdout
+    assert content(run) == before
+    assert [*problems(run)] == []
+
+
+@pytest.mark.slow
+def test_a_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Path, tmp_path: Path) -> None:
+    folder = project(tmp_path / "project")
+    for part in ("results", "logs", ".snakemake"):
+        shutil.copytree(smoke_run / part, folder / part)
+    before = content(folder)
+    (folder / "results/.records/spectra/cosine.json").unlink()
+    for what in KILLED:
+        assert interrupt(folder, what, lambda jobs: "spectra" in jobs) == "in spectra"
+    left = folder / "results/spectra/cosine/.eta-0.85.nc.abc.partial"
+    left.parent.mkdir(exist_ok=True)
+    left.touch()
+    recovered = make_reproduce(folder)
+    assert recovered.returncode == 0, recovered.stdout
+    assert content(folder) == before
+
+
+@pytest.fixture
+def holder(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """A process that holds a folder."""
+    program = (
+        "import sys, time, pathlib; from workflow.run_lock import acquire; acquire(pathlib.Path(sys.argv[1])); "
+        "print('held', flush=True); time.sleep(600)"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program, tmp_path], cwd=PROJECT, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "held\n"
+        yield process
+        process.kill()
+
+
+def test_a_second_run_is_refused_until_the_first_is_gone(
+    holder: subprocess.Popen[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("workflow.run_lock.PATIENCE", 0.1)
+    with pytest.raises(RunningError, match=rf"another run \(process {holder.pid}\) is at work here"):
+        acquire(tmp_path)
+    for module in ("workflow.run", "snakemake"):
+        refused = snakemake(tmp_path, module=module)
+        assert refused.returncode == 1
+        assert f"another run (process {holder.pid}) is at work here" in refused.stdout
+    assert not (tmp_path / "results").exists()
+    holder.send_signal(signal.SIGKILL)
+    holder.wait()
+    acquire(tmp_path)
+
+
+def test_a_job_ends_with_its_run_and_holds_the_folder_until_then(tmp_path: Path) -> None:
+    (tmp_path / ".snakemake").mkdir()
+    job = (
+        "import time; from workflow.run_lock import join_run; join_run(); print('joined', flush=True); time.sleep(600)"
+    )
+    run = (
+        "import os, subprocess, sys; os.environ['ROCKING_RUN'] = str(os.getpid()); "
+        "subprocess.run([sys.executable, '-c', sys.argv[1]])"
+    )
+    next_run = "import pathlib; from workflow.run_lock import acquire; acquire(pathlib.Path())"
+    place = {"cwd": tmp_path, "env": {**os.environ, "PYTHONPATH": str(PROJECT)}, "text": True}
+    with (
+        subprocess.Popen([sys.executable, "-c", run, job], stdout=subprocess.PIPE, **place) as first,
+        subprocess.Popen([sys.executable, "-c", "input();" + next_run], stdin=subprocess.PIPE, **place) as second,
+    ):
+        assert first.stdout is not None
+        assert first.stdout.readline() == "joined\n"
+        assert second.stdin is not None
+        second.stdin.write("\n")
+        second.stdin.flush()
+        with pytest.raises(subprocess.TimeoutExpired):
+            second.wait(1.0)  # the job is at work
+        first.kill()
+        assert second.wait(60) == 0
+        assert first.stdout.read() == ""  # closed by the job too

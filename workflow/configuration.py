@@ -1,0 +1,309 @@
+"""What a configuration may say: keys, types and ranges, checked before the first job, each limit at one place.
+
+Every refusal is one line that names the key, its value and what is allowed.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Callable, Iterator, Mapping
+from itertools import chain, pairwise
+from typing import Annotated, Any
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    PlainValidator,
+    ValidationError,
+    create_model,
+    model_validator,
+)
+
+from rocking.pulses import PULSE_NAMES
+from workflow.scripts.axes import stepped, steps_between
+
+NODES = 200_000_000
+"""Most nodes of the cubes, or of the grid of the boundaries, of one pulse: they are in memory together."""
+
+BYTES = 125
+"""Memory of one node of a cube while the cubes of a pulse are made, measured from 0.2 to 8 million nodes."""
+
+DATA_OF_FIGURES = {
+    "figure-04": ["sine"],
+    "figure-08": ["sine", "cosine"],
+    "figure-09": ["sine", "cosine"],
+    "figure-10": ["sine", "cosine"],
+    "figure-13": ["sine", "cosine"],
+    "figure-scale-law": ["sine"],
+}
+"""The pulses of the figures that are drawn from data sets."""
+
+
+class ConfigurationError(ValueError):
+    """A configuration that is refused; the message is one line."""
+
+
+class Section(BaseModel):
+    """A mapping with exactly the keys of its fields."""
+
+    model_config = ConfigDict(frozen=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _keys(cls, given: Any) -> Any:
+        """Refuse other keys than the fields."""
+        keys, fields = set(given if isinstance(given, dict) else ()), set(cls.model_fields)
+        if keys != fields:
+            found = [f"unknown key {key}" for key in sorted(map(str, keys - fields))]
+            found += [f"missing key {key}" for key in sorted(fields - keys)]
+            raise ValueError(f"{', '.join(found)}; the keys are {', '.join(cls.model_fields) or 'none'}")
+        return given
+
+
+def section(**fields: Any) -> Any:
+    """A `Section` with these keys and types of values."""
+    return create_model("Section", __base__=Section, **{name: (kind, ...) for name, kind in fields.items()})
+
+
+def leaf(allowed: str, accepts: Callable[[Any], bool]) -> Any:
+    """A value that `accepts` is true of; `allowed` says in words which."""
+
+    def check(value: Any) -> Any:
+        if not accepts(value):
+            raise ValueError(f"allowed: {allowed}")
+        return value
+
+    return Annotated[Any, PlainValidator(check)]
+
+
+def number(low: float, high: float, *, zero: bool = False) -> Any:
+    """A finite number in [low, high], or also 0."""
+
+    def accepts(value: Any) -> bool:
+        return type(value) in (int, float) and (low <= value <= high or (zero and value == 0))
+
+    return leaf(f"a number from {low:g} to {high:g}{', or 0' if zero else ''}", accepts)
+
+
+def integer(low: int, high: int) -> Any:
+    """A whole number in [low, high]."""
+    return leaf(f"a whole number from {low} to {high}", lambda value: type(value) is int and low <= value <= high)
+
+
+def several(item: Any, least: int = 1, most: int = 200, *, ascending: bool = False) -> Any:
+    """A list of different values."""
+
+    def check(values: list[Any]) -> list[Any]:
+        in_order = all(a < b for a, b in pairwise(values)) if ascending else len(set(values)) == len(values)
+        if not in_order or not least <= len(values) <= most:
+            count = f"{least}" if least == most else f"{least} to {most}"
+            raise ValueError(f"allowed: {count} {'ascending' if ascending else 'different'} values")
+        return values
+
+    return Annotated[list[item], AfterValidator(check)]
+
+
+# Fields of a section come from a table, so their types are known to pydantic and not to a type checker.
+def _rising(limits: Any) -> Any:
+    if not limits.low < limits.high:
+        raise ValueError(f"low = {limits.low:g}, high = {limits.high:g}; allowed: low < high")
+    return limits
+
+
+def _whole_steps(stretches: Any) -> Any:
+    steps_between(stretches.breaks, stretches.steps)
+    return stretches
+
+
+def _two_decimals(etas: list[float]) -> list[float]:
+    for eta in etas:
+        if round(eta, 2) != eta:
+            raise ValueError(f"{eta}; allowed: two decimals at most, they name the files")
+    return etas
+
+
+def _with_slender_limit(angles: list[float]) -> list[float]:
+    if 0 not in angles:
+        raise ValueError("allowed: a list with 0, the slender limit, which figures and claims need")
+    return angles
+
+
+def _pairs(blocks: Any) -> Any:
+    if len(blocks.slenderness_angle) != len(blocks.half_diagonal):
+        raise ValueError("slenderness_angle and half_diagonal: allowed: one of each for every block")
+    return blocks
+
+
+PULSE = leaf(f"one of {', '.join(PULSE_NAMES)}", lambda value: value in PULSE_NAMES)
+ETA = number(0, 1)
+OMEGA = number(1e-3, 1e3)
+SLENDERNESS = number(1e-4, 10)
+SLENDERNESS_OF_BOUNDARY = number(1e-4, 1)  # no block uplifts above
+ANGLE = number(0.01, 89)  # [deg]
+METRES = number(1e-3, 1e3)
+SECONDS = number(1e-3, 1e3)
+DURATION = number(1e-3, 100)  # of tau
+POSITIVE = number(1e-3, 1e3)
+NODES_OF_BOUNDARY = integer(16, 4001)
+
+ETAS, PULSE_LIST, OMEGAS, ROWS, ANGLES = (several(item) for item in (ETA, PULSE, OMEGA, SLENDERNESS, ANGLE))
+
+
+def _range(item: Any, **fields: Any) -> Any:
+    return Annotated[section(low=item, high=item, **fields), AfterValidator(_rising)]
+
+
+_CASE = section(frequency_ratio=OMEGA, amplitudes=several(POSITIVE, 2, 2))
+_PULSE_AND_ETA = section(pulse=PULSE, restitution=ETA)
+_TWO_BLOCKS = Annotated[
+    section(
+        slenderness=SLENDERNESS,
+        frequency_ratio=OMEGA,
+        slenderness_angle=several(number(1e-3, 1.5)),  # [rad]
+        half_diagonal=several(METRES),
+        duration=DURATION,
+    ),
+    AfterValidator(_pairs),
+]
+_HISTORIES = {"pulses": PULSE_LIST, "restitution": ETA, "alpha_deg": ANGLES, "frequency_ratio": OMEGA}
+
+FIGURES = section(
+    **{
+        "figure-01": section(
+            ours=section(
+                pulse=PULSE,
+                half_width=METRES,
+                half_height=METRES,
+                rotation=number(1e-3, 1),
+                peak_acceleration=POSITIVE,
+                pulse_period=SECONDS,
+            )
+        ),
+        "figure-02": section(
+            paper=section(pulse=PULSE),
+            ours=section(restitution=ETA, cases=section(**{"2": _CASE, "1.2": _CASE, "1.1": _CASE})),
+        ),
+        "figure-03": section(
+            ours=section(restitution=ETAS, frequency_ratio=_range(OMEGA, points=integer(4, 10_000))),
+        ),
+        "figure-04": section(ours=section(restitution=ETAS)),
+        "figure-05": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
+        "figure-06": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
+        "figure-07": section(
+            paper=section(pulses=PULSE_LIST, restitution=ETAS),
+            ours=section(slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION),
+        ),
+        "figure-08": section(
+            paper=section(restitution=ETAS), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
+        ),
+        "figure-09": section(
+            paper=section(alpha_deg=ANGLE, half_diagonal=several(METRES, 2, 2), restitution=ETA),
+            ours=section(pulse_period=several(SECONDS)),
+        ),
+        "figure-10": section(paper=section(restitution=ETA)),
+        "figure-11": section(ours=section(slenderness=SLENDERNESS, duration=DURATION, **_HISTORIES)),
+        "figure-12": section(paper=section(slenderness=SLENDERNESS), ours=section(duration=DURATION, **_HISTORIES)),
+        "figure-13": section(
+            paper=section(restitution=ETA), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
+        ),
+        "figure-S1": section(ours=section(slenderness=number(1e-4, 1), frequency_ratio=OMEGAS)),
+        "figure-scale-law": section(ours=section(restitution=several(number(0.01, 1)), reference=ETA)),
+        "table-1": section(),
+    }
+)
+
+CONFIGURATION = section(
+    title=leaf("a text", lambda value: isinstance(value, str)),
+    pulses=PULSE_LIST,
+    restitution=Annotated[several(ETA, ascending=True), AfterValidator(_two_decimals)],
+    grid=section(
+        alpha_deg=Annotated[several(number(0.01, 89, zero=True), ascending=True), AfterValidator(_with_slender_limit)],
+        slenderness=Annotated[
+            section(breaks=several(SLENDERNESS, 2, ascending=True), steps=list[number(1e-6, 10)]),  # type: ignore[misc]
+            AfterValidator(_whole_steps),
+        ],
+        frequency_ratio=_range(OMEGA, points=integer(4, NODES)),
+    ),
+    boundary=section(
+        nodes=NODES_OF_BOUNDARY,  # for the slender limit
+        nodes_rigid=NODES_OF_BOUNDARY,  # for alpha > 0
+        slenderness=_range(SLENDERNESS_OF_BOUNDARY),
+        frequency_ratio=_range(OMEGA),
+    ),
+    figures=FIGURES,
+    claims=section(restitution=ETAS),
+)
+
+
+def check(config: Mapping[str, Any]) -> None:
+    """Refuse a configuration that no run could finish.
+
+    Raises
+    ------
+    ConfigurationError
+        With one line for the first wrong value: key, value and what is allowed.
+    """
+    try:
+        CONFIGURATION.model_validate(config)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key, value = ".".join(map(str, first["loc"])) or "configuration", first["input"]
+        stated = key if isinstance(value, dict) else f"{key} = {reprlib.repr(value)}"
+        raise ConfigurationError(f"{stated}: {first['msg'].removeprefix('Value error, ')}") from None
+    for conflict in chain(_too_large(config), _not_made(config)):
+        raise ConfigurationError(conflict)
+
+
+def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:
+    """All values of a figure, the paper's and ours."""
+    values = config["figures"][figure]
+    return {**values.get("paper", {}), **values.get("ours", {})}
+
+
+def restitutions(config: Mapping[str, Any], figure: str) -> list[float]:
+    """Its restitutions as a list, also where it has only one."""
+    eta = chosen(config, figure)["restitution"]
+    return eta if isinstance(eta, list) else [eta]
+
+
+def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
+    """Grids that do not fit into memory, found without making them."""
+    grid, boundary, etas = config["grid"], config["boundary"], len(config["restitution"])
+    rows, columns = 1 + sum(steps_between(**grid["slenderness"])), grid["frequency_ratio"]["points"]
+    limit = f"allowed: {NODES:,}"
+    if (nodes := len(grid["alpha_deg"]) * rows * columns * etas) > NODES:
+        axes = (
+            f"{len(grid['alpha_deg'])} alpha_deg x {rows} slenderness x {columns} frequency_ratio x {etas} restitution"
+        )
+        needed, most = (f"{count * BYTES / 1e9:.0f} GB" for count in (nodes, NODES))
+        yield f"grid = {axes} = {nodes:,} nodes, {needed} for one pulse; {limit}, {most}"
+    for key in ("nodes", "nodes_rigid"):
+        if (nodes := boundary[key] ** 2 * etas) > NODES:
+            yield f"boundary.{key} = {boundary[key]}: {nodes:,} nodes with {etas} restitution; {limit}"
+
+
+def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
+    """Figures of data that nobody makes."""
+    grid, columns = config["grid"], config["grid"]["frequency_ratio"]
+    rows = stepped(**grid["slenderness"])
+    for figure, pulses in DATA_OF_FIGURES.items():
+        values = chosen(config, figure)
+        for pulse in set(pulses) - set(config["pulses"]):
+            yield f"pulses = {config['pulses']}: {figure} needs {pulse}"
+        for name, given, made in (
+            ("restitution", restitutions(config, figure), config["restitution"]),
+            ("alpha_deg", [values.get("alpha_deg", 0)], grid["alpha_deg"]),
+        ):
+            for value in set(given) - set(made):
+                yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"
+        for value in values.get("slenderness", []):
+            if abs(rows - value).min() > 1e-9:
+                yield f"figures.{figure}: slenderness = {value}; allowed: nodes of grid.slenderness"
+        shown = values.get("frequency_ratio", columns)
+        if not columns["low"] <= shown["low"] < shown["high"] <= columns["high"]:
+            window = f"{columns['low']:g} to {columns['high']:g}"
+            yield f"figures.{figure}: frequency_ratio = {shown}; allowed: within grid.frequency_ratio, {window}"
+    law = chosen(config, "figure-scale-law")
+    if law["reference"] not in law["restitution"]:
+        yield f"figures.figure-scale-law: reference = {law['reference']}; allowed: one of its {law['restitution']}"

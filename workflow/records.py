@@ -1,0 +1,71 @@
+"""Digests of the products, noted by the job that made them: a product that is not as recorded is made again.
+
+The record of a job is one of its outputs, so a job without its record is run again like one without any other output.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path("results/.records")
+
+
+def digest(path: Path) -> dict[str, Any]:
+    """Size [bytes] and sha256 of a file."""
+    with path.open("rb") as file:
+        return {"sha256": hashlib.file_digest(file, "sha256").hexdigest(), "size": path.stat().st_size}
+
+
+def write_record(record: Path, products: Iterable[Path]) -> None:
+    """Note the digests of a job's products."""
+    content = {path.as_posix(): digest(path) for path in products}
+    record.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def read_record(record: Path) -> dict[str, Any]:
+    """What `write_record` noted.
+
+    Raises
+    ------
+    ValueError
+        If the file is no record.
+    """
+    content = json.loads(record.read_bytes())
+    if not isinstance(content, dict) or not content:
+        raise ValueError(f"{record}: no record of products")
+    return content
+
+
+def differences(folder: Path, recorded: Mapping[str, Any]) -> Iterator[str]:
+    """What is missing in a folder, or holds other bytes than recorded, in words; nothing if all is well."""
+    for name, expected in recorded.items():
+        path = folder / name
+        try:
+            found = digest(path)
+        except OSError as error:
+            yield f"{path}: {error.strerror}"
+        else:
+            if not isinstance(expected, dict) or not found.items() <= expected.items():
+                yield f"{path}: its bytes are not the recorded ones"
+
+
+def false_records(folder: Path) -> Iterator[tuple[Path, list[str]]]:
+    """Each record that is damaged or does not match its products, with the reasons."""
+    for record in sorted((folder / FOLDER).rglob("*.json")):
+        try:
+            found = [*differences(folder, read_record(record))]
+        except ValueError:
+            found = [f"{record}: damaged"]
+        if found:
+            yield record, found
+
+
+def forget_false_records(folder: Path) -> Iterator[str]:
+    """Delete these records, so that Snakemake runs their jobs again; tell why."""
+    for record, found in false_records(folder):
+        record.unlink()
+        yield from found

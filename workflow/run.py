@@ -1,0 +1,41 @@
+"""Makes what is missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
+
+The command is safe to repeat after any interruption, `kill -9` included, and refuses to work beside another live run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from snakemake.cli import main as snakemake
+
+from workflow.records import forget_false_records
+from workflow.run_lock import RUN_ID, RunningError, acquire, end_with
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Hold the folder, forget what is recorded wrongly, and hand over to Snakemake."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--directory", "-d", type=Path, default=Path())
+    parser.add_argument("--configfile", "--configfiles", type=Path, nargs="+", default=[])
+    options = parser.parse_known_args(arguments)[0]
+    for path in options.configfile:
+        if not path.is_file():
+            sys.exit(f"--configfile {path}: no such file")
+    if RUN_ID in os.environ:
+        end_with(int(os.environ[RUN_ID]))
+    try:
+        acquire(options.directory)
+    except RunningError as error:
+        sys.exit(str(error))
+    for difference in forget_false_records(options.directory):
+        print(f"{difference}; it is made again", flush=True)
+    snakemake(list(arguments))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
