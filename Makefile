@@ -37,7 +37,7 @@ test: .venv/project browser ## format, lint, types and all tests, among them a s
 	pytest --numprocesses auto --dist loadfile
 
 browser: .venv/project ## a Chromium for the tests of the page, fetched if there is none (ROCKING_NO_BROWSER=1: without)
-	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.service.explorer.chromium
+	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.api.explorer.chromium
 
 serve: .venv/project | results/manifest.json ## the HTTP service over results/, made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results
@@ -49,7 +49,7 @@ stress: .venv/project ## 3,800 hard cases against 192-bit answers: fates, digits
 	python -m stress
 
 fuzz: .venv/project ## ask the service 5,000 questions that a machine makes up; three minutes (SEED= for others)
-	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/service/test_api_fuzz.py
+	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/api/test_api_fuzz.py
 
 mutants: .venv/project ## change single operators and constants, and see whether the tests notice; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),32) --seed $(or $(SEED),1)

@@ -23,12 +23,12 @@ from numpy.typing import NDArray
 
 from benchmarks.figures.grid_size import draw
 from benchmarks.measure import progress, save, versions
-from rocking.boundary_cells import crossed_cells
-from rocking.cube import read_dataset, write_dataset
-from rocking.lookup_open import open_cube
-from rocking.lookup_points import Points
-from rocking.solve import peak_response
-from rocking.sweep import spectra
+from rocking.boundary.cells import crossed_cells
+from rocking.datasets.cube import read_dataset, write_dataset
+from rocking.lookup.open import open_cube
+from rocking.lookup.points import Points
+from rocking.solver.peak_response import peak_response
+from rocking.spectra.cubes import spectra
 from workflow.scripts import overturning
 from workflow.scripts.axes import stepped
 

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.lookup import Cube, Points
-from rocking.lookup_open import open_cube
-from rocking.solve import peak_response
+from rocking.lookup.cube import Cube, Points
+from rocking.lookup.open import open_cube
+from rocking.solver.peak_response import peak_response
 
 KINDS = {
     "on the levels": (False, False),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from benchmarks import fixed_step_peer, scipy_peer
 from benchmarks.cells import Cells
 from benchmarks.one_pulse import RICKER, SINE, rock, rock_many
-from rocking.solve import peak_response
+from rocking.solver.peak_response import peak_response
 
 OPTIONAL = ("heyoka", "numbalsoda", "diffrax")
 """Peers that are no dependencies of the project: those that cannot be imported are left out."""

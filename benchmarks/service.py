@@ -29,7 +29,7 @@ from benchmarks.load import load
 from benchmarks.measure import progress, save, spread, versions
 
 NETCDF = "application/x-netcdf"
-SERVER = "import os; os.sched_setaffinity(0, {%d}); from rocking.cli import app; app()"
+SERVER = "import os; os.sched_setaffinity(0, {%d}); from rocking.cli.app import app; app()"
 
 
 class Worker:

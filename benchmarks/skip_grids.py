@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from benchmarks.skip import Skip, alternately
 from benchmarks.skip_motion import RESTITUTION, RESTITUTIONS, plane
 from rocking import boundary_points, solve, sweep
-from rocking.boundary import overturning_boundaries, overturning_boundary
-from rocking.boundary_cells import crossed_cells
-from rocking.response import Outcome
-from rocking.solve import peak_response
+from rocking.boundary.cells import crossed_cells
+from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
 
 PULSE = "sine"
 ANGLES = (0.0, math.radians(20.0))

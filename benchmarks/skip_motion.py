@@ -13,16 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.skip import Skip, alternately
-from rocking.cancellation import NEVER
-from rocking.compilation import Record, Vector, entry, kernel
-from rocking.history_motion import FALLEN, FREE_IMPACTS
-from rocking.pulses import get_pulse
-from rocking.rock import SAFE, advance, begin
-from rocking.sampling import INVISIBLE, rock_freely
-from rocking.scratch import prepared, prepared_steps
-from rocking.slender_flight import state
-from rocking.solve import peak_response
-from rocking.taylor_step import take_step
+from rocking._numba.cancellation import NEVER
+from rocking._numba.compilation import Record, Vector, entry, kernel
+from rocking.excitation.pulses import get_pulse
+from rocking.history.motion import FALLEN, FREE_IMPACTS
+from rocking.history.sampling import INVISIBLE, rock_freely
+from rocking.solver.arcs.flight import state
+from rocking.solver.kernels.event_loop import SAFE, advance, begin
+from rocking.solver.peak_response import peak_response
+from rocking.solver.state import prepared, prepared_steps
+from rocking.solver.taylor.step import take_step
 
 PULSE, RESTITUTION = "sine", 0.85
 ALPHA = {"slender": 0.0, "rigid, 20 degrees": math.radians(20.0)}

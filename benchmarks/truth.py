@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.cells import DATA, DIAGRAMS
-from tests.tools.exact_pulses import PULSES
-from tests.tools.exact_response import working_precision
-from tests.tools.make_truth import solved_row
-from tests.tools.multiprecision import integrate
+from reference.exact_pulses import PULSES
+from reference.exact_response import working_precision
+from reference.make_truth import solved_row
+from reference.multiprecision import integrate
 
 RESTITUTION = 0.85
 FREQUENCY_RATIO, SLENDERNESS = (0.5, 10.0), (0.05, 0.95)

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from rocking.compilation import cache_folder
-from rocking.history import time_history
-from rocking.lookup import Cube
-from rocking.lookup_level import level_of
-from rocking.pulses import PULSE_NAMES, get_pulse
-from rocking.solve import peak_response
-from rocking.sweep import spectra
+from rocking._numba.compilation import cache_folder
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.history.time_history import time_history
+from rocking.lookup.cube import Cube
+from rocking.lookup.cube_slice import level_of
+from rocking.solver.peak_response import peak_response
+from rocking.spectra.cubes import spectra
 
 COMPLETE = "complete"
 """File in the cache folder that says that all kernels are in it."""

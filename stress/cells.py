@@ -10,10 +10,10 @@ from zlib import crc32
 
 import numpy as np
 
-from tests.tools.conditioning import MOST_IMPACTS
-from tests.tools.exact_pulses import PULSES
-from tests.tools.exact_response import ExactResponse, working_precision
-from tests.tools.multiprecision import integrate
+from reference.conditioning import MOST_IMPACTS
+from reference.exact_pulses import PULSES
+from reference.exact_response import ExactResponse, working_precision
+from reference.multiprecision import integrate
 
 Cell = dict[str, Any]
 """A question to the solver: pulse, slenderness, frequency_ratio, restitution [-]; alpha [rad] if it is rigid."""

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from flint import arb
 
+from reference.conditioning import MOST_IMPACTS
+from reference.exact_pulses import PULSES
+from reference.exact_response import CAPPED, ExactResponse, working_precision
 from stress.cells import BITS, PROMISES, Cell, Draw, any_angle, drawn, look
-from tests.tools.conditioning import MOST_IMPACTS
-from tests.tools.exact_pulses import PULSES
-from tests.tools.exact_response import CAPPED, ExactResponse, working_precision
 
 WIDTH = 2.0**-70
 """Relative width at which a bisection ends."""

@@ -130,13 +130,18 @@ AREAS = (
     Area(
         "lookup",
         (
-            *("rocking/lookup*.py", "rocking/sweep*.py", "rocking/interpolation.py", "rocking/stencil_choice.py"),
-            "rocking/cube.py",
+            *(
+                "rocking/lookup*.py",
+                "rocking/sweep*.py",
+                "rocking/interpolation/stencils.py",
+                "rocking/interpolation/selection.py",
+            ),
+            "rocking/datasets/cube.py",
         ),
         tests("interpolation", "sweep_gap", "lookup", "lookup_levels", "boundary_curves"),
-        (*tests("cube", "skips"), "tests/service/test_api_response.py", "tests/service/test_api_state.py"),
+        (*tests("cube", "skips"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
     ),
-    Area("service", ("api/*.py",), ("tests/service/test_*.py",), ()),
+    Area("service", ("api/*.py",), ("tests/api/test_*.py",), ()),
 )
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
+from reference.exact_response import ExactResponse
 from stress.cells import Cell, look
 from stress.truth import INPUTS, Table
-from tests.tools.exact_response import ExactResponse
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

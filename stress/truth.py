@@ -5,7 +5,7 @@ The tables are made by
     python -m stress.truth onset ...   some of them
 A second run gives the same bytes. Inputs are exact doubles and stand in the tables to their last bit, answers to 20
 digits. `NAME_per_ulp` is the conditioning: the largest change of the answer, relative for the peak and for times, when
-an input moves by one unit in its last place (`tests.tools.conditioning`).
+an input moves by one unit in its last place (`reference.conditioning`).
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.make_truth import solved_row
 from stress.cells import Cell
 from stress.families import BY_NAME, known
-from tests.tools.make_truth import solved_row
 
 DATA = Path(__file__).parent / "data"
 INPUTS = ("slenderness", "frequency_ratio", "restitution", "alpha")

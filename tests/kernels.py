@@ -1,10 +1,10 @@
 """A flight set up for tests that call the compiled kernels one by one."""
 
-from rocking.compilation import Record
-from rocking.pulses import AbstractPulse, get_pulse
-from rocking.rock import begin, take_off
-from rocking.scratch import prepared
-from rocking.slender_flight import turn
+from rocking._numba.compilation import Record
+from rocking.excitation.pulses import AbstractPulse, get_pulse
+from rocking.solver.arcs.flight import turn
+from rocking.solver.kernels.event_loop import begin, take_off
+from rocking.solver.state import prepared
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:

@@ -20,7 +20,7 @@ from pydantic import (
     model_validator,
 )
 
-from rocking.pulses import PULSE_NAMES
+from rocking.excitation.pulses import PULSE_NAMES
 from workflow.scripts.axes import stepped, steps_between
 
 NODES = 200_000_000

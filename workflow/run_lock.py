@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 from typing import IO
 
-from rocking.seal import PARTIAL
+from rocking.datasets.checksum import PARTIAL
 
 RUN_ID = "ROCKING_RUN"
 """Environment variable with the process that a process ends with: a job with its run, a run with its make."""

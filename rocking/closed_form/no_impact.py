@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from rocking.errors import in_range
-from rocking.pulses import AbstractPulse, SinusoidalPulse, as_pulse
+from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
 
 _NEGLIGIBLE = 50.0  # times beyond which e^-s < 2e-22 no longer counts
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)

@@ -12,12 +12,12 @@ import pytest
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary_curves import curves_at
-from rocking.boundary_points import RESOLUTION, fate_code
+from rocking.boundary.curves import curves_at
+from rocking.boundary.search import RESOLUTION, fate_code
 from rocking.closed_form import overturning_amplitudes
-from rocking.cube import read_dataset, read_spectrum
-from rocking.response import Outcome
-from rocking.solve import peak_response
+from rocking.datasets.cube import read_dataset, read_spectrum
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
 STEPS = (1e-6, 1e-8, 1e-10, 2 * RESOLUTION)

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from rocking.boundary_points import RESOLUTION
+from rocking.boundary.search import RESOLUTION
 from rocking.closed_form import case_2_amplitude, limit_amplitude, overturning_amplitudes
-from rocking.response import Outcome
-from rocking.solve import peak_response
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
 from workflow.claims.claim import FAILS, IN_RANGE, Claim, verdict
 
 AGREEMENT = 1e-9

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary_amplitude import critical_amplitude
+from rocking.boundary.amplitude import critical_amplitude
 from rocking.closed_form import overturning_amplitudes
-from rocking.response import Outcome
-from rocking.solve import peak_response
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
 from workflow.claims.claim import Claim, verdict
 
 ANGLES = (5, 10, 15, 20, 30)

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.history_contact import PRACTICAL_FRICTION, Extremes, extremes_of
-from rocking.history_motion import motion_of
-from rocking.solve import peak_response
+from rocking.history.contact import PRACTICAL_FRICTION, Extremes, extremes_of
+from rocking.history.motion import motion_of
+from rocking.solver.peak_response import peak_response
 from workflow.claims.claim import Claim, verdict
 
 ALPHA = np.radians([0, 5, 10, 15, 20])

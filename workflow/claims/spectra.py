@@ -15,9 +15,9 @@ from rocking.closed_form import (
     limit_amplitude,
     small_peak,
 )
-from rocking.history import time_history
-from rocking.response import Outcome
-from rocking.scale_law import largest_deviation, restitution_exponent
+from rocking.groups.scale_law import largest_deviation, restitution_exponent
+from rocking.history.time_history import time_history
+from rocking.model.response import Outcome
 from workflow.claims.claim import FAILS, Claim, verdict
 
 FAST = 8.0

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from rocking.boundary_curves import curves_at
-from rocking.cube import read_dataset
-from rocking.response import Outcome
+from rocking.boundary.curves import curves_at
+from rocking.datasets.cube import read_dataset
+from rocking.model.response import Outcome
 from workflow.figures.style import plotted
 
 

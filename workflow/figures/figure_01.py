@@ -8,8 +8,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.block import Block
-from rocking.pulses import get_pulse
+from rocking.excitation.pulses import get_pulse
+from rocking.model.block import Block
 from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
 

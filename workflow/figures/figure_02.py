@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.history import time_history
+from rocking.history.time_history import time_history
 from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, plotted
 
 DURATION = 9.0  # of tau, after which every fate is plain

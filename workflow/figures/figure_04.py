@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.boundary_curves import curves_at
+from rocking.boundary.curves import curves_at
 from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
-from rocking.cube import read_dataset
+from rocking.datasets.cube import read_dataset
 from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
 
 POINTS = 401

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.block import STANDARD_GRAVITY, Block
+from rocking.model.block import STANDARD_GRAVITY, Block
 from workflow.figures.dimensional import Shaken
 from workflow.figures.style import BLUE, VERMILION, WIDTH, panel_letters, plotted
 

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.block import STANDARD_GRAVITY
-from rocking.history import time_history
+from rocking.history.time_history import time_history
+from rocking.model.block import STANDARD_GRAVITY
 from workflow.figures import figure_05
 from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.history import time_history
+from rocking.history.time_history import time_history
 from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
 
 SAMPLES = 900

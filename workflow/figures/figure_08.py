@@ -12,7 +12,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
 from rocking.closed_form import case_1_2_peak_by_pulse
-from rocking.cube import read_spectrum
+from rocking.datasets.cube import read_spectrum
 from workflow.figures.style import WIDTH, panel_letters, plotted, shades
 
 DASHED = {"color": "black", "linestyle": (0, (2, 3)), "linewidth": 0.6}

@@ -12,11 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rocking.block import STANDARD_GRAVITY, Block
-from rocking.boundary_amplitude import critical_amplitude
-from rocking.cube import read_dataset
+from rocking.boundary.amplitude import critical_amplitude
+from rocking.datasets.cube import read_dataset
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
-from rocking.solve import peak_response
+from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking.solver.peak_response import peak_response
 from workflow.figures.boundary_lines import line_variables, lines_of
 from workflow.figures.dimensional import Shaken
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.closed_form import overturning_amplitudes
-from rocking.cube import read_dataset
+from rocking.datasets.cube import read_dataset
 from workflow.figures.boundary_lines import line_variables, lines_of
 from workflow.figures.style import BLACK, WIDTH, panel_letters, plotted, shades
 

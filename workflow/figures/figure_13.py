@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.cube import read_spectrum
+from rocking.datasets.cube import read_spectrum
 from workflow.figures.style import BLACK, WIDTH, panel_letters, plotted, shades
 
 

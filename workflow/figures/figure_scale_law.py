@@ -12,8 +12,8 @@ from matplotlib.colors import LogNorm, Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from rocking.closed_form import limit_amplitude, small_peak
-from rocking.cube import read_spectrum
-from rocking.scale_law import largest_deviation, restitution_exponent
+from rocking.datasets.cube import read_spectrum
+from rocking.groups.scale_law import largest_deviation, restitution_exponent
 from workflow.figures.style import WIDTH, panel_letters, plotted
 
 

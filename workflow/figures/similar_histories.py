@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.groups import Groups, GroupSet, groups_of, problem_of_block, scaled_rotation
-from rocking.history import time_history
+from rocking.history.time_history import time_history
 from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
 
 GROUP_SETS = (GroupSet.SLENDER_BY_PULSE, GroupSet.RIGID_SMALL_ROTATION)

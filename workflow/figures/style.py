@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from rocking.cube import MODEL_RESULT
+from rocking.datasets.cube import MODEL_RESULT
 
 WIDTH = 6.7
 """Width of a figure in print [in]."""

@@ -8,7 +8,7 @@ PROJECT = Path(str(workflow.basedir))
 sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
-from rocking.provenance import code_digest, settings_digest
+from rocking.datasets.provenance import code_digest, settings_digest
 from workflow import records
 from workflow.configuration import ConfigurationError, check, restitutions
 from workflow.run_lock import RUN_ID, RunningError, acquire

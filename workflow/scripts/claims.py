@@ -5,8 +5,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from rocking.boundary_curves import curves_at
-from rocking.cube import read_dataset, read_spectrum
+from rocking.boundary.curves import curves_at
+from rocking.datasets.cube import read_dataset, read_spectrum
 from workflow.claims import boundaries as curves
 from workflow.claims import impact_times, non_slender, similarity, small_rotations, spectra
 from workflow.claims.claim import Claim

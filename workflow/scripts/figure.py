@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rocking.cube import describe, write_dataset
+from rocking.datasets.cube import describe, write_dataset
 from workflow.scripts.job import run
 
 

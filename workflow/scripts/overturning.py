@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from rocking.boundary import overturning_boundaries
-from rocking.boundary_curves import join_curves
-from rocking.boundary_points import RESOLUTION
+from rocking.boundary.curves import join_curves
+from rocking.boundary.search import RESOLUTION
+from rocking.boundary.tracing import overturning_boundaries
 from rocking.closed_form import overturning_amplitudes
-from rocking.cube import AXES, MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
-from rocking.response import Outcome
+from rocking.datasets.cube import AXES, MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
+from rocking.model.response import Outcome
 from workflow.scripts.job import run
 
 
@@ -57,7 +57,7 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
         f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}.",
-        history="rocking.boundary.overturning_boundaries",
+        history="rocking.boundary.tracing.overturning_boundaries",
         id=f"overturning/{pulse}/eta-{restitution:.2f}",
     )
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.boundary_cells import crossed_cells
-from rocking.cube import describe, read_dataset, write_dataset
-from rocking.sweep import spectra
+from rocking.boundary.cells import crossed_cells
+from rocking.datasets.cube import describe, read_dataset, write_dataset
+from rocking.spectra.cubes import spectra
 from workflow.scripts.axes import stepped
 from workflow.scripts.job import run
 

@@ -1,0 +1,145 @@
+"""The application: `create_app(settings)`. Nothing happens on import."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import anyio
+import anyio.to_thread
+from fastapi import FastAPI
+from starlette.middleware import Middleware
+from starlette.middleware.cors import CORSMiddleware
+from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
+from starlette.types import ASGIApp
+
+from rocking.lookup.collection import Atlas
+from rocking_api.http.fast_path import ShortWay
+from rocking_api.http.in_flight import InFlightLayer
+from rocking_api.http.params_route import QuestionRoute
+from rocking_api.http.problems import RESPONSES, Problem, add_handlers
+from rocking_api.http.request_log import Observer
+from rocking_api.http.zarr_view import ZarrViews
+from rocking_api.models.params import BatchQuestion
+from rocking_api.models.responses import VERSION
+from rocking_api.routers import (
+    blocks,
+    control_map,
+    critical_amplitude,
+    datasets,
+    health,
+    history,
+    metrics,
+    overturning,
+    pages,
+    response,
+    spectrum,
+)
+from rocking_api.service import Service
+from rocking_api.settings import Settings
+
+LOG = logging.getLogger("rocking.service")
+
+ROUTES = (
+    *(response, blocks, critical_amplitude, spectrum, control_map, overturning, history),
+    *(datasets, health, metrics, pages),
+)
+
+
+class Application(FastAPI):
+    """FastAPI with layers around its own: what they answer takes no way through those.
+
+    An error that gets out of FastAPI's layers comes to these as an exception.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.outer_layers: list[Middleware] = []
+
+    def add_outer_layer(self, kind: Callable[..., ASGIApp], **options: Any) -> None:
+        """Put a layer around all that are there."""
+        self.outer_layers.append(Middleware(kind, **options))
+
+    def build_middleware_stack(self) -> ASGIApp:
+        stack = super().build_middleware_stack()
+        for kind, arguments, options in self.outer_layers:
+            stack = kind(stack, *arguments, **options)
+        return stack
+
+
+def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None) -> FastAPI:
+    """Build the service over the results folder of the settings, which need not exist.
+
+    `when_ready` is called once the compiled solver is loaded.
+    """
+    app = Application(
+        title="rocking",
+        version=VERSION,
+        summary="Does the block fall, and how far does it rock?",
+        description="Response of the free-standing rigid block to pulse ground motion, each number with its error "
+        "bound and its source. Errors are problem+json (RFC 9457).",
+        docs_url=None,
+        redoc_url=None,
+        lifespan=_lifespan,
+        responses=RESPONSES,
+    )
+    atlas = Atlas(settings.results)
+    service = app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
+    # data sets are compressed already, and a compressed answer has no ranges
+    binary = ("application/x-netcdf", "application/octet-stream")
+    app.add_middleware(InFlightLayer, in_flight=service.in_flight)  # inside: what is compressed was held as a whole
+    app.add_middleware(
+        GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
+    )
+    short = [route for route in response.router.routes if isinstance(route, QuestionRoute)]
+    app.add_outer_layer(ShortWay, routes=short)
+    if settings.cors_origins:
+        app.add_outer_layer(
+            CORSMiddleware,
+            allow_origins=list(settings.cors_origins),
+            allow_methods=["GET", "HEAD", "POST"],
+            expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
+        )
+    app.add_outer_layer(Observer, metrics=service.metrics, access_log=settings.access_log)
+    app.state.when_ready = when_ready
+    add_handlers(app)
+    for module in ROUTES:
+        app.include_router(module.router)
+    app.mount("/static", pages.PageFiles(directory=pages.STATIC))
+    _describe_bodies(app)
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    """Load the solver in the background, so that the first request need not wait for it."""
+    service: Service = app.state.service
+    async with anyio.create_task_group() as background:
+        background.start_soon(_look_around, service, app.state.when_ready)
+        yield
+        background.cancel_scope.cancel()
+    service.executor.close()
+
+
+async def _look_around(service: Service, when_ready: Callable[[], None]) -> None:
+    names = await anyio.to_thread.run_sync(service.atlas.catalogue.names, abandon_on_cancel=True)
+    if not any(name.startswith("spectra/") for name in names):
+        LOG.warning("no spectrum cubes in %s; the solver answers in their place", service.settings.results)
+    await service.kernels.load()
+    when_ready()
+
+
+def _describe_bodies(app: FastAPI) -> None:
+    """Add the models that the OpenAPI description refers to but no route declares as a parameter."""
+    generate = app.openapi
+
+    def described() -> dict[str, object]:
+        if app.openapi_schema is None:
+            schemas = generate()["components"]["schemas"]
+            for model in (Problem, BatchQuestion):
+                schemas[model.__name__] = model.model_json_schema()
+        return generate()
+
+    app.openapi = described  # type: ignore[method-assign]  # FastAPI's documented way to extend the description

@@ -1,0 +1,1 @@
+"""HTTP: errors, encoding, caching, files, request log, metrics."""

@@ -1,0 +1,174 @@
+"""Bodies of POST /v1/response: JSON, CSV or netCDF-3, read into arrays of groups and one set of options."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import anyio
+import numpy as np
+import xarray as xr
+from fastapi import Request
+from numpy.typing import NDArray
+
+from rocking.errors import InvalidArgumentError
+from rocking_api.http.formats import MEDIA_TYPES, Form
+from rocking_api.http.in_flight import Holding
+from rocking_api.http.problems import SlowBodyError, TooLargeError, UnsupportedBodyError
+from rocking_api.models.params import BatchQuestion, LookupOptions, check_value
+
+GROUPS = ("slenderness", "frequency_ratio", "restitution")
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Points to answer: arrays of one length, shape (points,), and how."""
+
+    options: LookupOptions
+    groups: dict[str, NDArray[np.float64]]
+
+    @property
+    def points(self) -> int:
+        return self.groups["slenderness"].size
+
+
+def body_form(request: Request) -> Form:
+    """The form of the body by its Content-Type; JSON if it says nothing.
+
+    Raises
+    ------
+    UnsupportedBodyError
+        For any other type.
+    """
+    declared = request.headers.get("content-type", MEDIA_TYPES["json"]).split(";")[0].strip().lower()
+    for form, media_type in MEDIA_TYPES.items():
+        if declared in (media_type, "application/netcdf" if form == "nc" else media_type):
+            return form
+    raise UnsupportedBodyError("Content-Type", declared, "one of " + ", ".join(MEDIA_TYPES.values()))
+
+
+async def limited_body(request: Request, limit: int, seconds: float, holding: Holding) -> bytearray:
+    """The body, given up as soon as it grows beyond `limit` bytes, or when it takes longer than `seconds` to arrive.
+
+    Its bytes are counted in `holding`.
+
+    Raises
+    ------
+    TooLargeError, SlowBodyError
+        If it does.
+    UnsupportedBodyError
+        If it is compressed: a few bytes could become any number.
+    BusyError
+        If too many bytes are on their way already.
+    """
+    coding = request.headers.get("content-encoding", "identity")
+    if coding != "identity":
+        raise UnsupportedBodyError("Content-Encoding", coding, "none: bodies are not compressed")
+    declared = request.headers.get("content-length", "")
+    if declared.isdecimal() and int(declared[:20]) > limit:  # more digits are more than any limit
+        raise TooLargeError("body", declared[:20], f"at most {limit} bytes")
+    body = bytearray()
+    with anyio.move_on_after(seconds) as patience:
+        async for chunk in request.stream():
+            holding.add(len(chunk))
+            body += chunk
+            if len(body) > limit:
+                raise TooLargeError("body", len(body), f"at most {limit} bytes")
+    if patience.cancelled_caught:
+        raise SlowBodyError("body", f"{len(body)} bytes", f"all of it within {seconds:g} s")
+    return body
+
+
+def read_batch(body: bytes | bytearray, form: Form, parameters: Mapping[str, str], max_points: int) -> Batch:
+    """Read a batch. JSON holds everything; for the other forms, options and missing groups are query parameters.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the body cannot be read, a parameter is unknown, the groups are not of one length, or one is out of range.
+    ValidationError
+        If JSON does not fit `BatchQuestion`.
+    TooLargeError
+        For more than `max_points` points.
+    """
+    if form == "json":
+        for name, value in parameters.items():
+            raise InvalidArgumentError(name, value, "no parameters in the URL; a JSON body holds them all")
+        question = BatchQuestion.model_validate_json(body)
+        columns = {name: np.atleast_1d(np.array(getattr(question, name), dtype=np.float64)) for name in GROUPS}
+        options = LookupOptions(**{name: getattr(question, name) for name in LookupOptions.model_fields})
+    else:
+        columns = _read_csv(body) if form == "csv" else _read_netcdf(body, max_points)
+        given = {name: value for name, value in parameters.items() if name != "format"}
+        for name in GROUPS:
+            if name in given:
+                if name in columns:
+                    raise InvalidArgumentError(name, given[name], "either in the body or in the URL")
+                columns[name] = np.atleast_1d(_number(name, given.pop(name)))
+        options = LookupOptions.model_validate_strings(given)
+    for name in GROUPS:
+        if name not in columns:
+            raise InvalidArgumentError(name, None, "required: a column of the body or a parameter in the URL")
+    sizes = {name: column.size for name, column in columns.items()}
+    points = max(sizes.values()) if min(sizes.values()) else 0
+    for name, size in sizes.items():
+        if size not in (1, points):
+            raise InvalidArgumentError(name, f"{size} values", f"one value, or as many as the others: {points}")
+    if points > max_points:
+        raise TooLargeError("points", points, f"at most {max_points}")
+    options.check()
+    for name, column in columns.items():
+        check_value(name, column)
+    return Batch(options, {name: np.broadcast_to(columns[name], (points,)) for name in GROUPS})
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidArgumentError(name, text, "a number") from None
+
+
+def _read_csv(body: bytes | bytearray) -> dict[str, NDArray[np.float64]]:
+    try:
+        header, _, rows = body.decode("utf-8-sig").partition("\n")
+        names = [name.strip() for name in header.split(",")]
+        _known(names)
+        lines = io.StringIO(rows)
+        table = np.loadtxt(lines, delimiter=",", ndmin=2, comments=None) if rows.strip() else np.empty((0, len(names)))
+    except InvalidArgumentError:
+        raise
+    except ValueError as error:  # UnicodeDecodeError among them
+        allowed = "CSV: a header line, then numbers separated by commas"
+        raise InvalidArgumentError("body", str(error), allowed) from None
+    if table.shape[1] != len(names):
+        raise InvalidArgumentError("body", f"{table.shape[1]} columns", f"{len(names)}, as in the header line")
+    return dict(zip(names, table.T, strict=True))
+
+
+def _read_netcdf(body: bytes | bytearray, max_points: int) -> dict[str, NDArray[np.float64]]:
+    """Variables of any dimensions; they broadcast by name, and the points follow in C order of the dimensions."""
+    if not body.startswith((b"CDF\x01", b"CDF\x02")):
+        raise InvalidArgumentError(
+            "body", repr(bytes(body[:4])), "netCDF-3 (Dataset.to_netcdf(engine='scipy') writes it)"
+        )
+    try:
+        with xr.open_dataset(io.BytesIO(body), engine="scipy", decode_times=False) as opened:
+            dataset = opened.load()
+        names = [str(name) for name in dataset.variables]
+        columns = [dataset[name].astype(np.float64) for name in names]
+    except Exception as error:  # noqa: BLE001  (whatever scipy and xarray meet in a damaged file)
+        raise InvalidArgumentError("body", repr(error)[:100], "an undamaged netCDF-3 file of numbers") from None
+    _known(names)
+    points = math.prod(dataset.sizes.values())
+    if points > max_points:  # before they are broadcast
+        raise TooLargeError("points", points, f"at most {max_points}")
+    return {str(column.name): np.ravel(column.values) for column in xr.broadcast(*columns)}
+
+
+def _known(names: list[str]) -> None:
+    for name in names:
+        if name not in GROUPS or names.count(name) > 1:
+            raise InvalidArgumentError("body", name, "columns " + ", ".join(GROUPS) + ", each at most once")

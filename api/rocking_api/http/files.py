@@ -1,0 +1,98 @@
+"""Files over HTTP: sha256 as ETag, conditional requests, byte ranges."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import os
+from functools import partial
+from typing import Any
+
+import anyio.to_thread
+from fastapi import Request, Response
+from fastapi.responses import FileResponse
+from starlette.types import Message, Receive, Scope, Send
+
+from rocking.datasets.catalogue import DataFile, Product
+from rocking_api.http.caching import ASK_AGAIN, not_modified, validators
+from rocking_api.http.problems import problem
+
+
+def file_response(request: Request, file: DataFile, product: Product, control: str = ASK_AGAIN) -> Response:
+    """The open file of a data set, whole or in ranges, closed at the end; `control` says how long it may be kept."""
+    unchanged = not_modified(request, product.sha256, control)
+    if unchanged is not None:
+        file.close()
+        return unchanged
+    digest = base64.b64encode(bytes.fromhex(product.sha256)).decode()
+    headers = {**validators(product.sha256, control), "Repr-Digest": f"sha-256=:{digest}:"}  # RFC 9530
+    filename = product.name.replace("/", "-") + ".nc"
+    return _OneVersion(file, product.sha256, headers=headers, media_type="application/x-netcdf", filename=filename)
+
+
+class _OneVersion(FileResponse):
+    """One version of a file: what is sent is what was hashed, or the answer breaks off.
+
+    The bytes come from the descriptor that they were hashed from, so that a file put in its place does not matter. One
+    that is written to while it is sent is hashed again before more of it is sent.
+    Refusals (400 for a malformed Range, 416 for one outside the file) are problem+json too.
+
+    Parameters
+    ----------
+    file : DataFile
+        To be sent, and closed.
+    sha256 : str
+        Of its bytes.
+    **options
+        Of `FileResponse`.
+    """
+
+    def __init__(self, file: DataFile, sha256: str, **options: Any) -> None:
+        descriptor = file.fileno()
+        super().__init__(f"/dev/fd/{descriptor}", stat_result=os.fstat(descriptor), **options)
+        self._file = file
+        self._sha256 = sha256
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        refusal: Response | None = None
+
+        async def watched(message: Message) -> None:
+            nonlocal refusal
+            if message["type"] == "http.response.start" and message["status"] in (400, 416):
+                refusal = _refusal(message["status"], dict(message["headers"]), scope)
+            if refusal is None:
+                if not self._file.is_unchanged():
+                    await anyio.to_thread.run_sync(partial(_check, self._file, self._sha256))
+                await send(message)
+
+        with self._file:
+            await super().__call__(_with_strong_range(scope, self._sha256), receive, watched)
+        if refusal is not None:
+            await refusal(scope, receive, send)
+
+
+def _check(file: DataFile, sha256: str) -> None:
+    if hashlib.sha256(file.content()).hexdigest() != sha256:
+        raise RuntimeError(f"{file.name}: was written to while it was sent")
+
+
+def _with_strong_range(scope: Scope, sha256: str) -> Scope:
+    """The request, without its Range if that has a condition (If-Range) but the digest: a date does not name bytes."""
+    conditions = [value for name, value in scope["headers"] if name == b"if-range"]
+    if all(value == f'"{sha256}"'.encode() for value in conditions):
+        return scope
+    return without_range(scope)
+
+
+def without_range(scope: Scope) -> Scope:
+    """The same request for all of a file."""
+    return {**scope, "headers": [header for header in scope["headers"] if header[0] != b"range"]}
+
+
+def _refusal(status: int, headers: dict[bytes, bytes], scope: Scope) -> Response:
+    asked = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"range"), "")
+    extent = headers.get(b"content-range", b"").decode("latin-1")
+    allowed = f"bytes 0 to {int(extent.rpartition('/')[2]) - 1}" if extent else "bytes=FIRST-LAST"
+    detail = f"the range `{asked}` cannot be served"
+    kept = {"Content-Range": extent} if extent else None
+    return problem(status, detail, kept, parameter="Range", value=asked, allowed=allowed)

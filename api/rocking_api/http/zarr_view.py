@@ -1,0 +1,67 @@
+"""Data sets as zarr stores, made in memory from the netCDF files when first asked."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import OrderedDict
+from typing import Any
+
+import xarray as xr
+from zarr.storage import MemoryStore
+
+from rocking.datasets.catalogue import Catalogue
+
+KEPT = 4
+"""Stores kept at once; an older one is made again when asked."""
+
+
+class ZarrViews:
+    """Keys and bytes of the zarr store of a data set.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+        Where the data sets come from.
+    """
+
+    def __init__(self, catalogue: Catalogue) -> None:
+        self._catalogue = catalogue
+        self._lock = threading.Lock()
+        self._stores: OrderedDict[str, dict[str, bytes]] = OrderedDict()
+
+    def store(self, name: str) -> tuple[str, dict[str, bytes]]:
+        """The sha256 of the netCDF file and the contents of its zarr store.
+
+        Raises
+        ------
+        UnknownDatasetError
+            If there is no data set of that name.
+        DatasetError
+            If it is damaged, or cannot be read.
+        """
+        version = self._catalogue.product(name).sha256
+        with self._lock:
+            if version not in self._stores:
+                product, dataset = self._catalogue.dataset(name)
+                version = product.sha256
+                self._stores[version] = _contents(dataset)
+                while len(self._stores) > KEPT:
+                    self._stores.popitem(last=False)
+            self._stores.move_to_end(version)
+            return version, self._stores[version]
+
+
+def _contents(dataset: xr.Dataset) -> dict[str, bytes]:
+    known = {name: value for name, value in dataset.attrs.items() if not _is_nan(value)}  # of which JSON has none
+    content: dict[str, Any] = {}  # zarr's buffers
+    # netCDF's compression is not zarr's; format 2: every client reads it with consolidated metadata, which format 3 has
+    # not yet agreed upon
+    dataset.drop_attrs(deep=False).assign_attrs(known).drop_encoding().to_zarr(
+        MemoryStore(content), zarr_format=2, consolidated=True
+    )
+    return {key: value.to_bytes() for key, value in content.items()}
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)

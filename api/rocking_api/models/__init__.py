@@ -1,0 +1,1 @@
+"""Parameters and responses of the routes."""

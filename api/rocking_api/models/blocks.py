@@ -1,0 +1,155 @@
+"""A block in metres under a pulse in m/s2 and seconds: question and answer."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic_core import PydanticCustomError
+
+from rocking.errors import in_range
+from rocking.model.block import STANDARD_GRAVITY
+from rocking_api.models.params import Method, PulseName, Question, Tolerance, check_value
+from rocking_api.models.responses import VERSION, ResponseAnswer
+
+BORDER = {
+    "half_width": (1e-4, 1e4, "m"),
+    "half_height": (1e-4, 1e4, "m"),
+    "peak_acceleration": (1e-6, 1e6, "m/s2"),
+    "pulse_period": (1e-4, 1e4, "s"),
+    "gravity": (1e-3, 1e3, "m/s2"),
+}
+"""What the service takes, far outside of all practice, so that no number leaves the range of doubles."""
+
+
+def _quantity(name: str, text: str, **more: Any) -> Any:
+    low, high, unit = BORDER[name]
+    return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
+
+
+def _housner_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
+    """One message about both, not one about each."""
+    try:
+        return read(value)
+    except ValidationError:
+        raise PydanticCustomError("restitution", "housner, or a number in [0, 1] [-]") from None
+
+
+HousnerOrNumber = Annotated[Literal["housner"] | float, WrapValidator(_housner_or_number)]
+
+
+class BlockQuestion(Question):
+    """A block and a pulse in SI units."""
+
+    pulse: PulseName
+    half_width: float = _quantity("half_width", "b; the base is 2b wide", examples=[0.2])
+    half_height: float = _quantity("half_height", "h", examples=[0.8])
+    peak_acceleration: float = _quantity("peak_acceleration", "a_g", examples=[4.0])
+    pulse_period: float = _quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
+    restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
+    gravity: float = _quantity("gravity", "g", default=STANDARD_GRAVITY)
+    method: Method = "auto"
+    tolerance: Tolerance = 1e-4
+
+    def check(self) -> None:
+        for name, value in self:
+            if name in BORDER:
+                low, high, unit = BORDER[name]
+                in_range(name, value, low, high, unit=unit)
+            elif value != "housner":
+                check_value(name, value)
+
+
+class Threshold(BaseModel):
+    """An amplitude at which the fate changes."""
+
+    peak_acceleration: float = Field(description="a_g [m/s2]")
+    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+
+
+class PeriodThreshold(BaseModel):
+    """A period at which the fate changes, the amplitude being what it is."""
+
+    pulse_period: float = Field(description="T_p [s]")
+    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+
+
+class SizeThreshold(BaseModel):
+    """A size at which the fate of blocks of this shape changes under this pulse."""
+
+    half_diagonal: float = Field(description="R [m]")
+    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+
+
+class Margins(BaseModel):
+    """How far the block is from another fate, by the rigid equation itself."""
+
+    nearest_acceleration: float | None = Field(
+        description="amplitude nearest in its logarithm at which the fate changes, this period [m/s2]; null: none found"
+    )
+    acceleration_factor: float | None = Field(description="that over the peak acceleration asked for [-]")
+    nearest_period: float | None = Field(
+        description="period nearest in its logarithm at which the fate changes, this amplitude [s]; null: none found"
+    )
+    period_factor: float | None = Field(description="that over the period asked for [-]")
+    periods: list[PeriodThreshold] = Field(description="all periods at which the fate changes, ascending")
+    periods_searched: tuple[float, float] = Field(description="smallest and largest period looked at [s]")
+    smallest_surviving_half_diagonal: float | None = Field(
+        description="smallest R of this shape that survives this pulse, of those looked at [m]; a larger one may fall"
+    )
+    surviving_from_half_diagonal: float | None = Field(
+        description="R from which every larger size looked at survives [m]; null: the largest falls"
+    )
+    sizes: list[SizeThreshold] = Field(description="all sizes of this shape at which the fate changes, ascending")
+    sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal looked at [m]")
+
+
+class BlockAnswer(BaseModel):
+    """What happens to the block."""
+
+    query: BlockQuestion
+    url: str = Field(description="path that repeats the question, defaults included")
+    response: ResponseAnswer = Field(description="the same question and answer in dimensionless groups")
+    overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
+    rocking_model_applies: bool = Field(
+        description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off; what is "
+        "said of its rocking and overturning then does not hold for a block that is free to do so"
+    )
+    meaning: str = Field(
+        description="the outcome in words; where the rocking model does not apply, first of all that and why"
+    )
+    peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
+    top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
+    alpha_deg: float = Field(description="slenderness angle [deg]")
+    half_diagonal: float = Field(description="R [m]")
+    frequency_parameter: float = Field(description="p [rad/s]")
+    restitution: float = Field(description="eta [-]; with housner 0 where (2.4) is negative")
+    uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
+    thresholds: list[Threshold] | None = Field(
+        description="all amplitudes at which the fate changes, this period, ascending; null if they were not found in "
+        "time, which `warnings` tells"
+    )
+    largest_safe_acceleration: float | None = Field(
+        description="peak acceleration below which this block, of this size, does not overturn under this pulse at "
+        "this period [m/s2]; a smaller block of the same shape may; null: no change of outcome was found, or the "
+        "rocking model does not apply just below the lowest of `thresholds`, as `warnings` tells"
+    )
+    largest_safe_friction_demand: float | None = Field(
+        description="coefficient of friction that it needs to be safe just below that acceleration [-]; null likewise"
+    )
+    margins: Margins | None = Field(description="null if they were not found in time, which `warnings` tells")
+    friction_at_uplift: float = Field(
+        description="coefficient of friction below which it slides instead of rocking [-]"
+    )
+    friction_demand: float | None = Field(
+        description="the same through the whole motion, impacts excluded; if it overturns, until it passes alpha for "
+        "good [-]; null: it lifts off"
+    )
+    friction_at_impact: float = Field(
+        description="ratio of the horizontal to the vertical impulse at its impacts, 0 without impacts [-]"
+    )
+    smallest_normal_reaction: float = Field(description="over its weight, for as long [-]; 0 and below: it lifts off")
+    warnings: list[str] = Field(description="where the answer, one about pure rocking, is in doubt")
+    notes: list[str] = Field(description="what else is worth knowing")
+    data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
+    version: str = VERSION

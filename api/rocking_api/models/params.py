@@ -1,0 +1,226 @@
+"""The parameters of the routes. Their ranges stand here for the description; `rocking` itself checks them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from rocking.errors import in_range
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+
+PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
+_KNOWN = frozenset(PULSES)
+
+# The border of the service, far outside of all practice: beyond it the solver's numbers leave the range of doubles.
+SMALLEST_SLENDERNESS = 1e-9
+FREQUENCY_RATIOS = (1e-6, 1e6)
+SMALLEST_ALPHA_DEG = 1e-6
+LARGEST_ALPHA_DEG = 89.9
+
+LONGEST_DURATION = 1e9
+"""Of a history, in tau = p t [-]."""
+
+PulseName = Annotated[
+    str,
+    Field(description="pulse; a leading minus mirrors it", examples=["sine"], json_schema_extra={"enum": [*PULSES]}),
+]
+Slenderness = Annotated[
+    float,
+    Field(
+        description="dimensionless slenderness g tan(alpha)/a_g = 1/a [-]; from 1 on the block never uplifts",
+        examples=[0.4],
+        json_schema_extra={"minimum": SMALLEST_SLENDERNESS},
+    ),
+]
+FrequencyRatio = Annotated[
+    float,
+    Field(
+        description="frequency ratio omega_g/p [-]",
+        examples=[5.0],
+        json_schema_extra={"minimum": FREQUENCY_RATIOS[0], "maximum": FREQUENCY_RATIOS[1]},
+    ),
+]
+Restitution = Annotated[
+    float,
+    Field(
+        description="coefficient of restitution eta [-]",
+        examples=[0.85],
+        json_schema_extra={"minimum": 0, "maximum": 1},
+    ),
+]
+AlphaDeg = Annotated[
+    float | None,
+    Field(description="slenderness angle alpha [deg]; absent or 0: the slender limit", examples=[0.0]),
+]
+Method = Annotated[
+    Literal["auto", "cube", "solver"],
+    Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
+]
+Tolerance = Annotated[
+    float,
+    Field(description="largest absolute error of an interpolated peak_rotation [-]", json_schema_extra={"minimum": 0}),
+]
+Format = Annotated[
+    Literal["json", "csv", "nc"] | None,
+    Field(description="form of the answer; absent: by the Accept header, else JSON (nc: netCDF-3)"),
+]
+
+
+class Question(BaseModel):
+    """What all questions share. An unknown parameter is refused, so that a slip of the pen is not ignored."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def check(self) -> None:
+        """Refuse values out of range, before any work is queued.
+
+        Raises
+        ------
+        InvalidArgumentError
+            For the first that is.
+        """
+        for name, value in self:
+            check_value(name, value)
+
+
+class LookupOptions(Question):
+    """How a response is to be found."""
+
+    pulse: PulseName
+    alpha_deg: AlphaDeg = None
+    method: Method = "auto"
+    tolerance: Tolerance = 1e-4
+
+
+class ResponseQuestion(LookupOptions):
+    """One block."""
+
+    slenderness: Slenderness
+    frequency_ratio: FrequencyRatio
+    restitution: Restitution
+
+
+class BatchQuestion(LookupOptions):
+    """Many blocks: numbers, or arrays of one length."""
+
+    slenderness: Slenderness | list[Slenderness]
+    frequency_ratio: FrequencyRatio | list[FrequencyRatio]
+    restitution: Restitution | list[Restitution]
+
+
+class SpectrumQuestion(LookupOptions):
+    """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
+
+    slenderness: Slenderness
+    restitution: Restitution
+    frequency_ratio_min: FrequencyRatio = 0.5
+    frequency_ratio_max: FrequencyRatio = 12.0
+    points: int = Field(200, description="points of the curve [-]", json_schema_extra={"minimum": 2})
+    format: Format = None
+
+
+class OverturningQuestion(Question):
+    """The curves that separate standing from falling."""
+
+    pulse: PulseName
+    restitution: Restitution
+    alpha_deg: AlphaDeg = None
+    format: Format = None
+
+
+class HistoryQuestion(Question):
+    """The motion of one block."""
+
+    pulse: PulseName
+    slenderness: Slenderness
+    frequency_ratio: FrequencyRatio
+    restitution: Restitution
+    alpha_deg: AlphaDeg = None
+    duration: float | None = Field(
+        None,
+        description="length tau = p t [-]; absent: the pulse and some free rocking",
+        json_schema_extra={"exclusiveMinimum": 0, "maximum": LONGEST_DURATION},
+    )
+    samples: int = Field(400, description="uniform samples [-]; the events are added", json_schema_extra={"minimum": 2})
+    contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
+    format: Format = None
+
+
+def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """A slenderness or a frequency ratio inside the border of the service.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If one is outside.
+    """
+    if name == "slenderness":
+        return in_range(name, value, SMALLEST_SLENDERNESS, np.inf, closed="left")
+    return in_range(name, value, *FREQUENCY_RATIOS)
+
+
+def alpha_of(alpha_deg: float | None) -> float | None:
+    """Slenderness angle [rad], None for the slender limit.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is neither 0 nor in [1e-6, 89.9] degrees.
+    """
+    if not alpha_deg:
+        return None
+    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, LARGEST_ALPHA_DEG, unit="deg")))
+
+
+_CHECKS: dict[str, Callable[[Any], object]] = {
+    "pulse": get_pulse,
+    "slenderness": partial(checked, "slenderness"),
+    "frequency_ratio": partial(checked, "frequency_ratio"),
+    "restitution": partial(in_range, "restitution", low=0.0, high=1.0),
+    "alpha_deg": alpha_of,
+    "tolerance": partial(in_range, "tolerance", low=0.0, high=np.inf, closed="left"),
+    "highest_amplitude": partial(in_range, "highest_amplitude", low=1.0, high=1e6, closed="right"),
+    "duration": partial(in_range, "duration", low=0.0, high=LONGEST_DURATION, closed="right"),
+    "samples": partial(in_range, "samples", low=2, high=1_000_000),
+    "points": partial(in_range, "points", low=2, high=np.inf, closed="left"),
+    "columns": partial(in_range, "columns", low=2, high=np.inf, closed="left"),
+    "rows": partial(in_range, "rows", low=2, high=np.inf, closed="left"),
+}
+
+
+def check_value(name: str, value: Any) -> None:
+    """Refuse a parameter that is out of range, whatever the others are.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is.
+    """
+    check = _CHECKS.get(name)
+    if check is not None and value is not None:
+        check(value)
+
+
+def check_point(question: ResponseQuestion) -> None:
+    """Refuse an unknown pulse and a block outside the border of the service; a microsecond where all is well.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For the first that is wrong.
+    """
+    if question.pulse not in _KNOWN:
+        get_pulse(question.pulse)
+    lowest, highest = FREQUENCY_RATIOS
+    if not SMALLEST_SLENDERNESS <= question.slenderness < math.inf:
+        checked("slenderness", question.slenderness)
+    if not lowest <= question.frequency_ratio <= highest:
+        checked("frequency_ratio", question.frequency_ratio)
+    if not 0.0 <= question.restitution <= 1.0:
+        in_range("restitution", question.restitution, 0.0, 1.0)

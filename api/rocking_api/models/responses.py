@@ -1,0 +1,224 @@
+"""The answers of the routes. Missing numbers are null: there is no peak where a block overturns."""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from rocking.model.response import Outcome
+from rocking.solver.bounded_response import BoundedResponse
+from rocking_api.http.formats import Column
+from rocking_api.models.params import HistoryQuestion, OverturningQuestion, ResponseQuestion
+from rocking_api.models.point import Point
+
+VERSION = version("rocking")
+OUTCOMES = [outcome.name for outcome in Outcome]
+
+_OUTCOME = Field(description=f"final fate, one of {', '.join(OUTCOMES)}")
+_BOUND = Field(description="bound of the absolute error of peak_rotation [-]; null if there is no peak or no bound")
+_SOURCE = Field(description="cube (interpolated data set) or solver")
+_PEAK = Field(description="max |theta|/alpha over the whole response [-]; null if overturned")
+_IMPACTS = Field(
+    description="impacts before the pulse ends, and the one after it upon which the block overturns; -1 if a data set "
+    "answers whose nodes there differ"
+)
+_EXCEEDED = Field(description="|theta| passed alpha at some time; the ground can bring a block back from there")
+_DATA = Field(
+    description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
+    "solver did"
+)
+
+
+class ResponseAnswer(BaseModel):
+    """One block."""
+
+    query: ResponseQuestion
+    peak_rotation: float | None = _PEAK
+    overturned: bool
+    outcome: str = _OUTCOME
+    meaning: str = Field(description="the outcome in words")
+    impacts: int = _IMPACTS
+    exceeded_alpha: bool = _EXCEEDED
+    error_bound: float | None = _BOUND
+    note: str | None = Field(None, description="why peak_rotation or error_bound is null")
+    source: str = _SOURCE
+    data_version: str | None = _DATA
+    version: str = VERSION
+
+
+class Columns(BaseModel):
+    """Many blocks, in the order of the question."""
+
+    peak_rotation: list[float | None] = _PEAK
+    overturned: list[bool]
+    outcome: list[str] = _OUTCOME
+    impacts: list[int] = _IMPACTS
+    exceeded_alpha: list[bool] = _EXCEEDED
+    error_bound: list[float | None] = _BOUND
+    source: list[str] = _SOURCE
+    data_versions: list[str] = Field(description="sha256 of each data set that answered some")
+    version: str = VERSION
+
+
+class BatchAnswer(Columns):
+    """A batch."""
+
+    query: dict[str, Any] = Field(description="the options of the question, and how many points it had")
+
+
+class SpectrumAnswer(Columns):
+    """A spectrum."""
+
+    query: dict[str, Any]
+    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+
+
+class Curve(BaseModel):
+    """One boundary curve."""
+
+    outcome: str = Field(description="fate on the side where the block overturns")
+    impacts: int = Field(description="impacts before it overturns there")
+    slenderness: list[float] = Field(description="1/a [-]")
+    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+
+
+class OverturningAnswer(BaseModel):
+    """The boundary curves of a pulse and a restitution."""
+
+    query: OverturningQuestion
+    curves: list[Curve]
+    source: str = Field(description="dataset (read) or solver (traced for this request)")
+    data_version: str | None = _DATA
+    version: str = VERSION
+
+
+class ContactAnswer(BaseModel):
+    """What the ground has to supply through a motion; of a block that overturns, until it passes alpha for good."""
+
+    horizontal_reaction: list[float] = Field(description="H/(m g) at the pivot [-]; 0 in the slender limit")
+    normal_reaction: list[float] = Field(description="N/(m g) [-]; 0 and below: the block lifts off")
+    friction_demand: list[float | None] = Field(description="|H|/N [-]; null where N <= 0; 0 in the slender limit")
+    friction_demand_over_slope: list[float | None] = Field(description="|H|/(N tan alpha) [-]; null where N <= 0")
+    largest_friction_demand: float | None = Field(description="also between the samples [-]; null if it lifts off")
+    largest_friction_demand_over_slope: float | None
+    smallest_normal_reaction: float
+    impulse_ratio: float | None = Field(
+        description="horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
+    )
+    lifts_off: bool
+    warnings: str = Field(description="where pure rocking is in doubt, in words")
+
+
+class HistoryAnswer(BaseModel):
+    """A motion."""
+
+    query: HistoryQuestion
+    overturned: bool
+    outcome: str = _OUTCOME
+    peak_rotation: float | None = _PEAK
+    impacts: int = _IMPACTS
+    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
+    rotation: list[float] = Field(description="theta/alpha [-]")
+    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
+    ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
+    impact_time: list[float] = Field(description="tau of the impacts [-]")
+    contact: ContactAnswer | None = Field(None, description="null unless asked for")
+    source: str = "solver"
+    version: str = VERSION
+
+
+class DatasetSummary(BaseModel):
+    """A line of the catalogue."""
+
+    name: str
+    size: int = Field(description="bytes of the netCDF file")
+    sha256: str
+    metadata: str = Field(description="path of its description")
+    netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
+    version: str = Field(description="path of this very version of the file: may be kept for ever")
+    zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
+
+
+class DatasetCatalogue(BaseModel):
+    """All data sets."""
+
+    datasets: list[DatasetSummary]
+
+
+class VariableDescription(BaseModel):
+    """A variable of a data set."""
+
+    dimensions: list[str]
+    shape: list[int]
+    dtype: str
+    attributes: dict[str, Any]
+
+
+class DatasetDescription(DatasetSummary):
+    """What a data set holds."""
+
+    dimensions: dict[str, int]
+    coordinates: dict[str, VariableDescription]
+    variables: dict[str, VariableDescription]
+    attributes: dict[str, Any]
+
+
+class Health(BaseModel):
+    """State of the service."""
+
+    status: str = Field(description="ok, or degraded: it answers by the solver where data sets are missing or damaged")
+    version: str = VERSION
+    datasets: int = Field(description="data sets found")
+    unchecked: int = Field(0, description="of these, not yet read and checked: ask again in a moment")
+    problems: dict[str, str] = Field(description="what is missing or damaged, by name")
+
+
+def columns_of(found: BoundedResponse) -> dict[str, Any]:
+    """The fields of `Columns` as plain lists."""
+    return {name: column.tolist() for name, column in arrays_of(found).items()}
+
+
+def arrays_of(found: BoundedResponse) -> dict[str, Column]:
+    """The same as arrays (points,)."""
+    return {
+        "peak_rotation": found.peak_rotation,
+        "overturned": found.overturned,
+        "outcome": np.array(OUTCOMES, dtype=np.object_)[found.outcome],  # each name once, not once a point
+        "impacts": found.impacts,
+        "exceeded_alpha": found.exceeded_alpha,
+        "error_bound": found.error_bound,
+        "source": found.source,
+    }
+
+
+def response_answer(question: ResponseQuestion, point: Point) -> ResponseAnswer:
+    """The answer about one block."""
+    outcome = Outcome(point.outcome)
+    overturned = outcome >= Outcome.OVERTURNED_DIRECTLY
+    note = None
+    if overturned:
+        note = "the block overturns: there is no peak"
+    elif math.isinf(point.error_bound):
+        note = "the fate changes within the rounding of the question: there is no bound"
+    return ResponseAnswer(
+        query=question,
+        peak_rotation=finite(point.peak_rotation),
+        overturned=overturned,
+        outcome=outcome.name,
+        meaning=outcome.sentence,
+        impacts=point.impacts,
+        exceeded_alpha=point.exceeded_alpha,
+        error_bound=finite(point.error_bound),
+        note=note,
+        source=point.source,
+        data_version=point.data_version,
+    )
+
+
+def finite(value: float) -> float | None:
+    """The number, None where there is none."""
+    return value if math.isfinite(value) else None

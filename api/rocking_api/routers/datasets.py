@@ -1,0 +1,141 @@
+"""The data sets themselves: catalogue, description, netCDF file, zarr store."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import partial
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+from fastapi import APIRouter, Query, Request, Response
+from starlette.exceptions import HTTPException
+
+from rocking.datasets.catalogue import DataFile, Product, UnknownDatasetError
+from rocking.errors import DatasetError
+from rocking_api.http.caching import IMMUTABLE, not_modified, validators
+from rocking_api.http.files import file_response
+from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, VariableDescription
+from rocking_api.service import Service, ServiceDep
+
+router = APIRouter(prefix="/v1/datasets", tags=["datasets"])
+
+
+@router.get("", summary="Catalogue")
+async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
+    """All data sets in the results folder that can be read."""
+
+    def work() -> list[Product]:
+        catalogue = service.atlas.catalogue
+        found = []
+        for name in catalogue.names():
+            with suppress(UnknownDatasetError, DatasetError):  # gone meanwhile, or unreadable: /health tells
+                found.append(catalogue.product(name))
+        return found
+
+    products = await service.reading(work)
+    return DatasetCatalogue(datasets=[DatasetSummary(**_summary(product)) for product in products])
+
+
+@router.head("/{name:path}.nc", include_in_schema=False)
+@router.get(
+    "/{name:path}.nc",
+    summary="netCDF file",
+    response_class=Response,
+    responses={
+        200: {"content": {"application/x-netcdf": {}}},
+        206: {"description": "the ranges asked for"},
+        304: {"description": "not modified"},
+    },
+)
+async def get_netcdf(
+    name: str,
+    request: Request,
+    service: ServiceDep,
+    sha256: Annotated[str | None, Query(description="only this version: 404 once the file is another")] = None,
+) -> Response:
+    """The file as the workflow wrote it; its ETag is its sha256, and ranges may be asked for.
+
+    `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
+    """
+    file, product = await service.reading(partial(_sound, service, name))
+    if sha256 is None:
+        return file_response(request, file, product)
+    if sha256 != product.sha256:
+        file.close()
+        raise HTTPException(404, f"`{name}` has another version now: sha256 {product.sha256}")
+    return file_response(request, file, product, IMMUTABLE)
+
+
+@router.head("/{name:path}.zarr/{key:path}", include_in_schema=False)
+@router.get(
+    "/{name:path}.zarr/{key:path}",
+    summary="zarr store",
+    response_class=Response,
+    responses={304: {"description": "not modified"}},
+)
+async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -> Response:
+    """The keys of a zarr store (format 2, consolidated) with the same content.
+
+    `xarray.open_dataset(".../{name}.zarr", engine="zarr")` reads it.
+    """
+    sha256, store = await service.reading(partial(service.zarr_views.store, name))
+    if key not in store:
+        raise HTTPException(404, f"the zarr store of `{name}` has no key `{key}`")
+    unchanged = not_modified(request, sha256)
+    if unchanged is not None:
+        return unchanged
+    is_json = key.rpartition("/")[2].startswith(".z")
+    media_type = "application/json" if is_json else "application/octet-stream"
+    return Response(store[key], media_type=media_type, headers=validators(sha256))
+
+
+@router.get("/{name:path}", summary="Description")
+async def get_dataset(name: str, service: ServiceDep) -> DatasetDescription:
+    """Dimensions, variables and attributes of a data set, its size and its sha256."""
+    return await service.reading(partial(_description, service, name))
+
+
+def _sound(service: Service, name: str) -> tuple[DataFile, Product]:
+    """The open file of a data set, unless it is damaged: a broken file is refused rather than handed on."""
+    file = service.atlas.catalogue.open(name)
+    try:
+        product = service.atlas.catalogue.product_of(file)
+        problem = service.atlas.problem_of(file)
+        if problem is not None:
+            raise DatasetError(problem)
+    except BaseException:
+        file.close()
+        raise
+    return file, product
+
+
+def _description(service: Service, name: str) -> DatasetDescription:
+    product, dataset = service.atlas.catalogue.dataset(name)
+    return DatasetDescription(
+        **_summary(product),
+        dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},
+        coordinates={str(key): _variable(dataset[key]) for key in dataset.coords},
+        variables={str(key): _variable(dataset[key]) for key in dataset.data_vars},
+        attributes=_attributes(dataset.attrs),
+    )
+
+
+def _summary(product: Product) -> dict[str, Any]:
+    path = f"/v1/datasets/{product.name}"
+    links = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
+    links["version"] = f"{path}.nc?sha256={product.sha256}"
+    return {"name": product.name, "size": product.size, "sha256": product.sha256, **links}
+
+
+def _variable(variable: xr.DataArray) -> VariableDescription:
+    return VariableDescription(
+        dimensions=[str(dimension) for dimension in variable.dims],
+        shape=list(variable.shape),
+        dtype=str(variable.dtype),
+        attributes=_attributes(variable.attrs),
+    )
+
+
+def _attributes(attributes: dict[Any, Any]) -> dict[str, Any]:
+    return {str(k): v.tolist() if isinstance(v, (np.generic, np.ndarray)) else v for k, v in attributes.items()}

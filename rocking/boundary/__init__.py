@@ -1,0 +1,1 @@
+"""Boundaries between outcomes, and thresholds along lines."""

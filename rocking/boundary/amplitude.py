@@ -1,0 +1,83 @@
+"""Amplitudes at which the fate of a block changes, the frequency of its pulse being fixed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking.boundary.search import Floats, classifier, fates_along
+from rocking.errors import in_range
+from rocking.excitation.pulses import AbstractPulse, as_pulse
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Amplitudes at which the fate of a block changes, ascending; all arrays (thresholds,).
+
+    Attributes
+    ----------
+    amplitude : float array [-]
+        a = a_g/(g tan alpha).
+    overturns_above : bool array
+        True where the block overturns just above the threshold and stands just below it.
+    outcome : int8 array
+        Code of `Outcome` on the overturning side.
+    impacts : int32 array
+        Impacts before overturning there.
+    """
+
+    amplitude: Floats
+    overturns_above: NDArray[np.bool_]
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+
+
+def critical_amplitude(
+    pulse: str | AbstractPulse,
+    *,
+    frequency_ratio: float,
+    restitution: float,
+    alpha: float | None = None,
+    highest_amplitude: float = 100.0,
+    stop: StopFlag | None = None,
+) -> Thresholds:
+    """Every amplitude between 1 and `highest_amplitude` at which the fate changes.
+
+    Parameters
+    ----------
+    pulse, frequency_ratio, restitution, alpha
+        As for `peak_response`; scalars.
+    highest_amplitude : float
+        Largest a = a_g/(g tan alpha) looked at [-], (1, 1e6].
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
+
+    Returns
+    -------
+    Thresholds
+        Each good to `RESOLUTION` in 1/a. A region of one way of overturning narrower than 1/2000 of the range and
+        surrounded by a single other fate can be missed; a safe band between two ways of overturning is not, unless
+        it is narrower than `RESOLUTION`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    StoppedError
+        If `stop` was set.
+    """
+    in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
+    log_omega = float(np.log(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
+    eta = float(in_range("restitution", restitution, 0.0, 1.0))
+    lowest = 1.0 / highest_amplitude
+    nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
+    grid, codes = fates_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha, stop))
+    edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
+    above = codes[edge] > 0  # 1/a falls as the amplitude rises
+    falls = np.where(above, edge, edge + 1)
+    return Thresholds(
+        1.0 / grid[falls], above, (codes[falls] % 4).astype(np.int8), (codes[falls] // 4).astype(np.int32)
+    )

@@ -1,0 +1,1 @@
+"""Schema, netCDF files, catalogue, checksums and provenance of the data sets."""

@@ -1,0 +1,332 @@
+"""Schema of the data sets: what a spectrum cube holds, and how any data set is written and read without surprises.
+
+A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio) and
+
+====================  ===  =====================================================================================
+peak_rotation         f8   max |theta|/alpha over the whole response [-], nan where the block overturns
+outcome               i1   code of `rocking.model.response.Outcome`
+impacts               i4   impacts before the pulse ends, and the one after it upon which the block overturns
+exceeded_alpha        i1   1 where |theta| passed alpha at some time
+peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
+stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
+interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
+restitution_levels    i1   which files serve in that cell before the next restitution, see `interpolation.LEVELS`
+restitution_error     f4   largest error of that, measured in the same cells
+alpha_levels          i1   which angles serve in that cell before the next angle
+alpha_error           f4   largest error of that, measured in the same cells
+====================  ===  =====================================================================================
+
+with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
+ACDD-1.3, hold no clock time, so that equal content gives equal bytes, and carry a digest of their own values.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from xarray.backends import NetCDF4DataStore
+
+from rocking.datasets.checksum import PARTIAL, flaw, seal
+from rocking.errors import DatasetError
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.model.response import Outcome
+
+SQUARED, OVERTURNS, NO_STENCIL = 9, 18, -1
+"""Values of `stencil`: from 9 on (1 - peak)^2 is interpolated; all overturn alike; not interpolated."""
+
+DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
+"""Dimensions of a spectrum cube, in order."""
+
+AXES: dict[str, dict[str, Any]] = {
+    "alpha": {
+        "units": "rad",
+        "long_name": "slenderness angle of the block, 0 for the slender limit",
+        "equation": "2.1",
+    },
+    "slenderness": {"units": "1", "long_name": "dimensionless slenderness g tan(alpha)/a_g = 1/a", "equation": "4.11"},
+    "frequency_ratio": {"units": "1", "long_name": "frequency ratio omega = omega_g/p", "equation": "3.6"},
+}
+"""Attributes of the axes of a spectrum cube."""
+
+_OUTCOMES = {
+    "flag_values": np.array([int(outcome) for outcome in Outcome], dtype=np.int8),
+    "flag_meanings": " ".join(outcome.name.lower() for outcome in Outcome),
+}
+_NO_YES = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"}
+
+_LEVELS = "0 to 5: Lagrange over 4, 4, 4, 3, 3, 2, the first of them 1, 2, 0, 1, 0, 0 below the node's; -1: not at all"
+
+MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
+"""Attributes of every dimensionless variable that a model computed."""
+
+VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
+    "peak_rotation": (
+        "f8",
+        {"long_name": "peak rotation, max |theta|/alpha over the whole response", "equation": "3.2",
+         "ancillary_variables": "outcome peak_mode stencil interpolation_error",
+         "comment": "missing where it overturns"},
+    ),
+    "outcome": ("i1", {"long_name": "final fate of the block", "equation": "3.8", **_OUTCOMES}),
+    "impacts": ("i4", {"long_name": "number of impacts before the pulse ends", "equation": "2.3",
+                       "comment": "and the one after it upon which the block overturns"}),
+    "exceeded_alpha": ("i1", {"long_name": "whether |theta| passed alpha at some time", "equation": "3.2", **_NO_YES}),
+    "peak_mode": (
+        "i4",
+        {"long_name": "lobe that holds the peak", "equation": "3.4",
+         "comment": "twice the impacts before it, plus one if reached in free rocking; -1 where there is no peak"},
+    ),
+    "stencil": (
+        "i1",
+        {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
+         "comment": "0 to 8: four-point Lagrange in slenderness and log(frequency_ratio), the 16 nodes starting below "
+                    "the cell by (1,1), (1,0), (1,2), (0,1), (2,1), (0,0), (0,2), (2,0), (2,2) rows and columns; "
+                    "9 to 17: the same for (1 - peak_rotation)^2; 18: all overturn alike; -1: not at all"},
+    ),
+    "interpolation_error": (
+        "f4",
+        {"long_name": "largest measured error of interpolated peak_rotation around the cell above the node",
+         "equation": "3.2",
+         "comment": "against the solver, in the cell and those around it, at two points of each and at five where "
+                    "they differ; 0 where all overturn alike, missing where no bound is known"},
+    ),
+    "restitution_levels": (
+        "i1",
+        {"long_name": "files that serve the cell above the node before the next restitution", "equation": "3.2",
+         "comment": _LEVELS},
+    ),
+    "restitution_error": (
+        "f4",
+        {"long_name": "largest measured error of peak_rotation interpolated before the next restitution",
+         "equation": "3.2",
+         "comment": "over restitution_levels, in the cell above the node and in those around it, halfway at their "
+                    "centres and, where that differs, at two points more; missing where they differ in fate"},
+    ),
+    "alpha_levels": (
+        "i1",
+        {"long_name": "angles that serve the cell above the node before the next angle", "equation": "3.2",
+         "comment": f"in the square of alpha; {_LEVELS}"},
+    ),
+    "alpha_error": (
+        "f4",
+        {"long_name": "largest measured error of peak_rotation interpolated before the next alpha", "equation": "3.2",
+         "comment": "over alpha_levels, as restitution_error"},
+    ),
+}  # fmt: skip
+"""Type and attributes of each variable of a spectrum cube."""
+
+_GLOBAL = {
+    "Conventions": "CF-1.11, ACDD-1.3",
+    "institution": "The rocking developers",
+    "creator_name": "The rocking developers",
+    "creator_type": "group",
+    "license": "CC-BY-4.0",
+    "references": "Dimitrakopoulos and DeJong (2012), https://doi.org/10.1098/rspa.2012.0026",
+    "keywords": "rocking block, overturning, response spectrum, self-similarity, earthquake engineering",
+    "standard_name_vocabulary": "CF Standard Name Table v93",
+    "source": "event-by-event solution of the equation of motion (package rocking)",
+    "project": "rocking",
+    "processing_level": "model result",
+    "acknowledgement": "built on the closed forms and similarity laws of Dimitrakopoulos and DeJong (2012)",
+}
+
+
+def build_spectrum_dataset(
+    variables: Mapping[str, ArrayLike], *, pulse: str, restitution: float, axes: Mapping[str, ArrayLike]
+) -> xr.Dataset:
+    """Assemble a spectrum cube.
+
+    Parameters
+    ----------
+    variables : mapping
+        The arrays named in `VARIABLES`, each of shape (alpha, slenderness, frequency_ratio).
+    pulse : str
+        Name of the pulse.
+    restitution : float
+        eta [-], [0, 1].
+    axes : mapping
+        alpha [rad], slenderness [-] and frequency_ratio [-], ascending.
+    """
+    cube = xr.Dataset(
+        {
+            name: (DIMENSIONS, np.asarray(variables[name], dtype=dtype), {**MODEL_RESULT, **attributes})
+            for name, (dtype, attributes) in VARIABLES.items()
+        },
+        coords={name: (name, np.asarray(axes[name], dtype="f8"), AXES[name]) for name in DIMENSIONS},
+    )
+    return describe(
+        cube.assign_coords(scalar_coordinates(pulse, restitution)),
+        title=f"Rocking spectrum of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
+        summary="Peak rotation and fate of a free-standing rigid block over dimensionless slenderness and frequency "
+        "ratio, solved event by event, with the measured error of interpolating between the nodes.",
+        history="rocking.spectra.cubes.spectrum",
+        id=f"spectra/{pulse}/eta-{restitution:.2f}",
+    )
+
+
+def scalar_coordinates(pulse: str, restitution: float) -> dict[str, xr.Variable]:
+    """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set."""
+    flags = {
+        "flag_values": np.arange(len(PULSE_NAMES), dtype=np.int8),
+        "flag_meanings": " ".join(PULSE_NAMES),
+    }
+    shape = get_pulse(pulse)
+    window = np.array([shape.start, shape.end])
+    named = {"long_name": "shape of the ground acceleration", "units": "1", "pulse_name": pulse, "phase_window": window}
+    eta = {"long_name": "coefficient of restitution eta", "units": "1", "equation": "2.3"}
+    return {
+        "pulse": xr.Variable((), np.int8(PULSE_NAMES.index(pulse)), named | flags),
+        "restitution": xr.Variable((), np.float64(restitution), eta),
+    }
+
+
+def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
+    """The data set with the global attributes that all our files share, and the given ones (title, summary, id, ...).
+
+    No clock time is among them: the same content gives the same bytes on any day.
+    """
+    return dataset.assign_attrs({**_GLOBAL, **dataset.attrs, **attributes})
+
+
+def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
+    """Write a netCDF-4 file that appears whole or not at all, the same bytes for the same content.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Its values are written with a digest (`content_sha256`), and the file with another at its end (`seal`), by which
+        `read_dataset` sees damage.
+    path : path
+        Parent folders are made; an existing file is replaced.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    signed = dataset.assign_attrs(content_sha256=_content_digest(dataset))
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PARTIAL, dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed))
+        seal(temporary)
+        with temporary.open("rb+") as written:
+            os.fsync(written.fileno())
+        temporary.chmod(0o644)  # mkstemp makes it readable by its owner only
+        temporary.replace(path)  # atomic: os.replace
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_dataset(path: Path | str) -> xr.Dataset:
+    """Read a file of `write_dataset` into memory and check that it is whole.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, cannot be read, is not one of ours, or does not hold what was written.
+    """
+    return decode_dataset(read_content(path), path)
+
+
+def read_content(path: Path | str) -> bytes:
+    """The bytes of a data set file.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing or cannot be read.
+    """
+    path = Path(path)
+    try:
+        if path.is_file():
+            return path.read_bytes()
+    except OSError as error:
+        raise DatasetError(f"{path}: cannot be read: {error.strerror}") from error
+    raise DatasetError(f"{path}: no such data set; `make reproduce` builds it")
+
+
+def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
+    """The same from the bytes of such a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        If they are not those of one of our files, or not what was written.
+    """
+    damage = flaw(content)
+    if damage is not None:  # some broken files make the netCDF library run for ever
+        raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
+    try:
+        store = NetCDF4DataStore(netCDF4.Dataset("in memory", memory=content))  # type: ignore[no-untyped-call]
+        with xr.open_dataset(store, decode_times=False) as opened:
+            dataset = opened.load()
+        written = dataset.attrs.get("content_sha256")
+        found = _content_digest(dataset)
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise DatasetError(f"{path}: damaged, {error}; `make reproduce` builds it again") from error
+    if written is None:
+        raise DatasetError(f"{path}: not written by this package (no content_sha256)")
+    if written != found:
+        raise DatasetError(f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again")
+    return dataset
+
+
+def read_spectrum(path: Path | str) -> xr.Dataset:
+    """Read a spectrum cube and check it against the schema.
+
+    Raises
+    ------
+    DatasetError
+        As `read_dataset`; also if a variable is missing, of another type or shape, or an axis does not ascend.
+    """
+    return decode_spectrum(read_content(path), path)
+
+
+def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
+    """The same from the bytes of such a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        As `read_spectrum`.
+    """
+    cube = decode_dataset(content, path)
+    for name, (dtype, _) in VARIABLES.items():
+        if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
+            raise DatasetError(f"{path}: no variable `{name}` of type {dtype} over {DIMENSIONS}; build it again")
+    for name in DIMENSIONS:
+        if name not in cube.coords or not np.all(np.diff(cube[name].values) > 0):
+            raise DatasetError(f"{path}: axis `{name}` is missing or does not ascend; build it again")
+    if "pulse" not in cube.coords or "restitution" not in cube.coords:
+        raise DatasetError(f"{path}: no scalar coordinates `pulse` and `restitution`; build it again")
+    return cube
+
+
+def _encoding(dataset: xr.Dataset) -> dict[str, dict[str, Any]]:
+    encoding: dict[str, dict[str, Any]] = {}
+    for name, variable in dataset.variables.items():
+        chosen: dict[str, Any] = {"_FillValue": None}
+        if name not in dataset.coords and variable.dtype.kind == "f":
+            chosen["_FillValue"] = np.nan
+        if variable.ndim and variable.size > 64 and variable.dtype.kind in "fiu":
+            chosen |= {"zlib": True, "complevel": 4, "shuffle": True, "chunksizes": variable.shape}
+        encoding[str(name)] = chosen
+    return encoding
+
+
+def _content_digest(dataset: xr.Dataset) -> str:
+    """sha256 over names, types, shapes and values of all variables."""
+    digest = hashlib.sha256()
+    for name in sorted(str(name) for name in dataset.variables):
+        values = np.ascontiguousarray(dataset.variables[name].values)
+        content = "\n".join(values.astype(str).ravel()).encode() if values.dtype.kind in "OUT" else values.tobytes()
+        digest.update(f"{name} {values.dtype.kind} {values.shape}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""Ground motions: pulses and wavelets."""

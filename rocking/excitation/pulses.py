@@ -1,0 +1,190 @@
+"""Ground-acceleration pulses: one exact definition each, as a shape f(phi) of unit peak over a window of phase phi.
+
+The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; positive starts the block towards negative
+rotation. Two families cover all of them: sums of sinusoids, whose response has exact arcs (3.4), and wavelets, a
+polynomial times a Gaussian, whose response is expanded in Taylor series.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache, partial
+
+from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.excitation.shapes import (
+    AbstractPulse,
+    SinusoidalPulse,
+    WaveletPulse,
+    number,
+    peak_of,
+    sinusoids,
+    turns_of_sinusoids,
+)
+
+__all__ = [
+    "PULSE_NAMES",
+    "AbstractPulse",
+    "SinusoidalPulse",
+    "WaveletPulse",
+    "as_pulse",
+    "get_pulse",
+]
+
+
+def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]) -> SinusoidalPulse:
+    """cos(phi) seen through a window given in the phase of the cosine."""
+    return SinusoidalPulse(name, start, end, stationary, ((1.0, 1.0, 0.0),))
+
+
+def sine() -> SinusoidalPulse:
+    """One full sine, sin(phi), 0 to 2 pi, (3.2)."""
+    term = ((1.0, 1.0, -math.pi / 2),)
+    return SinusoidalPulse("sine", 0.0, 2 * math.pi, (math.pi / 2, 3 * math.pi / 2), term)
+
+
+def cosine() -> SinusoidalPulse:
+    """One full cosine, cos(phi), 0 to 2 pi (figures 5 to 8)."""
+    return _sinusoid("cosine", 0.0, 2 * math.pi, (math.pi,))
+
+
+def half_sine() -> SinusoidalPulse:
+    """Half a sine, sin(phi), 0 to pi (Housner 1963; Shi et al. 1996)."""
+    return SinusoidalPulse("half_sine", 0.0, math.pi, (math.pi / 2,), ((1.0, 1.0, -math.pi / 2),))
+
+
+def rectangular() -> SinusoidalPulse:
+    """Constant 1, 0 to pi: it lasts T_p/2 like the half sine (Housner 1963)."""
+    return SinusoidalPulse("rectangular", 0.0, math.pi, (), ((1.0, 0.0, 0.0),))
+
+
+def c1() -> SinusoidalPulse:
+    """Type C_1 of Makris & Chang (2000): displacement and velocity end at zero after 1.5 cycles."""
+    return _type_c(1)
+
+
+def c2() -> SinusoidalPulse:
+    """Type C_2 of Makris & Chang (2000): displacement and velocity end at zero after 2.5 cycles."""
+    return _type_c(2)
+
+
+def _type_c(cycles: int) -> SinusoidalPulse:
+    from scipy.optimize import brentq  # takes longer to load than the rest of the package: only these pulses pay
+
+    span = (2 * cycles + 1) * math.pi
+
+    def end_displacement(x: float) -> float:
+        return math.cos(span - x) + (span - 2 * x) * math.sin(x) - math.cos(x)
+
+    start = float(brentq(end_displacement, 0.0, 0.5, xtol=1e-16, rtol=8.9e-16))
+    stationary = tuple(k * math.pi for k in range(1, 2 * cycles + 1))
+    return _sinusoid(f"c{cycles}", start, span - start, stationary)
+
+
+def ricker() -> WaveletPulse:
+    """Symmetric Ricker wavelet (1 - phi^2/2) exp(-phi^2/4), -4 pi to 4 pi."""
+    root = math.sqrt(6.0)
+    return WaveletPulse("ricker", -4 * math.pi, 4 * math.pi, (-root, 0.0, root), (1.0, 0.0, -0.5), 4.0)
+
+
+def ricker_antisymmetric() -> WaveletPulse:
+    """Antisymmetric Ricker wavelet (z^2 - 3) z exp(-z^2/2)/beta, z = phi/sqrt(3), -4 pi to 4 pi."""
+    square = 3.0 - math.sqrt(6.0)  # z^2 at the largest peak
+    beta = math.sqrt(6.0) * math.sqrt(square) * math.exp(-square / 2)
+    inner, outer = math.sqrt(3 * square), math.sqrt(3 * (3.0 + math.sqrt(6.0)))
+    polynomial = (0.0, -math.sqrt(3.0) / beta, 0.0, 1.0 / (3.0 * math.sqrt(3.0) * beta))
+    return WaveletPulse(
+        "ricker_antisymmetric", -4 * math.pi, 4 * math.pi, (-outer, -inner, inner, outer), polynomial, 6.0
+    )
+
+
+def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> SinusoidalPulse:
+    """Acceleration of the velocity pulse of Mavroeidis & Papageorgiou (2003), scaled to unit peak.
+
+    Parameters
+    ----------
+    cycles : float
+        gamma [-], (1, 20]: how many cycles the envelope holds.
+    phase : float
+        nu [rad], [-2 pi, 2 pi].
+
+    Notes
+    -----
+    -[sin(phi/gamma) cos(phi + nu) + gamma sin(phi + nu) (1 + cos(phi/gamma))] is the sum of three sinusoids
+    -[gamma sin B + (gamma + 1)/2 sin(B + A) + (gamma - 1)/2 sin(B - A)], A = phi/gamma, B = phi + nu.
+    """
+    in_range("cycles", cycles, 1.0, 20.0, closed="right")
+    in_range("phase", phase, -2 * math.pi, 2 * math.pi, unit="rad")
+    shift = phase + math.pi / 2  # -sin x = cos(x + pi/2)
+    raw = (
+        (cycles, 1.0, shift),
+        ((cycles + 1) / 2, 1 + 1 / cycles, shift),
+        ((cycles - 1) / 2, 1 - 1 / cycles, shift),
+    )
+    end = math.pi * cycles
+    peak = peak_of(partial(sinusoids, raw), -end, end, turns_of_sinusoids(raw, -end, end))
+    terms = tuple((c / peak, w, d) for c, w, d in raw)
+    return SinusoidalPulse("mavroeidis_papageorgiou", -end, end, (), terms)
+
+
+_CATALOGUE: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
+    factory.__name__: factory
+    for factory in (
+        sine,
+        cosine,
+        half_sine,
+        rectangular,
+        c1,
+        c2,
+        ricker,
+        ricker_antisymmetric,
+        mavroeidis_papageorgiou,
+    )
+}
+
+PULSE_NAMES: tuple[str, ...] = tuple(_CATALOGUE)
+"""Names that `get_pulse` knows; a leading minus mirrors the pulse."""
+
+
+def as_pulse(pulse: str | AbstractPulse) -> SinusoidalPulse | WaveletPulse:
+    """The pulse itself, or the one of that name.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For anything else.
+    """
+    if isinstance(pulse, SinusoidalPulse | WaveletPulse):
+        return pulse
+    return get_pulse(pulse)  # type: ignore[arg-type]  # whatever it is, the message is the same
+
+
+def get_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
+    """The pulse of that name; `"-sine"` is the mirrored sine.
+
+    Parameters
+    ----------
+    name : str
+        One of `PULSE_NAMES`, with an optional leading minus.
+    **parameters : float
+        `cycles` and `phase`, for mavroeidis_papageorgiou only.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an unknown name or parameter, or a parameter out of range.
+    """
+    if not isinstance(name, str):
+        allowed = "a SinusoidalPulse, a WaveletPulse, or one of " + ", ".join(PULSE_NAMES)
+        raise InvalidArgumentError("pulse", name, allowed)
+    return _made(name, **{key: number(key, value) for key, value in parameters.items()})
+
+
+@lru_cache(maxsize=256)
+def _made(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
+    base = one_of("pulse", name.removeprefix("-"), PULSE_NAMES)
+    allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
+    for parameter in parameters:
+        one_of(f"parameter of pulse {base}", parameter, allowed)
+    made = _CATALOGUE[base](**parameters)
+    return made.mirrored() if name.startswith("-") else made

@@ -1,0 +1,218 @@
+"""Shapes of pulses, checked when they are made: sums of sinusoids, and wavelets, a polynomial times a Gaussian."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.stationary import sign_changes
+
+MAX_SINUSOIDS = 8
+"""Most terms of a sum of sinusoids."""
+
+MAX_POLYNOMIAL = 4
+"""Most coefficients of a wavelet's polynomial."""
+
+MAX_PIECES = 84
+"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
+
+LARGEST = 1e6
+"""Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase loses more than ten digits."""
+
+PEAK_TOLERANCE = 1e-12
+"""Largest difference of max |f| from 1 [-]."""
+
+Array = NDArray[np.float64]
+Terms = tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True)
+class AbstractPulse(ABC):
+    """A pulse shape f(phi), max |f| = 1, zero outside `start` <= phi <= `end` [rad].
+
+    Attributes
+    ----------
+    name : str
+        Not empty.
+    start, end : float
+        Window of the phase [rad], start < end, within +-`LARGEST`.
+    stationary : tuple of float
+        All phases strictly inside the window at which f' changes its sign [rad], ascending; at most `MAX_PIECES` - 1.
+        Left empty, they are found.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range, `stationary` is incomplete, or max |f| is not 1 to within `PEAK_TOLERANCE`.
+    """
+
+    name: str
+    start: float
+    end: float
+    stationary: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not (self.name and isinstance(self.name, str)):
+            raise InvalidArgumentError("name", self.name, "a string that is not empty")
+        start = number("start", self.start, unit="rad")
+        end = number("end", self.end, unit="rad")
+        in_range("end", end, start, LARGEST, closed="right", unit="rad")
+        found = self._turns(start, end)
+        given = _numbers("stationary", self.stationary, unit="rad")
+        if given and not (len(given) == len(found) and np.allclose(given, found, rtol=0.0, atol=1e-10 * (end - start))):
+            raise InvalidArgumentError(
+                "stationary", given, f"(), or all phases inside where f' changes its sign: {found}"
+            )
+        if len(found) >= MAX_PIECES:
+            raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
+        for name, value in (("start", start), ("end", end), ("stationary", given or found)):
+            object.__setattr__(self, name, value)
+        peak = peak_of(self.shape, start, end, found)
+        if not abs(peak - 1.0) <= PEAK_TOLERANCE:
+            raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
+
+    @abstractmethod
+    def shape(self, phi: ArrayLike) -> Array:
+        """f(phi) [-] on the window, its smooth continuation outside; `phi` [rad], any shape."""
+
+    @abstractmethod
+    def mirrored(self) -> AbstractPulse:
+        """The pulse of opposite sign, -f(phi)."""
+
+    @abstractmethod
+    def _turns(self, start: float, end: float) -> tuple[float, ...]:
+        """The phases strictly inside the window at which f' changes its sign [rad]."""
+
+    def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
+        phi = np.asarray(phi, dtype=np.float64)
+        return np.where((phi >= self.start) & (phi <= self.end), self.shape(phi), 0.0)
+
+    @property
+    def monotone_pieces(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of phi [rad] that cover the window and on each of which f is monotone."""
+        ends = (self.start, *self.stationary, self.end)
+        return tuple(pairwise(ends))
+
+
+@final
+@dataclass(frozen=True)
+class SinusoidalPulse(AbstractPulse):
+    """f(phi) = sum of c cos(w phi + d) over `terms`.
+
+    Attributes
+    ----------
+    terms : tuple of (float, float, float)
+        c [-], w >= 0 [-] and d [rad] of 1 to `MAX_SINUSOIDS` sinusoids, within +-`LARGEST`.
+    """
+
+    terms: Terms
+
+    def __post_init__(self) -> None:
+        terms = in_range("terms", self.terms, -LARGEST, LARGEST)
+        if terms.ndim != 2 or not 1 <= len(terms) <= MAX_SINUSOIDS or terms.shape[1] != 3 or (terms[:, 1] < 0.0).any():
+            raise InvalidArgumentError("terms", self.terms, f"1 to {MAX_SINUSOIDS} triples (c, w, d) with w >= 0")
+        object.__setattr__(self, "terms", tuple(map(tuple, terms.tolist())))
+        super().__post_init__()
+
+    def shape(self, phi: ArrayLike) -> Array:
+        return sinusoids(self.terms, phi)
+
+    def mirrored(self) -> SinusoidalPulse:
+        terms = tuple((-c, w, d) for c, w, d in self.terms)
+        return SinusoidalPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, terms)
+
+    def _turns(self, start: float, end: float) -> tuple[float, ...]:
+        return turns_of_sinusoids(self.terms, start, end)
+
+
+@final
+@dataclass(frozen=True)
+class WaveletPulse(AbstractPulse):
+    """f(phi) = (sum of c_k phi^k) exp(-phi^2 / spread).
+
+    Attributes
+    ----------
+    polynomial : tuple of float
+        c_0, c_1, ... [-], 1 to `MAX_POLYNOMIAL` of them, within +-`LARGEST`.
+    spread : float
+        Of the Gaussian [rad2], [1e-6, `LARGEST`].
+    """
+
+    polynomial: tuple[float, ...]
+    spread: float
+
+    def __post_init__(self) -> None:
+        polynomial = _numbers("polynomial", self.polynomial)
+        if not 1 <= len(polynomial) <= MAX_POLYNOMIAL:
+            raise InvalidArgumentError("polynomial", polynomial, f"1 to {MAX_POLYNOMIAL} coefficients")
+        spread = number("spread", self.spread, low=1e-6, unit="rad2")
+        object.__setattr__(self, "polynomial", polynomial)
+        object.__setattr__(self, "spread", spread)
+        super().__post_init__()
+
+    def shape(self, phi: ArrayLike) -> Array:
+        phi = np.asarray(phi, dtype=np.float64)
+        return np.asarray(np.polynomial.polynomial.polyval(phi, self.polynomial) * np.exp(-phi * phi / self.spread))
+
+    def mirrored(self) -> WaveletPulse:
+        polynomial = tuple(-c for c in self.polynomial)
+        return WaveletPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
+
+    def _turns(self, start: float, end: float) -> tuple[float, ...]:
+        # f' = (P' - 2 phi/spread P) exp(-phi^2/spread): the sign is that of the polynomial
+        shape = np.polynomial.Polynomial(self.polynomial)
+        factor = shape.deriv() - shape * np.polynomial.Polynomial([0.0, 2.0 / self.spread])
+        bound = np.polynomial.Polynomial(np.abs(factor.coef))
+        farthest, slope = max(abs(start), abs(end)), factor.deriv()
+        return sign_changes(
+            lambda phi: (factor(phi), slope(phi)), bound(farthest), bound.deriv(2)(farthest), start, end
+        )
+
+
+def number(parameter: str, value: ArrayLike, *, low: float = -LARGEST, unit: str = "-") -> float:
+    """One number from `low` to `LARGEST`."""
+    array = in_range(parameter, value, low, LARGEST, unit=unit)
+    if array.ndim:
+        raise InvalidArgumentError(parameter, value, "one number")
+    return float(array)
+
+
+def _numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple[float, ...]:
+    array = in_range(parameter, values, -LARGEST, LARGEST, unit=unit)
+    if array.ndim != 1:
+        raise InvalidArgumentError(parameter, values, "a sequence of numbers")
+    return tuple(array.tolist())
+
+
+def sinusoids(terms: Terms, phi: ArrayLike) -> Array:
+    """The sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
+    phi = np.asarray(phi, dtype=np.float64)
+    return np.asarray(sum(c * np.cos(w * phi + d) for c, w, d in terms))
+
+
+def turns_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, ...]:
+    """The phases strictly inside the window at which the slope of a sum of sinusoids changes its sign [rad]."""
+    c, w, d = np.array(terms).T
+
+    def slope(phi: Array) -> tuple[Array, Array]:
+        angle = np.multiply.outer(phi, w) + d
+        return -np.sin(angle) @ (c * w), -np.cos(angle) @ (c * w * w)
+
+    return sign_changes(slope, np.abs(c * w).sum(), np.abs(c * w**3).sum(), start, end)
+
+
+def peak_of(shape: Callable[[ArrayLike], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
+    """max |f| on the window [-]."""
+    return float(np.max(np.abs(shape([start, *turns, end]))))
+
+
+def _mirrored_name(name: str) -> str:
+    return name.removeprefix("-") if name.startswith("-") else "-" + name

@@ -1,0 +1,267 @@
+"""What a whole motion asks of the contact: the largest friction demand, the smallest reaction, and where doubt begins.
+
+Between events the reactions are smooth; they jump at impacts, at the end of the pulse and where a pulse begins with a
+jump. So the motion is sampled finely where the block moves and on both sides of every event, and the extremes are
+refined around their best samples. An impact itself is an impulse and is told apart (`contact.impulse_ratio`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from rocking._numba.compilation import Record
+from rocking.history.motion import Motion, overturned
+from rocking.model.reactions import Floats, Reactions, impulse_ratio, reactions
+from rocking.model.response import Outcome
+
+FINE = 0.02
+"""Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
+
+BESIDE = 1e-12
+"""Relative distance in time of the samples on either side of an event."""
+
+PRACTICAL_FRICTION = 0.7
+"""Friction that a dry contact can be trusted with [-]: of rough concrete on concrete in EN 1992-1-1, 6.2.5."""
+
+LARGEST_FRICTION = 1.0
+"""Friction demand beyond which the rocking model is taken not to apply [-]: common dry contacts stay below."""
+
+COLUMNS = {
+    "horizontal_reaction": "horizontal reaction H/(m g) of the ground at the pivot",
+    "normal_reaction": "normal reaction N/(m g) of the ground at the pivot",
+    "friction_demand": "friction demand |H|/N",
+    "friction_demand_over_slope": "friction demand |H|/(N tan alpha)",
+}
+"""Variables that the contact adds to a time history, with their meaning."""
+
+ATTRIBUTES = (
+    "largest_friction_demand",
+    "largest_friction_demand_over_slope",
+    "smallest_normal_reaction",
+    "impulse_ratio",
+)
+"""Numbers about the whole motion that it adds, beside `lifts_off` and `warnings`."""
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Extremes through a motion, impacts excluded; of a block that overturns, until it passes alpha for good.
+
+    Attributes
+    ----------
+    largest_friction_demand : float [-]
+        Largest |H|/N; infinite where it lifts off, 0 in the slender limit.
+    largest_friction_demand_over_slope : float [-]
+        The same over tan(alpha), 1 or more for every block that rocks.
+    friction_time : float [-]
+        tau of it.
+    smallest_normal_reaction : float [-]
+        Smallest N/(m g).
+    normal_time : float [-]
+        tau of it.
+    impulse_ratio : float [-]
+        Horizontal over vertical impulse at its impacts; 0 if there are none.
+    chatters : bool
+        Whether impacts accumulate to rest while the pulse acts.
+    outcome : Outcome
+        Final outcome of the motion.
+    """
+
+    largest_friction_demand: float
+    largest_friction_demand_over_slope: float
+    friction_time: float
+    smallest_normal_reaction: float
+    normal_time: float
+    impulse_ratio: float
+    chatters: bool
+    outcome: Outcome
+
+    @property
+    def lifts_off(self) -> bool:
+        """Whether pure rocking would need a ground that pulls: the block leaves it instead."""
+        return self.smallest_normal_reaction <= 0.0
+
+    @property
+    def rocking_applies(self) -> bool:
+        """Whether the block rocks without sliding or lifting off, or does not uplift at all.
+
+        False where it lifts off, or where rocking needs a coefficient of friction beyond `LARGEST_FRICTION`.
+        A block that does not uplift under friction that holds it does not uplift under less either.
+        """
+        held = not self.lifts_off and self.largest_friction_demand <= LARGEST_FRICTION
+        return held or self.outcome == Outcome.NO_UPLIFT
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in words, without a subject; where the rocking model does not apply, that comes first."""
+        outcome, demand = self.outcome.sentence, self.largest_friction_demand
+        if self.outcome == Outcome.NO_UPLIFT and demand > LARGEST_FRICTION:
+            return f"{outcome}, but slides unless the coefficient of friction is at least {demand:.3g}"
+        if self.rocking_applies:
+            return outcome
+        if self.lifts_off:
+            return (
+                "would lift off the ground: the rocking model does not apply, it needs a normal reaction of "
+                f"{self.smallest_normal_reaction:.3g} times the weight; held on the ground, it {outcome}"
+            )
+        return (
+            "would slide: the rocking model does not apply, it needs a coefficient of friction of "
+            f"{demand:.3g}; held against sliding, it {outcome}"
+        )
+
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences that say where pure rocking is in doubt; friction is not judged in the slender limit."""
+        said = []
+        kept = "rest" if self.outcome == Outcome.NO_UPLIFT else "pure rocking"
+        if self.lifts_off:
+            said.append(
+                f"the block lifts off: pure rocking would need a normal reaction {self.smallest_normal_reaction:.3g} "
+                f"of its weight at tau = {self.normal_time:.4g}, and has no meaning from where that reaches 0"
+            )
+        elif self.largest_friction_demand > PRACTICAL_FRICTION:
+            said.append(
+                f"the block may slide: {kept} needs a friction coefficient of {self.largest_friction_demand:.3g} "
+                f"at tau = {self.friction_time:.4g}, more than {PRACTICAL_FRICTION} (rough concrete)"
+            )
+        if PRACTICAL_FRICTION < self.impulse_ratio < math.inf:
+            said.append(
+                f"the block may slide at an impact: its horizontal impulse is {self.impulse_ratio:.3g} of the vertical "
+                f"one, more than a friction coefficient of {PRACTICAL_FRICTION} (rough concrete)"
+            )
+        if self.chatters:
+            said.append(
+                "impacts accumulate to rest while the pulse acts: the motion hangs on the restitution of ever smaller "
+                "ones"
+            )
+        return said
+
+
+def with_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Dataset:
+    """Add the contact to a time history of this motion.
+
+    Returns
+    -------
+    xarray.Dataset
+        With horizontal_reaction(tau): H/(m g), positive as the ground acceleration; normal_reaction(tau): N/(m g);
+        friction_demand(tau): |H|/N, infinite where N <= 0; friction_demand_over_slope(tau): |H|/(N tan(alpha)), finite
+        in the slender limit, where the first and the third are 0; all [-], at an impact after it. Attributes:
+        largest_friction_demand, largest_friction_demand_over_slope, smallest_normal_reaction, lifts_off,
+        impulse_ratio, warnings, of `Extremes`: through the motion shown, also between its samples.
+    """
+    tau, rotation, velocity = (history[name].values for name in ("tau", "rotation", "angular_velocity"))
+    found = reactions_of(motion, landings, tau, rotation, velocity)
+    most = extremes_of(motion)
+    slope = math.tan(motion.alpha)
+    demand = found.friction_demand
+    columns = (slope * found.horizontal, found.normal, slope * demand if slope > 0.0 else np.zeros_like(demand), demand)
+    return history.assign(
+        {
+            name: ("tau", column, {"long_name": meaning, "units": "1"})
+            for (name, meaning), column in zip(COLUMNS.items(), columns, strict=True)
+        }
+    ).assign_attrs(
+        {name: getattr(most, name) for name in ATTRIBUTES}
+        | {"lifts_off": int(most.lifts_off), "warnings": "; ".join(most.warnings)}
+    )
+
+
+def reactions_of(motion: Motion, landings: Floats, tau: Floats, rotation: Floats, velocity: Floats) -> Reactions:
+    """The reactions at samples of the motion, all arrays (samples,); at an impact those after it.
+
+    Parameters
+    ----------
+    motion : Motion
+    landings : float array (impacts,)
+        Times of the impacts [tau], ascending.
+    tau, rotation, velocity
+        Ascending times and `Motion.sample` there.
+    """
+    ground = motion.ground_acceleration(tau)
+    # between two impacts the block stands on one corner: the sign of a single sample beside one may be rounding
+    stretch = np.searchsorted(landings, tau, side="right")
+    leaning = np.sign(np.bincount(stretch, weights=rotation))[stretch]
+    side = np.where(leaning != 0.0, leaning, np.sign(velocity))
+    still = (rotation == 0.0) & (velocity == 0.0)
+    lifting = np.where(np.abs(ground) > 1.0, -np.sign(ground), 0.0)  # a pulse that begins with a jump
+    return reactions(rotation, velocity, ground, np.where(still, lifting, side), motion.alpha)
+
+
+def extremes_of(motion: Motion) -> Extremes:
+    """Extremes of the contact through the motion, up to its horizon."""
+    answer, landings = motion.events()
+    tau, rotation = _fine_samples(motion, answer, landings)
+    count = motion.followed(tau, rotation, answer)
+    tau, rotation = tau[:count], rotation[:count]
+    if overturned(answer):
+        tau = _until_it_passes_alpha(motion, tau, rotation)
+
+    def measured(at: Floats) -> Reactions:
+        return reactions_of(motion, landings, at, *motion.sample(at))
+
+    normal_time, lowest = _largest(lambda at: -measured(at).normal, tau)
+    time, demand = normal_time, math.inf
+    if lowest < 0.0:
+        time, demand = _largest(lambda at: measured(at).friction_demand, tau)
+    slope = math.tan(motion.alpha)
+    return Extremes(
+        largest_friction_demand=slope * demand if slope > 0.0 else 0.0,
+        largest_friction_demand_over_slope=demand,
+        friction_time=time,
+        smallest_normal_reaction=-lowest,
+        normal_time=normal_time,
+        impulse_ratio=impulse_ratio(motion.restitution, motion.alpha) if landings.size else 0.0,
+        chatters=bool(answer["chatter"]),
+        outcome=Outcome(int(answer["outcome"])),
+    )
+
+
+def _fine_samples(motion: Motion, answer: Record, landings: Floats) -> tuple[Floats, Floats]:
+    """Times and rotations: both sides of every event, and small steps wherever the block moves, until it has fallen."""
+    end, cuts = motion.pulse_end, answer["cut_phase"][: int(answer["count"]) + 1]  # where it can uplift
+    phases = np.concatenate([cuts, [motion.pulse.start, *motion.pulse.stationary]])
+    events = np.concatenate([landings, (phases - motion.pulse.start) / motion.frequency_ratio, [end]])
+    tau = np.concatenate([np.linspace(0.0, motion.horizon, 400), events, events * (1 - BESIDE), events * (1 + BESIDE)])
+    tau = np.unique(np.clip(tau, 0.0, motion.horizon))
+    while True:
+        rotation, velocity = motion.sample(tau)
+        beyond = np.flatnonzero(np.abs(rotation) > motion.farthest)
+        if overturned(answer) and beyond.size:
+            last = int(beyond[0]) + 1
+            tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
+        moves = (rotation != 0.0) | (velocity != 0.0)
+        step = np.diff(tau)
+        allowed = np.where(tau[:-1] < end, FINE / max(1.0, motion.frequency_ratio), FINE)
+        wide = (moves[1:] | moves[:-1]) & (step > np.maximum(allowed, 8 * BESIDE * tau[1:]))
+        if not wide.any():
+            return tau, rotation
+        between = tau[:-1][wide, None] + step[wide, None] * np.array([0.25, 0.5, 0.75])
+        tau = np.sort(np.concatenate([tau, between.ravel()]))
+
+
+def _until_it_passes_alpha(motion: Motion, tau: Floats, rotation: Floats) -> Floats:
+    """The times up to where |theta| passes alpha for the last time: from there the block only falls."""
+    below = int(np.flatnonzero(np.abs(rotation) <= 1.0)[-1])
+    if below == tau.size - 1:
+        return tau
+    left, right = tau[below], tau[below + 1]
+    for _ in range(6):
+        grid = np.linspace(left, right, 33)
+        k = int(np.flatnonzero(np.abs(motion.sample(grid)[0]) <= 1.0).max(initial=0))
+        left, right = grid[k], grid[min(k + 1, 32)]
+    return np.append(tau[: below + 1], left) if left > tau[below] else tau[: below + 1]
+
+
+def _largest(measure: Callable[[Floats], Floats], tau: Floats) -> tuple[float, float]:
+    """Time and value of the largest of a function, refined around its largest sample."""
+    for _ in range(4):
+        values = measure(tau)
+        k = int(values.argmax())
+        best = float(tau[k]), float(values[k])
+        tau = np.union1d(np.linspace(tau[max(k - 1, 0)], tau[min(k + 1, tau.size - 1)], 33), tau[k])
+    return best

@@ -1,0 +1,141 @@
+"""The motion of one block as a function of time: sampled wherever it is asked for, by the solver's own flights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._numba.cancellation import StopFlag, array_of, check
+from rocking._numba.compilation import Record
+from rocking.errors import in_range
+from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.history.sampling import rock_and_sample, rock_freely, sample_arcs
+from rocking.model.response import Outcome
+from rocking.solver.kernels.event_loop import IMPACT_LIMIT
+from rocking.solver.peak_response import checked_groups
+from rocking.solver.state import SINGLE, has_one_sinusoid, prepared, prepared_steps
+
+Floats = NDArray[np.float64]
+
+FREE_ROCKING = 8.0
+"""Free rocking followed by default after the pulse [tau]."""
+
+FREE_IMPACTS = 10_000
+"""Most impacts of free rocking that are followed."""
+
+FALLEN = 4.0
+"""|theta|/alpha from which an overturning block is no longer followed [-]; it lies on the ground at pi/2."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One block under one pulse, from the start of the pulse to a horizon.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+    slenderness, frequency_ratio, restitution, alpha : float
+        1/a, omega, eta [-]; alpha [rad], 0 for the slender limit; checked by `motion_of`.
+    horizon : float
+        tau at which to stop [-].
+    stop : StopFlag, optional
+        Once another thread sets it, the methods raise `StoppedError`.
+    """
+
+    pulse: AbstractPulse
+    slenderness: float
+    frequency_ratio: float
+    restitution: float
+    alpha: float
+    horizon: float
+    stop: StopFlag | None = None
+
+    @property
+    def pulse_end(self) -> float:
+        """tau at which the pulse ends [-]."""
+        return (self.pulse.end - self.pulse.start) / self.frequency_ratio
+
+    @property
+    def farthest(self) -> float:
+        """|theta|/alpha up to which a block that overturns is followed [-]."""
+        return min(FALLEN, 0.5 * np.pi / self.alpha) if self.alpha > 0.0 else FALLEN
+
+    def events(self) -> tuple[Record, Floats]:
+        """The solver's record with the answer, and the times of the impacts [tau]."""
+        nothing = np.empty(0)
+        forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
+        answer, written = self._force(nothing, nothing, nothing, forced)
+        then = self._free(answer, nothing, nothing, nothing, free)
+        landings = np.concatenate([forced[:written], free[:then]])
+        return answer, landings[landings <= self.horizon]
+
+    def sample(self, tau: Floats) -> tuple[Floats, Floats]:
+        """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero once it has fallen."""
+        rotation, velocity, nothing = np.zeros(tau.size), np.zeros(tau.size), np.empty(0)
+        answer, _ = self._force(tau, rotation, velocity, nothing)
+        self._free(answer, tau, rotation, velocity, np.empty(FREE_IMPACTS))
+        return rotation, velocity
+
+    def followed(self, tau: Floats, rotation: Floats, answer: Record) -> int:
+        """How many of the samples `rotation` at `tau` show it before it has fallen, the first beyond `farthest` too."""
+        if not overturned(answer):
+            return tau.size
+        beyond = np.flatnonzero(np.abs(rotation) > self.farthest)
+        if beyond.size:
+            return int(beyond[0]) + 1
+        shown = (rotation != 0.0) | (tau <= answer["uplift_time"])
+        return int(np.flatnonzero(shown).max(initial=0)) + 1
+
+    def ground_acceleration(self, tau: Floats) -> Floats:
+        """Acceleration of the ground over g tan(alpha), a f [-] (3.2)."""
+        return self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau) / self.slenderness
+
+    def _force(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
+        groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
+        rest = self.farthest, tau, rotation, velocity, landings, array_of(self.stop)
+        if has_one_sinusoid(self.pulse) and self.alpha == 0.0:
+            answer = prepared(self.pulse, SINGLE).copy()
+            written = sample_arcs(*groups, answer, *rest)
+        else:
+            answer = prepared(self.pulse).copy()
+            written = rock_and_sample(*groups, answer, prepared_steps(answer), *rest)
+        check(self.stop)
+        return answer, int(written)
+
+    def _free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
+        state = (*(float(answer[name]) for name in ("end_z", "end_w", "end_sign")), self.alpha)
+        steps = prepared_steps(prepared(self.pulse))
+        end = self.horizon * (1 + 1e-12)  # a step fills the samples before its end: the last one has to lie inside
+        samples = tau, rotation, velocity
+        times = self.pulse_end, end
+        written = rock_freely(
+            *state, steps, self.restitution, *times, self.farthest, *samples, landings, array_of(self.stop)
+        )
+        check(self.stop)
+        return int(written)
+
+
+def motion_of(
+    pulse: str | AbstractPulse,
+    *,
+    slenderness: float,
+    frequency_ratio: float,
+    restitution: float,
+    alpha: float | None = None,
+    duration: float | None = None,
+    stop: StopFlag | None = None,
+) -> Motion:
+    """The motion that answers a question; arguments and errors as for `history.time_history`."""
+    if duration is not None:
+        in_range("duration", duration, 0.0, np.inf, closed="neither")
+    made = as_pulse(pulse)
+    s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
+    horizon = (made.end - made.start) / omega + FREE_ROCKING if duration is None else float(duration)
+    return Motion(made, s, omega, eta, angle, horizon, stop)
+
+
+def overturned(answer: Record) -> bool:
+    """Whether the block of this record falls in the end."""
+    return bool(answer["outcome"] >= Outcome.OVERTURNED_DIRECTLY)

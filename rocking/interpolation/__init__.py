@@ -1,0 +1,1 @@
+"""Interpolation of cubes between nodes and between levels."""

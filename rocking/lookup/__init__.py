@@ -1,0 +1,1 @@
+"""Interpolated responses from cubes, each with an error bound."""

@@ -1,0 +1,132 @@
+"""One spectrum cube in memory, ready to be interpolated; from a file or from the address of one."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+import urllib.request
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from rocking._numba.compilation import plain
+from rocking.datasets.cube import AXES, decode_spectrum, read_content
+from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.interpolation.stencils import Mesh
+
+ERRORS = ("interpolation_error", "restitution_error", "alpha_error")
+"""Measured errors of interpolation."""
+
+FIELDS = ("peak_rotation", "outcome", "impacts", "stencil", "restitution_levels", "alpha_levels", *ERRORS)
+"""Variables of a cube that interpolation needs."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Level:
+    """The cube of one restitution; the fields (angles, n, m) as in `cube`.
+
+    Attributes
+    ----------
+    pulse : str
+        Name of the pulse.
+    restitution, next_restitution : float
+        eta [-] of this cube and of the next one made with it; nan if there is none.
+    alpha, slenderness, frequency_ratio : float arrays
+        The axes [rad], [-], [-].
+    mesh : Mesh
+        Of the latter two.
+    sha256 : str
+        Of the file: the version of the data.
+    """
+
+    pulse: str
+    restitution: float
+    next_restitution: float
+    alpha: Array
+    slenderness: Array
+    frequency_ratio: Array
+    mesh: Mesh
+    sha256: str
+    peak_rotation: Array
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    stencil: NDArray[np.int8]
+    restitution_levels: NDArray[np.int8]
+    alpha_levels: NDArray[np.int8]
+    interpolation_error: NDArray[np.float32]
+    restitution_error: NDArray[np.float32]
+    alpha_error: NDArray[np.float32]
+
+    def fits(self, other: Level) -> bool:
+        """Whether the two stand on the same axes."""
+        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)
+
+
+def open_level(path: Path | str) -> Level:
+    """Read a spectrum cube into memory.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, damaged, or not a spectrum cube.
+    """
+    return decode_level(read_content(path), path)
+
+
+def decode_level(content: bytes, path: Path | str) -> Level:
+    """The same from the bytes of such a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        If they are damaged, or not those of a spectrum cube.
+    """
+    cube = decode_spectrum(content, path)
+    try:
+        return level_of(cube, hashlib.sha256(content).hexdigest())
+    except InvalidArgumentError as error:
+        raise DatasetError(f"{path}: {error}; build it again") from error
+
+
+def level_of(cube: xr.Dataset, sha256: str = "") -> Level:
+    """A spectrum cube in memory; `sha256` of its file, if there is one.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an axis has fewer than four nodes.
+    """
+    axes: dict[str, Any] = {name: cube[name].values for name in AXES}
+    fields: dict[str, Any] = {name: plain(cube[name].values) for name in FIELDS}
+    return Level(
+        pulse=str(cube["pulse"].attrs["pulse_name"]),
+        restitution=float(cube["restitution"]),
+        next_restitution=float(cube.attrs.get("next_restitution", np.nan)),
+        mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
+        sha256=sha256,
+        **axes,
+        **fields,
+    )
+
+
+def fetch_level(address: str) -> Level:
+    """The same from an http or https address.
+
+    Raises
+    ------
+    DatasetError
+        As `open_level`; also if the address does not answer.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "cube.nc"
+        try:
+            urllib.request.urlretrieve(address, path)
+        except OSError as error:
+            raise DatasetError(f"{address}: cannot be fetched, {error}") from error
+        return open_level(path)

@@ -1,0 +1,1 @@
+"""Block, reactions, energy margin, outcome and response types."""

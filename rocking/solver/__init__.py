@@ -1,0 +1,1 @@
+"""Event-by-event solution of the equation of motion."""

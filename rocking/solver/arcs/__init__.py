@@ -1,0 +1,1 @@
+"""Exact arcs of the slender block under sums of sinusoids."""

@@ -1,0 +1,127 @@
+"""One flight of the slender block, from the ground back to the ground: its state at any time, its zeros."""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import Record, Vector, kernel
+from rocking.solver.arcs.arc import RADIUS, acceleration, anchor, arc, expand, jerk, pull, rotation, velocity
+from rocking.solver.state import terms_of
+
+
+@kernel
+def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
+    """Set the cosines and sines of the angles at `phase`."""
+    for k in range(terms_of(flight)):
+        angle = flight.multiple[k] * phase + flight.shift[k]
+        cosine[k] = math.cos(angle)
+        sine[k] = math.sin(angle)
+
+
+@kernel
+def start_arc(flight: Record) -> None:
+    """Prepare the flight that begins at `phase`, where `cosine0` and `sine0` are set already."""
+    for k in range(terms_of(flight)):
+        flight.force[k] = flight.sign * flight.a * flight.amplitude[k]
+    flight.q0 = 0.0 if flight.lifted == 1 else pull(flight, flight.cosine0)  # exactly, at uplift through |a f| = 1
+    anchor(flight)
+
+
+@kernel
+def state(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, float]:
+    """(z, w) a time h after the start, where the angles have that cosine and sine."""
+    if flight.fastest * h <= RADIUS:  # the arc would cancel
+        expand(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
+        return rotation(flight, h), velocity(flight, h)
+    return arc(flight, h, cosine, sine)
+
+
+@kernel
+def nearby_zero(flight: Record, order: int) -> float:
+    """Where the local series of z (order 0), w (1) or z'' (2) vanishes, by its reversion to third order."""
+    c = flight.coef
+    if order == 0:
+        f0, f1, f2, f3 = c[0], c[1], c[2], c[3]
+    elif order == 1:
+        f0, f1, f2, f3 = c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4]
+    else:
+        f0, f1, f2, f3 = 2.0 * c[2], 6.0 * c[3], 12.0 * c[4], 20.0 * c[5]
+    inverse = 1.0 / f1
+    t, b2, b3 = -f0 * inverse, f2 * inverse, f3 * inverse
+    return t * (1.0 - t * (b2 - t * (2.0 * b2 * b2 - b3)))
+
+
+@kernel
+def locate(flight: Record, order: int, falling: bool, lo: float, hi: float, guess: float) -> tuple[float, float, float]:
+    """The one zero between times `lo` and `hi` of z (order 0), w (1) or z'' (2), which falls or rises through it.
+
+    Exact arc, then Halley's method on the local series; the bracket shrinks at every arc, so that it cannot fail.
+    Returns the time after the flight's start, and z and w there.
+    """
+    h = guess
+    reach = RADIUS / flight.fastest
+    for attempt in range(200):
+        if h <= reach:  # the series at the start holds, where q is known without cancellation
+            expand(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
+            centre, delta = 0.0, h
+            z, w, bend = rotation(flight, h), velocity(flight, h), acceleration(flight, h)
+        else:
+            turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
+            z, w = arc(flight, h, flight.cosine1, flight.sine1)
+            expand(flight, z, w, pull(flight, flight.cosine1), flight.cosine1, flight.sine1)
+            centre, delta = h, nearby_zero(flight, order)
+            bend = 2.0 * flight.coef[2]
+        value = z if order == 0 else (w if order == 1 else bend)
+        if (value > 0.0) == falling:
+            lo = h
+        else:
+            hi = h
+        for _ in range(6):
+            if not abs(delta) <= reach:
+                break
+            near_z, near_w, bend = rotation(flight, delta), velocity(flight, delta), acceleration(flight, delta)
+            third = jerk(flight, delta)
+            if order == 0:
+                value, slope, curve = near_z, near_w, bend
+            elif order == 1:
+                value, slope, curve = near_w, bend, third
+            else:
+                value, slope, curve = bend, third, 0.0  # only the sign of w is used there
+            step = -value / slope
+            bow = 0.5 * curve / slope * step
+            step -= bow * step
+            if abs(step) <= 2e-5 * min(reach, centre + delta) and abs(step) * bow * bow <= 1e-16 * (centre + delta):
+                # the error left behind goes with the cube of the step, times the square of bow/step near a double zero:
+                # rounding
+                root = centre + delta + step
+                if centre > 0.0 and root <= reach:
+                    delta += step
+                    break  # from afar the first steps of a flight drown in rounding
+                if lo - 4e-16 * hi <= root <= hi + 4e-16 * hi:
+                    rotated = near_z + step * (near_w + step * (0.5 * bend + step * third / 6.0))
+                    return root, rotated, near_w + step * (bend + 0.5 * step * third)
+                break
+            delta += step
+        if hi - lo <= 4e-16 * hi:
+            return h, z, w
+        follow = centre + delta
+        # where the growing exponential rules, local steps have length 1: on long arcs they alternate with halving
+        local = lo < follow < hi and abs(delta) <= 8.0 * reach and (attempt < 8 or attempt % 2 == 0)
+        h = follow if local else 0.5 * (lo + hi)
+    return h, z, w
+
+
+@kernel
+def hermite_root(f0: float, d0: float, f1: float, d1: float, length: float) -> float:
+    """A first guess of where the cubic through two values of opposite sign with their slopes vanishes, in [0, length].
+
+    One Newton step from the secant.
+    """
+    d0 *= length
+    d1 *= length
+    c2 = 3.0 * (f1 - f0) - 2.0 * d0 - d1
+    c3 = 2.0 * (f0 - f1) + d0 + d1
+    x = f0 / (f0 - f1)
+    value = f0 + x * (d0 + x * (c2 + x * c3))
+    better = x - value / (d0 + x * (2.0 * c2 + x * 3.0 * c3))
+    return (better if 0.0 < better < 1.0 else x) * length

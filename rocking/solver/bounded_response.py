@@ -1,0 +1,123 @@
+"""A response with an error bound and a source, and how the solver's own bound is found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking.model.response import Outcome
+from rocking.solver.kernels.event_loop import IMPACT_LIMIT
+from rocking.solver.peak_response import peak_response
+
+SOLVER_ERROR = 1e-12
+"""Relative error of a well-conditioned answer of the solver, against multi-precision integration [-]."""
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class BoundedResponse:
+    """Responses with a bound and a source; every field is an array of the broadcast shape of the question.
+
+    Attributes
+    ----------
+    peak_rotation : float array [-]
+        max |theta|/alpha; 0 without uplift, nan where overturned.
+    outcome : int8 array
+        Code of `rocking.Outcome`.
+    impacts : int32 array
+        Impacts before the pulse ends, and the one after it upon which the block overturns; -1 where a cube answers
+        whose nodes around the point differ in them.
+    exceeded_alpha : bool array
+        |theta| passed alpha at some time.
+    error_bound : float array [-]
+        Bound of the absolute error of `peak_rotation`; nan where overturned, inf where the fate itself changes
+        within the rounding of the question.
+    source : str array
+        "cube" or "solver".
+    """
+
+    peak_rotation: Array
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    exceeded_alpha: Flags
+    error_bound: Array
+    source: NDArray[np.str_]
+
+    @property
+    def overturned(self) -> Flags:
+        """Final fate: True where the block overturns."""
+        return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
+
+    @classmethod
+    def empty(cls, shape: tuple[int, ...]) -> BoundedResponse:
+        """Answers to be filled in: no uplift anywhere, which is exact."""
+        return cls(
+            np.zeros(shape),
+            np.full(shape, Outcome.NO_UPLIFT, dtype=np.int8),
+            np.zeros(shape, dtype=np.int32),
+            np.zeros(shape, dtype=np.bool_),
+            np.zeros(shape),
+            np.full(shape, "solver"),
+        )
+
+    def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
+        """The same answers in another shape."""
+        return BoundedResponse(*(getattr(self, name).reshape(shape) for name in self.__dataclass_fields__))
+
+    def put(self, where: Flags | NDArray[np.intp], part: BoundedResponse) -> None:
+        """Fill in the answers of a part of the points."""
+        for name in self.__dataclass_fields__:
+            getattr(self, name)[where] = getattr(part, name)
+
+
+def solve_with_bound(
+    pulse: str,
+    *,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike,
+    restitution: ArrayLike,
+    alpha: ArrayLike | None,
+    stop: StopFlag | None = None,
+) -> BoundedResponse:
+    """Ask the solver, and ask it again beside the question to learn how well the question determines the answer.
+
+    The bound is `SOLVER_ERROR` of the peak, plus three times the change of the peak when the three groups change by a
+    share `SOLVER_ERROR` together: rounding errors act like such changes, and beside a fate boundary they are amplified.
+    It is infinite where a block was not followed to the end, as it had struck `rock.IMPACT_LIMIT` times.
+
+    Parameters
+    ----------
+    pulse : str
+        Name of the pulse.
+    slenderness, frequency_ratio, restitution : array_like, broadcasting
+        1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
+    alpha : array_like or None
+        Slenderness angle [rad]; None or 0 for the slender limit.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    given = (slenderness, frequency_ratio, restitution, 0.0 if alpha is None else alpha)
+    s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))
+    shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
+    groups = {"slenderness": s * shift, "frequency_ratio": w * shift, "restitution": eta * shift}
+    found = peak_response(pulse, **groups, alpha=angle, stop=stop)
+    peak, outcome = found.peak_rotation[0], found.outcome[0]
+    with np.errstate(invalid="ignore"):
+        change = np.abs(found.peak_rotation[1] - peak)
+    bound = np.asarray(SOLVER_ERROR * peak + 3.0 * change)
+    bound[found.overturned.any(axis=0) | (found.impacts.max(axis=0) >= IMPACT_LIMIT)] = np.inf
+    bound[found.overturned[0]] = np.nan
+    bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
+    return BoundedResponse(
+        peak, outcome, found.impacts[0], found.exceeded_alpha[0], bound, np.full(peak.shape, "solver")
+    )

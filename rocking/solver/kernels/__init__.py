@@ -1,0 +1,1 @@
+"""Compiled event loop: intervals of the pulse, impacts, chatter, final outcome."""

@@ -1,0 +1,115 @@
+"""Cuts the pulse where events can change their nature, so that none can be missed.
+
+The cuts are the phases at which |a f| = 1 and at which f' = 0. Between two of them q = 1 + F keeps its sign and so does
+q'. By the maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with z >= 0 at the left end:
+
+- q >= 0: z has no zero inside unless it is negative at the right end, and then exactly one;
+- q <= 0: z is convex where it is positive: no zero unless w < 0 at the left end, and then at most two with one minimum
+  between; no maximum of z inside;
+- q' >= 0 or q' <= 0 settle the zeros of w, that is the peaks, in the same way.
+
+Single sinusoids have closed forms for the cuts and for the cosine and sine there; other pulses use a bracketed Newton.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import Record, kernel
+from rocking.excitation.shapes import MAX_POLYNOMIAL
+from rocking.solver.state import terms_of
+
+
+@kernel
+def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
+    """f and df/dphi of the pulse."""
+    f, slope = 0.0, 0.0
+    if flight.spread > 0.0:
+        for i in range(MAX_POLYNOMIAL):
+            k = MAX_POLYNOMIAL - 1 - i
+            slope = slope * phi + f
+            f = f * phi + flight.polynomial[k]
+        bell = math.exp(-phi * phi / flight.spread)
+        return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
+    for k in range(terms_of(flight)):
+        angle = flight.multiple[k] * phi + flight.shift[k]
+        f += flight.amplitude[k] * math.cos(angle)
+        slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
+    return f, slope
+
+
+@kernel
+def crossing(level: float, left: float, right: float, rising: bool, flight: Record) -> float:
+    """The phase at which f, monotone on [left, right] with a crossing inside, equals `level`: bracketed Newton."""
+    phi = 0.5 * (left + right)
+    for _ in range(100):
+        f, slope = shape_and_slope(phi, flight)
+        if f == level:
+            return phi
+        if (f > level) == rising:
+            right = phi
+        else:
+            left = phi
+        follow = phi - (f - level) / slope if slope != 0.0 else left
+        if not left < follow < right:
+            follow = 0.5 * (left + right)
+        if abs(follow - phi) <= 4.5e-16 * abs(phi):  # two neighbouring doubles could alternate for ever
+            return follow
+        phi = follow
+    return phi
+
+
+@kernel
+def place(flight: Record, index: int, phase: float, level: float, rise: float) -> None:
+    """Set a cut and what lies to its right."""
+    flight.cut_phase[index] = phase
+    flight.cut_level[index] = level
+    flight.cut_rise[index] = rise
+
+
+@kernel
+def cut(slenderness: float, flight: Record) -> int:
+    """Fill `flight.cut_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
+    terms = terms_of(flight)
+    single = terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.spread == 0.0
+    # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
+    root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
+    cap = math.atan2(root, slenderness) if single else 0.0
+    count = 0
+    for piece in range(flight.pieces):
+        left, right = flight.end_phase[piece], flight.end_phase[piece + 1]
+        f_left, f_right = flight.end_shape[piece], flight.end_shape[piece + 1]
+        rise = -1.0 if f_left > f_right else 1.0
+        level = 1.0 if f_left > slenderness else (-1.0 if f_left < -slenderness else 0.0)
+        place(flight, count, left, level, rise)
+        for k in range(terms):
+            flight.cut_cosine[count, k], flight.cut_sine[count, k] = (
+                flight.end_cosine[piece, k],
+                flight.end_sine[piece, k],
+            )
+        count += 1
+        for turn in (-rise, rise):
+            target = turn * slenderness
+            if not min(f_left, f_right) < target < max(f_left, f_right):
+                continue
+            level += rise
+            if single:
+                upright = flight.upright[piece]  # the cosine falls from +1 here, or rises from -1
+                value = target * flight.amplitude[0]
+                turned = cap if value * upright > 0.0 else math.pi - cap
+                place(flight, count, flight.half_turn[piece] + turned, level, rise)
+                flight.cut_cosine[count, 0], flight.cut_sine[count, 0] = value, upright * root
+            else:
+                phi = crossing(target, left, right, rise > 0.0, flight)
+                place(flight, count, phi, level, rise)
+                for k in range(terms):
+                    angle = flight.multiple[k] * phi + flight.shift[k]
+                    flight.cut_cosine[count, k], flight.cut_sine[count, k] = math.cos(angle), math.sin(angle)
+            count += 1
+    place(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
+    for k in range(terms):
+        flight.cut_cosine[count, k], flight.cut_sine[count, k] = (
+            flight.end_cosine[flight.pieces, k],
+            flight.end_sine[flight.pieces, k],
+        )
+    return count

@@ -1,0 +1,257 @@
+"""The records on which the kernels work: a pulse with the state of a cell in hand, and the Taylor steps of several.
+
+Plain memory of fixed layout, one for all pulses: kernels read and write it without reference counting, and are compiled
+once. Records are prepared per pulse; each thread works on copies.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import BYTES, LANES
+from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
+from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+
+COEFFICIENTS = 17
+"""Length of the series of the slender arcs: degree 16 in z."""
+
+ORDER = 22
+"""Largest degree of the Taylor steps."""
+
+FINEST = 1e-17
+"""Smallest share of the motion during a Taylor step that its last terms may have: far below rounding [-]."""
+
+UNDERWAY, IMPACT, PULSE_END, FALLEN = -1, 0, 1, 2
+"""What ends a flight, if it has; it has fallen when nothing can bring it back, known before the pulse ends."""
+
+
+def _layout(most_terms: int) -> np.dtype[np.void]:
+    per_term = (most_terms,)
+    ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
+    return np.dtype(
+        [
+            # the pulse
+            ("terms", np.int64),  # sinusoids c cos(w phi + d) of it; wavelets have one of amplitude 0
+            ("amplitude", np.float64, per_term),  # c
+            ("multiple", np.float64, per_term),  # w
+            ("shift", np.float64, per_term),  # d
+            ("spread", np.float64),  # wavelet: f = (sum polynomial[k] phi^k) exp(-phi^2/spread); 0: sinusoids
+            ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
+            ("pieces", np.int64),  # monotone pieces of f
+            ("end_phase", np.float64, ends),  # their ends, with f and the angles' cosines and sines there
+            ("end_shape", np.float64, ends),
+            ("end_cosine", np.float64, (*ends, most_terms)),
+            ("end_sine", np.float64, (*ends, most_terms)),
+            ("half_turn", np.float64, ends),  # single sinusoid: phase at which the piece's half-turn of it starts,
+            ("upright", np.float64, ends),  # and its cosine there, +1 or -1
+            # the cell
+            ("a", np.float64),  # 1/slenderness
+            ("omega", np.float64),  # frequency ratio
+            ("rate", np.float64, per_term),  # Omega = omega w
+            ("fastest", np.float64),  # largest of 1 and the rates
+            ("alpha", np.float64),  # slenderness angle [rad], 0: slender limit
+            ("cut_phase", np.float64, cuts),  # see `cuts`
+            ("cut_level", np.float64, cuts),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
+            ("cut_rise", np.float64, cuts),  # sign of f' there
+            ("cut_cosine", np.float64, (*cuts, most_terms)),
+            ("cut_sine", np.float64, (*cuts, most_terms)),
+            # where `rock` stands
+            ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
+            ("cell", np.int64),  # its place among the questions, -1: none
+            ("last", np.int64),  # the last of the questions about it that differ in eta alone
+            ("count", np.int64),  # intervals between cuts
+            ("interval", np.int64),  # the one that holds the start of the next flight
+            ("at_rest", np.int64),  # whether that starts with an uplift
+            ("uplifts", np.int64),  # uplifts from rest so far
+            ("before_uplift", np.int64),  # impacts before the last of them
+            ("next_phase", np.float64),  # its start
+            ("next_w", np.float64),
+            ("next_sign", np.float64),
+            # the flight
+            ("sign", np.float64),  # sgn(theta)
+            ("force", np.float64, per_term),  # sgn(theta) a c
+            ("phase", np.float64),  # phi at its start
+            ("w0", np.float64),  # velocity there
+            ("length", np.float64),  # its duration [tau]
+            ("lifted", np.int64),  # whether it starts with an uplift through |a f| = 1, where q is exactly 0
+            ("q0", np.float64),  # pull there
+            ("share", np.float64, per_term),  # coefficients of its arc, see `slender_arcs.anchor`
+            ("x0", np.float64),
+            ("y0", np.float64),
+            ("below", np.float64),
+            ("slope", np.float64),
+            ("cosine0", np.float64, per_term),  # of the angles there
+            ("sine0", np.float64, per_term),
+            ("cosine1", np.float64, per_term),  # at the point last turned to
+            ("sine1", np.float64, per_term),
+            ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
+            # its Taylor steps
+            ("until", np.int64),  # cut at which they must end next
+            ("pushed", np.int64),  # whether the ground pushes all the way there
+            ("pull_phase", np.float64),  # else, where it begins to pull
+            ("elapsed", np.float64),  # time since the flight's start
+            ("largest", np.float64),  # largest z so far
+            # how the first flight ended, which does not depend on eta
+            ("known", np.int64),  # whether it has
+            ("known_end", np.int64),
+            ("known_w", np.float64),
+            ("known_z", np.float64),
+            ("known_top", np.float64),
+            ("known_length", np.float64),
+            ("known_phase", np.float64),
+            ("known_sign", np.float64),
+            ("known_interval", np.int64),
+            # the answer, as in `response.Response`
+            ("outcome", np.int64),
+            ("peak", np.float64),
+            ("mode", np.int64),
+            ("impacts", np.int64),
+            ("chatter", np.int64),
+            ("uplift_time", np.float64),
+            ("first_time", np.float64),
+            ("first_velocity", np.float64),
+            ("end_z", np.float64),  # state at the end of the pulse, in the mirror image of the flight,
+            ("end_w", np.float64),
+            ("end_sign", np.float64),  # and sgn(theta), 0 at rest
+        ],
+        align=True,
+    )
+
+
+FLIGHT = _layout(MAX_SINUSOIDS)
+"""Fields of the record of a pulse and a cell."""
+
+SINGLE = _layout(1)
+"""The same for a pulse of one sinusoid: loops over the sinusoids are gone when it is compiled."""
+
+
+@kernel
+def terms_of(flight: Record) -> int:
+    """Number of sinusoids of the pulse; known when compiled for a record `SINGLE`."""
+    return flight.terms if len(flight.force) > 1 else 1
+
+
+def _steps_layout() -> np.dtype[np.void]:
+    per_term, lanes, series = (MAX_SINUSOIDS,), (LANES,), (ORDER + 1, LANES)
+    return np.dtype(
+        [
+            ("z", np.float64, series),  # coefficients of z,
+            ("rate", np.float64, series),  # of dz/dtau,
+            ("f", np.float64, series),  # of F = sgn(theta) a f,
+            ("gauss", np.float64, series),  # of the wavelet's Gaussian,
+            ("s", np.float64, series),  # of sin(alpha (1 - z))/sin(alpha)
+            ("c", np.float64, series),  # and of cos(alpha (1 - z))/cos(alpha)
+            # where the step begins
+            ("phase", np.float64, lanes),
+            ("z0", np.float64, lanes),
+            ("w0", np.float64, lanes),
+            ("lifted", np.float64, lanes),  # 1 where it begins with an uplift through |a f| = 1, else 0
+            ("limit", np.float64, lanes),  # longest step [tau]
+            # the block and the strength of the pulse
+            ("strength", np.float64, lanes),  # sgn(theta) a
+            ("omega", np.float64, lanes),
+            ("slender", np.float64, lanes),  # 1 for the slender limit, else 0
+            ("alpha", np.float64, lanes),  # any number in the slender limit
+            ("sine_alpha", np.float64, lanes),
+            ("cosine_alpha", np.float64, lanes),
+            ("pull", np.float64, lanes),  # sin(alpha)/alpha
+            ("s_rate", np.float64, lanes),  # -alpha/tan(alpha)
+            ("c_rate", np.float64, lanes),  # alpha tan(alpha)
+            # the step
+            ("h", np.float64, lanes),  # its length [tau]
+            ("z1", np.float64, lanes),  # z at its end
+            ("w1", np.float64, lanes),  # w there
+            ("bend", np.float64, lanes),  # bound of |w''| on it
+            # the pulse, as in `FLIGHT`
+            ("terms", np.int64),
+            ("amplitude", np.float64, per_term),
+            ("multiple", np.float64, per_term),
+            ("shift", np.float64, per_term),
+            ("spread", np.float64),
+            ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
+            # what is asked
+            ("order", np.int64),  # degree of the steps, 6 to `ORDER`
+            ("log_precision", np.float64),  # log2 of the share of the motion that the last terms may have
+        ]
+    )
+
+
+STEPS = _steps_layout()
+"""Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
+
+ANSWER = np.dtype(
+    [
+        ("outcome", np.int8),
+        ("chatter", np.bool_),
+        ("impacts", np.int32),
+        ("mode", np.int32),
+        ("peak", np.float64),
+        ("uplift_time", np.float64),
+        ("first_time", np.float64),
+        ("first_velocity", np.float64),
+        ("end_z", np.float64),  # state at the end of the pulse
+        ("end_w", np.float64),
+    ],
+    align=True,
+)
+"""What is answered about a cell, as in `response.Response`."""
+
+
+def has_one_sinusoid(pulse: AbstractPulse) -> bool:
+    """Whether a record `SINGLE` holds the pulse."""
+    return isinstance(pulse, SinusoidalPulse) and len(pulse.terms) == 1
+
+
+@lru_cache(maxsize=256)
+def prepared(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT) -> Record:
+    """The record of a pulse, `FLIGHT` or `SINGLE`, to be copied before use."""
+    wavelet = isinstance(pulse, WaveletPulse)
+    terms = ((0.0, 1.0, 0.0),) if wavelet else pulse.terms if isinstance(pulse, SinusoidalPulse) else ()
+    count = len(terms)
+    record: Record = np.zeros(1, fields)[0]
+    amplitude, multiple, shift = (np.array(column) for column in zip(*terms, strict=True))
+    record["terms"] = count
+    record["amplitude"][:count], record["multiple"][:count], record["shift"][:count] = amplitude, multiple, shift
+    if isinstance(pulse, WaveletPulse):
+        record["spread"] = pulse.spread
+        record["polynomial"][: len(pulse.polynomial)] = pulse.polynomial
+    phases = np.array([pulse.start, *pulse.stationary, pulse.end])
+    ends = len(phases)
+    record["pieces"] = ends - 1
+    record["end_phase"][:ends] = phases
+    record["end_shape"][:ends] = pulse.shape(phases)
+    angles = multiple * phases[:, None] + shift
+    record["end_cosine"][:ends, :count] = np.cos(angles)
+    record["end_sine"][:ends, :count] = np.sin(angles)
+    half_turn = np.floor((0.5 * (angles[:-1, 0] + angles[1:, 0])) / np.pi)
+    record["half_turn"][: ends - 1] = half_turn * np.pi - shift[0]
+    record["upright"][: ends - 1] = 1.0 - 2.0 * (half_turn % 2.0)
+    return record
+
+
+def prepared_steps(flight: Record, precision: float = FINEST) -> Record:
+    """Taylor steps for the pulse of a record of `prepared`.
+
+    Parameters
+    ----------
+    flight
+        The record.
+    precision : float
+        Share of the motion during a step that the last terms of its series may have [-], from `FINEST` to 1e-4. The
+        degree follows from it: 1 - log(precision)/2 makes the steps longest for the work, Jorba and Zou (2005).
+    """
+    memory = np.zeros(STEPS.itemsize + BYTES, np.uint8)
+    start = -memory.ctypes.data % BYTES
+    steps: Record = memory[start : start + STEPS.itemsize].view(STEPS)[0]
+    for name in ("terms", "amplitude", "multiple", "shift", "spread", "polynomial"):
+        steps[name] = flight[name]
+    steps["order"] = min(ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
+    steps["log_precision"] = math.log2(precision)
+    # idle lanes hold a block at rest, so that they meet no infinities
+    for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "pull", "omega"):
+        steps[name] = 1.0
+    return steps

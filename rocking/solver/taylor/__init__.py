@@ -1,0 +1,1 @@
+"""Taylor steps for wavelets and for the rigid block."""

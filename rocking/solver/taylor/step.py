@@ -1,0 +1,156 @@
+"""One Taylor step of `LANES` rocking blocks side by side, slender or rigid, under any pulse.
+
+In the mirror image of a flight, z = |theta|/alpha and w = dz/dtau, (2.2) reads
+
+    z'' = -(sin(alpha)/alpha) (S + F C),  S = sin(alpha (1 - z))/sin(alpha),  C = cos(alpha (1 - z))/cos(alpha)
+
+with F = sgn(theta) a f. S and C follow from S' = -(alpha/tan(alpha)) C z' and C' = alpha tan(alpha) S z'; at z = 0 both
+are 1, so that uplift through F = -1 starts with no acceleration, exactly. As alpha goes to 0 this tends to (3.1), with
+S = 1 - z and C = 1, without a special form.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import LANES, everywhere, larger, load, magnitude, rough_exp2, rough_log2, smaller, store
+from rocking._numba.simd_sines import sine_and_cosine
+from rocking.excitation.shapes import MAX_POLYNOMIAL
+
+
+@kernel
+def set_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
+    """Put a block of slenderness angle `alpha` [rad] (0: slender) with frequency ratio `omega` into a lane."""
+    steps.omega[lane] = omega
+    steps.slender[lane], steps.alpha[lane] = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
+    # by the same sine as S and C, so that these are exactly 1 at z = 0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0))
+    store(steps.sine_alpha, 0, sines)
+    store(steps.cosine_alpha, 0, cosines)
+    if alpha == 0.0:
+        steps.pull[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
+        return
+    sine, cosine = steps.sine_alpha[lane], steps.cosine_alpha[lane]
+    steps.pull[lane], steps.s_rate[lane], steps.c_rate[lane] = (
+        sine / alpha,
+        -alpha * cosine / sine,
+        alpha * sine / cosine,
+    )
+
+
+@kernel
+def expand_sinusoids(steps: Record) -> None:
+    """Fill `f` with the coefficients of F in powers of tau about `phase`, for a sum of sinusoids."""
+    f, phase, omega, strength = steps.f, load(steps.phase, 0), load(steps.omega, 0), load(steps.strength, 0)
+    for k in range(steps.terms):
+        sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
+        rate = omega * steps.multiple[k]
+        scale, bend = strength * steps.amplitude[k], rate * rate
+        even, odd = scale * cosine, scale * rate * sine * -1.0
+        for n in range(0, steps.order + 1, 2):
+            store(f, n, even if k == 0 else load(f, n) + even)
+            even = even * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+        for n in range(1, steps.order + 1, 2):
+            store(f, n, odd if k == 0 else load(f, n) + odd)
+            odd = odd * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+
+
+@kernel
+def expand_wavelet(steps: Record) -> None:
+    """The same for f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
+    f, gauss, p, order = steps.f, steps.gauss, steps.polynomial, steps.order
+    for lane in range(LANES):
+        gauss[0, lane] = math.exp(-steps.phase[lane] * steps.phase[lane] / steps.spread)
+    phase, omega = load(steps.phase, 0), load(steps.omega, 0)
+    # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
+    fall = -2.0 / steps.spread
+    before, here = everywhere(0.0), load(gauss, 0)
+    for n in range(order + 1):
+        store(gauss, n, here)
+        before, here = here, (phase * here + before) * (fall / (n + 1.0))
+    constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
+    linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
+    square = p[2] + 3.0 * p[3] * phase
+    power = load(steps.strength, 0)
+    for n in range(order + 1):
+        total = constant * load(gauss, n)
+        if n > 0:
+            total += linear * load(gauss, n - 1)
+        if n > 1:
+            total += square * load(gauss, n - 2)
+        if n > 2:
+            total += p[MAX_POLYNOMIAL - 1] * load(gauss, n - 3)
+        store(f, n, power * total)
+        power = power * omega
+
+
+@kernel
+def expand_motion(steps: Record) -> None:
+    """Fill `z` and `rate` from z0, w0 and `f`."""
+    z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
+    lifted, slender, z0, w0 = load(steps.lifted, 0), load(steps.slender, 0), load(steps.z0, 0), load(steps.w0, 0)
+    store(f, 0, (1.0 - lifted) * load(f, 0) - lifted)  # at uplift |a f| = 1, exactly
+    store(z, 0, z0)
+    store(z, 1, w0)
+    store(rate, 0, w0)
+    rest = 1.0 - z0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
+    store(s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
+    store(c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
+    pull, s_rate, c_rate = load(steps.pull, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    for n in range(steps.order - 1):
+        pushed, sine, cosine = load(s, n), everywhere(0.0), everywhere(0.0)
+        for j in range(n + 1):
+            at_j, back = load(rate, j), load(c, n - j)
+            pushed += load(f, j) * back
+            sine += at_j * back
+            cosine += at_j * load(s, n - j)
+        reciprocal = 1.0 / (n + 1.0)
+        bent = pull * pushed * -reciprocal  # (2.2)
+        store(rate, n + 1, bent)
+        store(z, n + 2, bent * (1.0 / (n + 2.0)))
+        store(s, n + 1, s_rate * sine * reciprocal)
+        store(c, n + 1, c_rate * cosine * reciprocal)
+
+
+@kernel
+def choose_length(steps: Record) -> None:
+    """Set `h`, the largest step on which the last two terms keep to the precision, or `limit` if that is shorter.
+
+    Relative to the largest of the first four terms at the end of the step; all in rough binary logarithms.
+    """
+    z, order = steps.z, steps.order
+    shortest = everywhere(900.0)
+    for k in range(order - 1, order + 1):
+        last = rough_log2(magnitude(load(z, k)))
+        longest = everywhere(-900.0)
+        for j in range(4):
+            gap = rough_log2(magnitude(load(z, j))) - last + steps.log_precision
+            longest = larger(longest, gap * (1.0 / (k - j)))
+        shortest = smaller(shortest, longest)
+    store(steps.h, 0, smaller(rough_exp2(shortest), load(steps.limit, 0)))
+
+
+@kernel
+def take_step(steps: Record) -> None:
+    """Expand about z0, w0 at `phase`; set the step's length, z and w at its end, and the bound of |w''| on it."""
+    if steps.spread > 0.0:
+        expand_wavelet(steps)
+    else:
+        expand_sinusoids(steps)
+    expand_motion(steps)
+    choose_length(steps)
+    z, rate, order = steps.z, steps.rate, steps.order
+    h = load(steps.h, 0)
+    rotation, velocity = load(z, order), load(rate, order - 1)
+    bend = magnitude(velocity) * ((order - 1.0) * (order - 2.0))
+    for i in range(1, order):
+        n = order - 1 - i
+        rotation = rotation * h + load(z, n + 1)
+        velocity = velocity * h + load(rate, n)
+        if n > 1:
+            bend = bend * h + magnitude(load(rate, n)) * (n * (n - 1.0))
+    store(steps.z1, 0, rotation * h + load(z, 0))
+    store(steps.w1, 0, velocity)
+    store(steps.bend, 0, bend)

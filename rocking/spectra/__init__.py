@@ -1,0 +1,1 @@
+"""Filling spectrum cubes and measuring their interpolation errors."""

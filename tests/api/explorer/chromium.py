@@ -1,0 +1,122 @@
+"""A Chromium for the tests of the page: the machine's own, else one that a package manager at hand can fetch.
+
+`python -m tests.api.explorer.chromium` finds one, fetches it if there is none, and prints its path. Nobody but
+root can install a system package, so others get the headless build inside an npm package, unpacked into build/chromium.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+UNPACKED = Path(__file__).parents[3] / "build" / "chromium"
+PACKAGE = "@sparticuz/chromium@147.0.0"  # the last for Node.js 20; x86-64 Linux, with the libraries it needs
+HOW = (
+    "the tests of the page need Chromium: as root, apt-get install chromium; or have npm and node on the path; or set "
+    "ROCKING_CHROMIUM to one; `make browser` then finds or fetches it. ROCKING_NO_BROWSER=1 leaves these tests out"
+)
+
+FONTS = f"""<?xml version="1.0"?>
+<fontconfig>
+<dir>/usr/share/fonts</dir><dir>{UNPACKED / "fonts"}</dir><cachedir>{UNPACKED / "cache"}</cachedir>
+</fontconfig>
+"""
+"""The package brings a font, for machines without any, but looks for it where the package's own host keeps it."""
+
+FLAGS = (
+    *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
+    *("--disable-component-update", "--disable-sync", "--hide-scrollbars"),
+)
+
+
+@dataclass(frozen=True)
+class Chromium:
+    """An executable, and what it needs beside it."""
+
+    path: Path
+    flags: tuple[str, ...] = FLAGS
+    environment: dict[str, str] = field(default_factory=dict)
+
+
+def find() -> Chromium | None:
+    """The Chromium named by ROCKING_CHROMIUM, the machine's own, or the one that `fetch` unpacked."""
+    named = os.environ.get("ROCKING_CHROMIUM")
+    paths = [named] if named else [shutil.which(name) for name in NAMES]
+    for path in filter(None, paths):
+        return Chromium(Path(path))
+    executable = UNPACKED / "chromium"
+    if executable.exists():
+        libraries = {"LD_LIBRARY_PATH": str(UNPACKED / "lib" / "lib"), "FONTCONFIG_PATH": str(UNPACKED)}
+        return Chromium(executable, (*FLAGS, "--no-zygote"), libraries)
+    return None
+
+
+def fetch() -> None:
+    """Install the system's package as root, or else unpack the npm package.
+
+    Raises
+    ------
+    RuntimeError
+        If neither can be done here; the message says how to help.
+    """
+    if os.geteuid() == 0 and shutil.which("apt-get"):
+        with contextlib.suppress(RuntimeError):
+            _run("apt-get", "update")
+            _run("apt-get", "install", "--yes", "--no-install-recommends", "chromium")
+            return
+    if not (shutil.which("npm") and shutil.which("node")):
+        raise RuntimeError(HOW)
+    _unpack()
+
+
+def _unpack() -> None:
+    with tempfile.TemporaryDirectory() as scratch:
+        _run("npm", "pack", "--silent", PACKAGE, folder=scratch)
+        (archive,) = Path(scratch).glob("*.tgz")
+        with tarfile.open(archive) as packed:
+            packed.extractall(scratch, filter="data")
+        parts = Path(scratch) / "package" / "bin"
+        # Python has no Brotli of its own
+        program = "const fs = require('fs'); for (const f of process.argv.slice(1)) fs.writeFileSync(f.slice(0, -3), "
+        program += "require('zlib').brotliDecompressSync(fs.readFileSync(f)))"
+        _run("node", "-e", program, *(str(path) for path in parts.glob("*.br")))
+        for path in parts.glob("*.tar"):
+            with tarfile.open(path) as packed:
+                packed.extractall(parts / "lib" if "al2023" in path.name else parts, filter="data")
+            path.unlink()
+        for path in parts.glob("*.br"):
+            path.unlink()
+        (parts / "chromium").chmod(0o755)
+        (parts / "fonts.conf").write_text(FONTS)
+        shutil.rmtree(UNPACKED, ignore_errors=True)
+        UNPACKED.parent.mkdir(exist_ok=True)
+        shutil.move(parts, UNPACKED)
+
+
+def _run(*command: str, folder: str | None = None) -> None:
+    try:
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    except subprocess.TimeoutExpired:
+        raise RuntimeError(f"{' '.join(command[:3])} took more than five minutes\n{HOW}") from None
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(command[:3])} failed: {(done.stderr or done.stdout).strip()[-500:]}\n{HOW}")
+
+
+if __name__ == "__main__":
+    try:
+        if find() is None:
+            print("Fetching Chromium for the tests of the page ...", file=sys.stderr)  # noqa: T201
+            fetch()
+        found = find()
+    except RuntimeError as error:
+        sys.stderr.write(f"{error}\nGoing on without: these tests will be skipped.\n")
+        found = None
+    sys.stdout.write(f"{found.path if found else HOW}\n")

@@ -1,0 +1,244 @@
+"""What the page shows is what its controls say, or is dimmed, or is cleared: with a slow and a stopped server."""
+
+import re
+import time
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.explorer.reading import BLOCK, POINT, query, settle
+
+VIEWS = (".map", ".motion", ".picture")
+
+WATCH = """() => {
+    window.stale = [];
+    const clear = (box) => Number(getComputedStyle(box).opacity) > 0.5;
+    const look = () => {
+        const drawn = document.getElementById("map").dataset.drawn;
+        const pulse = document.getElementById("pulse").value;
+        const eta = Number(document.getElementById("eta-value").textContent);
+        if (drawn && clear(document.querySelector(".map"))) {
+            const shown = JSON.parse(drawn);
+            if (shown.pulse !== pulse || Math.abs(shown.restitution - eta) > 0.005) stale.push([pulse, eta, drawn]);
+        }
+        requestAnimationFrame(look);
+    };
+    look();
+}"""
+"""In each frame: is a map shown, not dimmed, that is not the one of the controls?"""
+
+
+def set_pulse(page, name):
+    page.evaluate(
+        "name => { const s = document.getElementById('pulse'); s.value = name; s.dispatchEvent(new Event('change')) }",
+        name,
+    )
+
+
+def is_dimmed(page, box):
+    return page.evaluate("box => Number(getComputedStyle(document.querySelector(box)).opacity) < 0.5", box)
+
+
+def expect_drawn(page, pulse, timeout=30_000):
+    page.wait_for_function(
+        """pulse => JSON.parse(document.getElementById("map").dataset.drawn ?? "{}").pulse === pulse
+        && document.querySelector(".map").ariaBusy === "false" """,
+        arg=pulse,
+        timeout=timeout,
+    )
+
+
+@pytest.mark.parametrize("change", ["pulse", "eta"])
+def test_a_change_dims_the_views_at_once(open_page, service, change):
+    page = open_page(POINT)
+    settle(page)
+    expect(page.locator("#spectrum-chart canvas")).to_be_visible()
+    service.seconds = 1.0
+    field, value, event = ("pulse", "cosine", "change") if change == "pulse" else ("eta", "0.9", "input")
+    dimmed = page.evaluate(
+        """([field, value, event, views]) => {
+            const control = document.getElementById(field);
+            control.value = value;
+            control.dispatchEvent(new Event(event));
+            const boxes = views.map((view) => document.querySelector(view));
+            return boxes.map((box) => box.ariaBusy === "true" && Number(getComputedStyle(box).opacity) < 0.5);
+        }""",
+        [field, value, event, VIEWS],
+    )
+    assert dimmed == [True, True, True]
+    assert page.locator("[data-picture]:enabled").count() == 0  # nor can it be kept under the new label
+    for view in VIEWS:
+        expect(page.locator(view)).to_have_attribute("aria-busy", "false")
+        assert "0.9" in page.locator(view).get_attribute("data-shown") or change == "pulse"
+
+
+def test_no_frame_shows_another_map_than_the_controls_say(open_page, service):
+    page = open_page()
+    settle(page)
+    page.evaluate(WATCH)
+    service.seconds = 0.5
+    for pulse in ("cosine", "half_sine", "rectangular", "sine", "cosine", "rectangular", "sine", "half_sine"):
+        set_pulse(page, pulse)
+        page.wait_for_timeout(70)
+    started = time.monotonic()
+    expect_drawn(page, "half_sine")
+    assert time.monotonic() - started < 5.0
+    page.locator("#eta").fill("0.9")
+    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.drawn).restitution === 0.9")
+    service.seconds = 0.0
+    settle(page)
+    assert page.evaluate("stale") == []
+
+
+def test_a_sharper_map_comes_after_the_coarse_one_of_a_slow_server(open_page, service):
+    """The two requests for one map do not end each other."""
+    page = open_page()
+    settle(page)
+    service.seconds = 0.7
+    asked = []
+    page.on("request", lambda request: asked.append(request) if "/v1/map" in request.url else None)
+    set_pulse(page, "cosine")
+    expect_drawn(page, "cosine")
+    service.seconds = 0.0
+    settle(page)
+    assert [re.search(r"columns=(\d+)", request.url)[1] for request in asked] == ["120", "400"]
+    assert [request.failure for request in asked] == [None, None]
+
+
+def test_a_server_that_hangs_leaves_nothing_out_of_date(open_page, service):
+    page = open_page("about:blank")
+    page.clock.install()
+    page.goto(POINT)
+    settle(page)
+    service.seconds = 1000.0
+    set_pulse(page, "cosine")
+    for view in VIEWS:
+        expect(page.locator(view)).to_have_class(re.compile("blank"))
+    assert page.evaluate("document.getElementById('map').width") == 0
+    expect(page.locator("#map-status")).to_contain_text("Still waiting")
+    page.clock.fast_forward(76_000)
+    expect(page.locator("#map-status")).to_contain_text("has not answered within 75 s")
+    service.seconds = 0.0
+    page.locator("#map-status button").click()
+    expect_drawn(page, "cosine")
+    for view in VIEWS:
+        expect(page.locator(view)).to_have_attribute("aria-busy", "false")
+        assert "cosine" in page.locator(view).get_attribute("data-shown")
+
+
+def test_a_stopped_server_is_told_and_can_be_asked_again(open_page, service):
+    page = open_page(POINT, failing=True)
+    settle(page)
+    expect(page.locator("#spectrum-chart canvas")).to_be_visible()
+    service.stop()
+    set_pulse(page, "cosine")
+    for status in ("map-status", "curves-status", "motion-status", "spectrum-status", "readout-status"):
+        expect(page.locator(f"#{status}")).to_contain_text("No answer: the service does not answer")
+        expect(page.locator(f"#{status} button")).to_have_text("Try again")
+    for view in VIEWS:
+        expect(page.locator(view)).to_have_class(re.compile("blank"))
+        expect(page.locator(view)).to_have_attribute("aria-busy", "false")
+    assert page.locator("#map-readout").inner_text() == ""
+    service.start()
+    page.locator("#map-status button").click()  # asks for all that failed
+    for view in VIEWS:
+        expect(page.locator(view)).not_to_have_class(re.compile("blank"))
+    settle(page)
+    expect_drawn(page, "cosine")
+    assert page.locator(".status button").count() == 0
+
+
+def test_a_busy_server_is_asked_again(open_page, service):
+    page = open_page(failing=True)
+    settle(page)
+    service.refusals = 2
+    set_pulse(page, "cosine")
+    expect_drawn(page, "cosine")
+    expect(page.locator("#map-status")).to_be_hidden()
+
+
+def test_an_edited_block_keeps_no_verdict(open_page):
+    page = open_page(BLOCK)
+    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    settle(page)
+    expect(page.locator("#spectrum-chart canvas")).to_be_visible()
+    before = page.url
+    page.locator("#width").press("End")
+    page.locator("#width").press("5")  # 0.45 m
+    assert all(is_dimmed(page, box) for box in ("#answer", *VIEWS))
+    expect(page.locator("#block-status")).to_contain_text("has been edited")
+    page.locator("#width").press("Backspace")
+    for box in ("#answer", *VIEWS):
+        expect(page.locator(box)).to_have_attribute("aria-busy", "false")
+    assert page.url == before
+    page.locator("#width").fill("0.1")
+    assert is_dimmed(page, "#answer")
+    page.locator("#ask").click()
+    expect(page.locator(".verdict")).to_have_text("It overturns.")
+    expect(page.locator("#answer")).to_have_attribute("aria-busy", "false")
+    assert query(page)["width"] == "0.1 m"
+
+
+def test_another_control_takes_the_edited_block_along(open_page):
+    page = open_page(BLOCK)
+    expect(page.locator(".verdict")).to_be_visible()
+    page.locator("#width").fill("0.1")
+    page.locator("#eta").fill("0.7")
+    page.locator("#eta").dispatch_event("change")
+    expect(page.locator(".verdict")).to_have_text("It overturns.")
+    assert (query(page)["width"], query(page)["restitution"]) == ("0.1 m", "0.7")
+
+
+def test_a_verdict_waits_for_its_block(open_page, service):
+    page = open_page(BLOCK)
+    settle(page)
+    service.seconds = 1.0
+    page.locator("#acceleration").fill("0.6")
+    page.locator("#ask").click()
+    assert all(is_dimmed(page, box) for box in ("#answer", *VIEWS))
+    assert page.locator("[data-links] a[href]").count() == 0
+    service.seconds = 0.0
+    expect(page.locator(".verdict")).to_have_text("It overturns.")
+    for view in VIEWS:
+        expect(page.locator(view)).to_have_attribute("aria-busy", "false")
+
+
+def test_a_block_that_is_not_answered_leaves_no_verdict(open_page, service):
+    page = open_page(BLOCK, failing=True)
+    expect(page.locator(".verdict")).to_be_visible()
+    service.stop()
+    page.locator("#acceleration").fill("0.6")
+    page.locator("#ask").click()
+    expect(page.locator("#block-status")).to_contain_text("does not answer")
+    expect(page.locator(".verdict")).to_be_hidden()
+    service.start()
+    page.locator("#block-status button").click()
+    expect(page.locator(".verdict")).to_have_text("It overturns.")
+    settle(page)
+
+
+def test_another_angle_says_that_the_block_is_left(open_page):
+    page = open_page(BLOCK)
+    expect(page.locator(".verdict")).to_be_visible()
+    settle(page)
+    page.locator("#alpha").fill("20")
+    page.locator("#alpha").dispatch_event("change")
+    expect(page.locator("#block-status")).to_contain_text("no longer shows the block of this form")
+    expect(page.locator("#answer")).to_be_hidden()
+    assert "width" not in query(page)
+    page.locator("#ask").click()
+    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator("#alpha-value")).to_have_text("14°")
+
+
+def test_a_block_outside_the_rocking_model_says_so_first(open_page):
+    page = open_page("/?width=1+m&height=1+m&acceleration=1.5+g&period=0.5+s&restitution=housner")
+    expect(page.locator(".verdict")).to_have_text("The rocking model does not apply.")
+    said = page.locator("#answer").inner_text()
+    assert "would slide" in said
+    assert "5.67 g" not in said
+    assert "Warnings" in said
+    expect(page.locator("#motion-caption")).to_contain_text(
+        "The rocking model does not apply; held in place: It survives"
+    )
+    expect(page.locator("#map-readout")).to_contain_text("The rocking model does not apply; held in place")

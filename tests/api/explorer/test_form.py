@@ -1,0 +1,101 @@
+"""A block in metres: the page says of it what the package says, and explains what it cannot answer."""
+
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import rocking
+from rocking.model.block import STANDARD_GRAVITY
+from tests.api.explorer.reading import BLOCK, query, settle
+
+
+@pytest.mark.parametrize(
+    ("typed", "metres"),
+    [
+        (
+            {"width": ("0.4", "m"), "height": ("1.6", "m"), "acceleration": ("0.4", "g")},
+            (0.2, 0.8, 0.4 * STANDARD_GRAVITY),
+        ),
+        ({"width": ("40", "cm"), "height": ("1,6", "m"), "acceleration": ("4.9", "m/s2")}, (0.2, 0.8, 4.9)),
+        ({"width": ("1", "ft"), "height": ("3", "ft"), "acceleration": ("320", "cm/s2")}, (0.1524, 0.4572, 3.2)),
+    ],
+)
+def test_the_form_gives_the_verdict_of_the_package(open_page, typed, metres):
+    page = open_page()
+    for name, (value, unit) in typed.items():
+        page.locator(f"#{name}").fill(value)
+        page.locator(f"select[name={name}_unit]").select_option(unit)
+    page.locator("#period").fill("0.5")
+    page.locator("#period").press("Enter")
+    expect(page.locator(".verdict")).to_be_visible()
+
+    half_width, half_height, acceleration = metres
+    block = rocking.Block(half_width=half_width, half_height=half_height)
+    found = rocking.peak_response(
+        "sine",
+        slenderness=block.uplift_acceleration / acceleration,
+        frequency_ratio=2 * np.pi / 0.5 / block.frequency_parameter,
+        restitution=block.housner_restitution,
+        alpha=block.alpha,
+    )
+    verdict = {0: "It does not uplift.", 1: "It survives (comes to rest)."}.get(int(found.outcome), "It overturns.")
+    expect(page.locator(".verdict")).to_have_text(verdict)
+    text = page.locator("#answer").inner_text()
+    if acceleration > block.uplift_acceleration and not found.overturned:
+        said = float(re.search(r"at most ([\d.]+)°", text)[1])
+        assert said == pytest.approx(np.degrees(float(found.peak_rotation) * block.alpha), rel=0.006)
+    assert f"{block.uplift_acceleration / STANDARD_GRAVITY:.3g} g" in text
+    expect(page.locator("#stage")).to_be_visible()
+
+
+def test_the_three_blocks_have_three_outcomes():
+    block, other = rocking.Block(half_width=0.2, half_height=0.8), rocking.Block(half_width=0.1524, half_height=0.4572)
+    amplitudes = (
+        rocking.critical_amplitude(
+            "sine",
+            frequency_ratio=2 * np.pi / 0.5 / block.frequency_parameter,
+            restitution=block.housner_restitution,
+            alpha=block.alpha,
+        ).amplitude
+        * block.uplift_acceleration
+    )
+    assert 0.4 * STANDARD_GRAVITY < amplitudes[0] < 4.9 < amplitudes[1]
+    assert other.uplift_acceleration > 3.2
+
+
+def test_the_address_brings_back_the_block(open_page):
+    page = open_page(BLOCK)
+    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    assert page.locator("#width").input_value() == "0.4"
+    settle(page)
+    page.locator("#map-marks").press("ArrowUp")  # the same block under a weaker motion
+    page.wait_for_url(lambda url: "acceleration=0.4+g" not in url)
+    assert query(page)["width"] == "0.4 m"
+    assert float(query(page)["acceleration"].split()[0]) < 0.4
+    assert float(query(page)["period"].split()[0]) == pytest.approx(0.5, rel=1e-3)
+    expect(page.locator("#acceleration")).to_have_value(query(page)["acceleration"].split()[0])
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "words"),
+    [
+        ("width", "-1", "allowed"),
+        ("height", "high", "a number"),
+        ("acceleration", "", "missing"),
+        ("period", "1e9", "allowed"),
+    ],
+)
+def test_bad_input_is_explained_beside_its_field(open_page, field, value, words):
+    page = open_page()
+    page.locator(f"#{field}").fill(value)
+    page.locator("#ask").click()
+    expect(page.locator(f"#{field}-problem")).to_contain_text(words)
+    expect(page.locator(f"#{field}")).to_have_attribute("aria-invalid", "true")
+    expect(page.locator("#answer")).to_be_hidden()
+    settle(page)  # the map stays
+    page.locator(f"#{field}").fill("0.5")
+    page.locator("#ask").click()
+    expect(page.locator(".verdict")).to_be_visible()
+    expect(page.locator(f"#{field}-problem")).to_be_hidden()

@@ -1,0 +1,97 @@
+"""The map in a real browser: its fates are the solver's, and a point of it can be chosen, moved and magnified."""
+
+import pytest
+from playwright.sync_api import expect
+
+import rocking
+from tests.api.explorer.reading import BLOCK, POINT, pixels, place_of, query, settle
+
+
+def test_the_map_shows_the_fates_of_the_solver(open_page):
+    page = open_page()
+    settle(page)
+    picture = pixels(page, "map")
+    points = [(8.0, 0.6), (3.0, 0.95), (11.0, 0.3), (3.0, 0.5), (1.0, 0.3), (6.0, 0.12)]
+    shown = [picture[round(place["y"]), round(place["x"])] for place in (place_of(page, *point) for point in points)]
+    found = [rocking.peak_response("sine", frequency_ratio=w, slenderness=s, restitution=0.85) for w, s in points]
+    grey = [colour.max() - colour.min() < 20 for colour in shown]
+    assert grey == [bool(one.overturned) for one in found]
+    assert grey == [False, False, False, True, True, False]
+    brought_back = bool(found[-1].exceeded_alpha)
+    assert brought_back
+    assert shown[-1].tolist() == [236, 112, 74]
+    # on viridis the green of a standing block grows with its peak
+    standing = sorted((float(one.peak_rotation), colour[1]) for one, colour in zip(found[:3], shown[:3], strict=True))
+    assert [green for _, green in standing] == sorted(green for _, green in standing)
+
+
+def test_another_restitution_gives_other_curves(open_page):
+    page = open_page()
+    settle(page)
+    before = pixels(page, "map")
+    page.locator("#eta").fill("0.9")
+    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.curves).restitution === 0.9")
+    settle(page)
+    assert query(page)["restitution"] == "0.9"
+    changed = (pixels(page, "map") != before).any(axis=-1).mean()
+    assert 0.005 < changed < 0.9
+    page.go_back()
+    expect(page.locator("#eta-value")).to_have_text("0.85")
+
+
+def test_a_click_opens_the_history_of_that_block(open_page):
+    page = open_page()
+    settle(page)
+    expect(page.locator("#rotation")).to_be_hidden()
+    page.locator("#map-marks").click(position=place_of(page, 6.0, 0.4))
+    expect(page.locator("#rotation canvas")).to_be_visible()
+    chosen = {name: float(query(page)[name]) for name in ("frequency_ratio", "slenderness")}
+    assert chosen["frequency_ratio"] == pytest.approx(6.0, rel=0.01)
+    assert chosen["slenderness"] == pytest.approx(0.4, abs=0.005)
+    truth = rocking.peak_response("sine", **chosen, restitution=0.85)
+    expect(page.locator("#map-readout")).to_contain_text(f"{float(truth.peak_rotation):.4f} α")
+    expect(page.locator("#motion-caption")).to_contain_text("It survives (comes to rest)")
+    page.go_back()
+    expect(page.locator("#rotation")).to_be_hidden()
+    page.go_forward()
+    expect(page.locator("#rotation canvas")).to_be_visible()
+
+
+def test_arrow_keys_move_the_point(open_page):
+    page = open_page(POINT)
+    settle(page)
+    page.locator("#map-marks").focus()
+    outline = page.evaluate("getComputedStyle(document.getElementById('map-marks')).outlineStyle")
+    page.keyboard.press("ArrowRight")
+    assert float(query(page)["frequency_ratio"]) == pytest.approx(4.0 * (12.0 / 0.5) ** 0.01, rel=1e-3)
+    page.keyboard.press("Shift+ArrowDown")
+    assert float(query(page)["slenderness"]) == pytest.approx(0.7 - 0.1 * 1.04, abs=1e-3)
+    assert outline == "solid"
+
+
+def test_zoom_shows_a_part(open_page):
+    page = open_page(POINT)
+    settle(page)
+    page.locator("#zoom-in").click()
+    page.wait_for_url(lambda url: "slenderness_max" in url)
+    assert float(query(page)["slenderness_max"]) - float(query(page)["slenderness_min"]) == pytest.approx(
+        0.52, abs=1e-3
+    )
+    page.locator("#whole").click()
+    page.wait_for_url(lambda url: "slenderness_max" not in url)
+
+
+def test_a_bad_address_is_explained(open_page):
+    page = open_page("/?restitution=2")
+    expect(page.locator("#eta-problem")).to_contain_text("[0, 1]")
+    expect(page.locator("#map-status")).to_contain_text("No answer")
+
+
+@pytest.mark.parametrize("path", ["/", BLOCK])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_fits_a_phone_in_light_and_dark(open_page, path, scheme):
+    page = open_page(path, viewport={"width": 360, "height": 740}, color_scheme=scheme)
+    settle(page)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    brightness = pixels(page, "map")[3, 3].mean()  # a corner outside the frame
+    assert brightness > 200 if scheme == "light" else brightness < 60

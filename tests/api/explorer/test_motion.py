@@ -1,0 +1,97 @@
+"""The block rocks on the page as it does in the package, and what is shown can be taken home."""
+
+import io
+
+import numpy as np
+import pytest
+import xarray as xr
+from playwright.sync_api import expect
+
+import rocking
+from tests.api.explorer.reading import POINT, pixels, settle
+
+STONE = [201, 194, 182]  # the block on a light page
+
+
+def test_the_block_moves_and_waits(open_page):
+    page = open_page(POINT)
+    expect(page.locator("#play")).to_have_text("Pause")
+    seen = set()
+    page.wait_for_function("() => Math.abs(document.getElementById('stage').dataset.angle) > 0.001")
+    for _ in range(4):
+        seen.add(page.locator("#stage").get_attribute("data-angle"))
+        page.wait_for_timeout(150)
+    assert len(seen) > 2
+    page.locator("#play").click()
+    still = page.locator("#stage").get_attribute("data-angle")
+    page.wait_for_timeout(300)
+    assert page.locator("#stage").get_attribute("data-angle") == still
+
+
+def test_the_film_shows_the_angles_and_the_ground_of_the_history(open_page):
+    page = open_page(POINT + "&alpha_deg=15", reduced_motion="reduce")
+    expect(page.locator("#play")).to_have_text("Play")
+    motion = rocking.time_history(
+        "sine", frequency_ratio=4.0, slenderness=0.7, restitution=0.85, alpha=np.radians(15), samples=800
+    )
+    page.locator("#motion-caption").filter(has_text="comes to rest").wait_for()
+    end = float(page.locator("#time").get_attribute("max"))
+    for share in (0.2, 0.35, 0.5, 1.0):
+        page.evaluate(
+            "t => { const s = document.getElementById('time'); s.value = t; s.dispatchEvent(new Event('input')) }",
+            share * end,
+        )
+        tau = float(page.locator("#time").input_value())
+        angle = float(page.locator("#stage").get_attribute("data-angle"))
+        assert angle == pytest.approx(np.radians(15) * np.interp(tau, motion.tau, motion.rotation), abs=2e-5)
+    # a full sine leaves the ground 2 pi a_g/omega_g^2 away: (4/3) tan(alpha) a 2 pi/omega^2 half diagonals
+    way = 4 / 3 * np.tan(np.radians(15)) / 0.7 * 2 * np.pi / 4.0**2
+    assert float(page.locator("#stage").get_attribute("data-ground")) == pytest.approx(way, rel=1e-3)
+
+
+def test_the_picture_leans_as_far_as_the_block(open_page):
+    page = open_page(POINT.replace("0.7", "0.5").replace("=4", "=6") + "&alpha_deg=20", reduced_motion="reduce")
+    page.locator("#motion-caption").filter(has_text="comes to rest").wait_for()
+    end = float(page.locator("#time").get_attribute("max"))
+    seen = []
+    for share in np.linspace(0.05, 0.6, 12):
+        page.evaluate(
+            "t => { const s = document.getElementById('time'); s.value = t; s.dispatchEvent(new Event('input')) }",
+            share * end,
+        )
+        angle = float(page.locator("#stage").get_attribute("data-angle"))
+        rows, columns = np.nonzero((pixels(page, "stage") == STONE).all(axis=-1))
+        _, across, _, up = np.cov(columns, -rows).ravel()
+        # of a rectangle turned clockwise: covariance (h^2 - b^2)/3 sin cos, variance upwards (h^2 cos^2 + b^2 sin^2)/3
+        b, h = np.tan(np.radians(20)), 1.0
+        expected = (h**2 - b**2) * np.sin(angle) * np.cos(angle)
+        expected /= h**2 * np.cos(angle) ** 2 + b**2 * np.sin(angle) ** 2
+        assert across / up == pytest.approx(expected, abs=0.02)
+        seen.append(angle)
+    assert min(seen) < -0.02
+    assert max(seen) > 0.05
+
+
+def test_downloads_arrive(open_page):
+    page = open_page(POINT)
+    settle(page)
+    expect(page.locator("#rotation canvas")).to_be_visible()
+    expect(page.locator("#spectrum-chart canvas")).to_be_visible()
+    page.wait_for_function("() => document.querySelectorAll('.downloads a[href]').length >= 7")
+
+    def arrived(locator):
+        with page.expect_download() as waiting:
+            locator.click()
+        return waiting.value.suggested_filename, waiting.value.path().read_bytes()
+
+    name, content = arrived(page.locator("[data-links=motion] a[data-form=nc]"))
+    truth = rocking.time_history("sine", frequency_ratio=4.0, slenderness=0.7, restitution=0.85, samples=800)
+    np.testing.assert_array_equal(xr.load_dataset(io.BytesIO(content), engine="scipy").rotation, truth.rotation)
+    assert name == "history.nc"
+    for part in ("map", "spectrum"):
+        name, content = arrived(page.locator(f"[data-links={part}] a[data-form=csv]"))
+        assert (name, content.decode().splitlines()[0].count("frequency_ratio")) == (f"{part}.csv", 1)
+    for part in ("map", "motion", "spectrum"):
+        name, content = arrived(page.locator(f"[data-picture={part}]"))
+        assert (name, content[:8]) == (f"{part}.png", b"\x89PNG\r\n\x1a\n")
+        assert len(content) > 8000

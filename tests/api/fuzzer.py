@@ -1,0 +1,339 @@
+"""Random requests, valid and hostile, to all routes: no 5xx but 503 and 504, no slow answer, every error a problem.
+
+`python -m tests.api.fuzzer RESULTS --seed 1 --count 20000` asks a service in this process. Request k of a seed is
+the same each time: `--first k --count 1` repeats it.
+"""
+
+import argparse
+import asyncio
+import hashlib
+import io
+import json
+import logging
+import random
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import quote, unquote_to_bytes, urlencode
+
+import numpy as np
+import xarray as xr
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
+
+from rocking.excitation.pulses import PULSE_NAMES
+
+GRANTED = 1.0
+"""What a request of heavy work is granted [s]."""
+
+SLOW = 5.0
+"""What no answer may take but those of 503 and 504 [s]."""
+
+NUMBERS = {
+    "slenderness": (1e-9, 3.0),
+    "frequency_ratio": (1e-6, 1e6),
+    "frequency_ratio_min": (0.1, 3.0),
+    "frequency_ratio_max": (3.0, 30.0),
+    "slenderness_min": (0.01, 0.4),
+    "slenderness_max": (0.5, 1.5),
+    "restitution": (0.5, 1.0),
+    "alpha_deg": (1e-6, 89.9),
+    "tolerance": (1e-9, 1.0),
+    "highest_amplitude": (1.1, 100.0),
+    "duration": (0.1, 200.0),
+    "half_width": (1e-2, 10.0),
+    "half_height": (1e-2, 10.0),
+    "peak_acceleration": (1e-2, 100.0),
+    "pulse_period": (1e-2, 10.0),
+    "gravity": (1.0, 30.0),
+}
+COUNTS = {"points": 200, "samples": 200, "columns": 30, "rows": 30}
+WORDS = {
+    "pulse": [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)],
+    "method": ["auto", "cube", "solver"],
+    "format": ["json", "csv", "nc"],
+    "contact": ["true", "false"],
+}
+GROUPS = ["pulse", "slenderness", "frequency_ratio", "restitution"]
+ROUTES = {
+    "/v1/response": (GROUPS, ["alpha_deg", "method", "tolerance"]),
+    "/v1/blocks/response": (
+        ["pulse", "half_width", "half_height", "peak_acceleration", "pulse_period"],
+        ["restitution", "gravity", "method", "tolerance"],
+    ),
+    "/v1/critical_amplitude": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest_amplitude"]),
+    "/v1/spectrum": (
+        ["pulse", "slenderness", "restitution", "points"],
+        ["alpha_deg", "method", "tolerance", "frequency_ratio_min", "frequency_ratio_max", "format"],
+    ),
+    "/v1/map": (
+        ["pulse", "restitution", "columns", "rows"],
+        ["alpha_deg", "frequency_ratio_min", "frequency_ratio_max", "slenderness_min", "slenderness_max", "format"],
+    ),
+    "/v1/overturning": (["pulse", "restitution"], ["alpha_deg", "format"]),
+    "/v1/history": ([*GROUPS, "samples"], ["alpha_deg", "duration", "contact", "format"]),
+}
+PAGES = ["/", "/docs", "/openapi.json", "/health", "/metrics", "/v1/datasets", "/static/explorer/main.js", "/static/"]
+HOSTILE = [
+    *("", " ", "nan", "-inf", "1e400", "-1e400", "1e-320", "0", "-0.0", "1", "-1", "true", "null", "[]", "0x10", "1_0"),
+    *("9" * 400, "-" + "9" * 400, "9" * 4301, "1" + "0" * 308, "1.7976931348623157e308", "5e-324", "\u0661", "1,5"),
+    *("\x00", "%00", "../../etc/passwd", "a" * 256, "a" * 5000),
+    *( "\ud7ff", "\U0001f600", "' OR 1=1 --", "<script>", "\r\nX: y"),
+]  # fmt: skip
+METHODS = ["HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "get", "X" * 50]
+HEADERS = {
+    "accept": ["text/csv", "application/x-netcdf", "application/json;q=0", "*/*", ",".join(["text/csv"] * 500), ""],
+    "accept-encoding": ["gzip", "gzip;q=nan", "br", "identity", "*"],
+    "range": ["bytes=0-3", "bytes=-7", "bytes=5-2", "bytes=0-0,9-12", "bytes=" + "0-1," * 200, "bytes=99999999-", "x"],
+    "if-range": ['"other"', "Sat, 21 Nov 2026 00:00:00 GMT", "\x80"],
+    "if-none-match": ["*", '"a"', 'W/"a", "b"', '"' + "a" * 9000],
+    "content-type": ["application/json", "text/csv", "application/x-netcdf", "text/csv; charset=x", "a/b", ""],
+    "content-encoding": ["gzip", "identity", "br"],
+    "content-length": ["-1", "9" * 400, "1e3", "\u00b2".encode().decode("latin-1"), "3"],
+    "x-request-id": ["abc", "a" * 999, "\x80\x81"],
+    "origin": ["null", "https://example.org"],
+    "host": ["[::::", "x"],
+}
+
+
+class Sent(NamedTuple):
+    """A request."""
+
+    method: str
+    path: str
+    query: str
+    headers: list[tuple[str, str]]
+    body: bytes
+    leaves: bool
+
+    def __str__(self):
+        target = f"{self.path}?{self.query}" if self.query else self.path
+        return f"{self.method} {target[:300]} {str(self.headers)[:300]} {self.body[:100]!r}"
+
+
+class Received(NamedTuple):
+    """Its answer."""
+
+    status: int
+    headers: dict[str, str]
+    body: bytes
+    seconds: float
+
+
+def request(seed: int, k: int, names: list[str]) -> Sent:
+    """Request k of a seed; `names` are those of the data sets."""
+    draw = random.Random(f"{seed} {k}")
+    kind = draw.choices(["curve", "overturning", "post", "dataset", "page", "nowhere"], [55, 1, 16, 20, 6, 2])[0]
+    method, query, body, headers = "GET", "", b"", []
+    if kind in ("curve", "overturning"):
+        routes = [route for route in ROUTES if (route == "/v1/overturning") == (kind == "overturning")]
+        path = draw.choice(routes)
+        query = _query(draw, *ROUTES[path])
+    elif kind == "post":
+        method, path = "POST", "/v1/response"
+        body, media_type, query = _body(draw)
+        headers.append(("content-type", media_type))
+    elif kind == "dataset":
+        path = "/v1/datasets/" + _name(draw, names)
+        if draw.random() < 0.2:
+            query = "sha256=" + draw.choice(["0" * 64, "", "x" * 300, "%00"])
+    elif kind == "page":
+        path = draw.choice(PAGES)
+    else:
+        path = "/" + quote(draw.choice(HOSTILE), safe="/%")
+    if draw.random() < 0.06:
+        method = draw.choice(METHODS)
+    chosen = draw.sample(list(HEADERS), draw.choices([0, 1, 2, 4], [5, 3, 2, 1])[0])
+    headers += [(name, draw.choice(HEADERS[name])) for name in chosen]
+    return Sent(method, path, query, headers, body, leaves=draw.random() < 0.03)
+
+
+def _query(draw: random.Random, required: list[str], optional: list[str]) -> str:
+    names = [*required, *(name for name in optional if draw.random() < 0.3)]
+    given = [(name, _value(draw, name)) for name in names]
+    for _ in range(draw.choices([0, 1, 2], [5, 4, 1])[0]):
+        place = draw.randrange(len(given))
+        name = given[place][0]
+        match draw.randrange(5):
+            case 0 if len(given) > 1:
+                del given[place]
+            case 1:
+                given.append(given[place])
+            case 2:
+                given.append((draw.choice(HOSTILE), "1"))
+            case _:
+                given[place] = name, draw.choice(HOSTILE)
+    return urlencode(given, errors="surrogatepass")
+
+
+def _value(draw: random.Random, name: str) -> str:
+    if name in WORDS:
+        return draw.choice(WORDS[name])
+    if name in COUNTS:
+        return str(draw.choice([2, draw.randrange(2, COUNTS[name]), 10**6]))
+    return repr(_number(draw, name))
+
+
+def _number(draw: random.Random, name: str) -> float:
+    low, high = NUMBERS[name]
+    near = draw.uniform(max(low, 0.1), min(high, 10.0)) if max(low, 0.1) < min(high, 10.0) else high
+    return draw.choices([near, draw.choice([low, high]), low * (high / low) ** draw.random()], [6, 1, 2])[0]
+
+
+def _name(draw: random.Random, names: list[str]) -> str:
+    name = draw.choice(
+        [*names, draw.choice(HOSTILE), "spectra/sine/" + draw.choice(HOSTILE), "a/" * 600 + "b", "a" * 256]
+    )
+    suffix = draw.choice(
+        ["", ".nc", ".nc", ".zarr/.zmetadata", ".zarr/peak_rotation/0.0.0", ".zarr/" + draw.choice(HOSTILE)]
+    )
+    return quote(name + suffix, safe="/%", errors="surrogatepass")
+
+
+def _body(draw: random.Random) -> tuple[bytes, str, str]:
+    size = draw.choice([0, 1, 3, 300])
+    columns = {name: [_number(draw, name) for _ in range(size)] for name in GROUPS[1:]}
+    options = {"pulse": _value(draw, "pulse")} | {
+        name: _value(draw, name) for name in ("method", "alpha_deg", "tolerance") if draw.random() < 0.2
+    }
+    form = draw.choice(["json", "csv", "nc"])
+    if form == "json":
+        odd = draw.choice([None, "1" * 400, [], {}, [[1]], True, 10**400, -1, "x", 1e308])
+        numbers = {name: float(value) if name in NUMBERS else value for name, value in options.items()}
+        content = columns | numbers | ({draw.choice([*GROUPS, "x"]): odd} if draw.random() < 0.3 else {})
+        body, media_type, query = json.dumps(content).encode(), "application/json", ""
+    else:
+        media_type, query = {"csv": "text/csv", "nc": "application/x-netcdf"}[form], urlencode(options)
+        if form == "csv":
+            lines = [",".join(columns), *(",".join(map(repr, row)) for row in zip(*columns.values(), strict=True))]
+            body = "\n".join(lines).encode()
+        else:
+            body = bytes(
+                xr.Dataset({name: ("point", np.array(c)) for name, c in columns.items()}).to_netcdf(engine="scipy")
+            )
+    if body and draw.random() < 0.3:
+        damaged = bytearray(body)
+        for _ in range(draw.randrange(1, 5)):
+            damaged[draw.randrange(len(damaged))] = draw.randrange(256)
+        body = bytes(damaged[: draw.randrange(len(damaged)) if draw.random() < 0.3 else None])
+    return body, media_type, query
+
+
+async def answer(app, sent: Sent) -> Received:
+    """Ask the application as uvicorn would."""
+    scope = {
+        "type": "http",
+        "asgi": {"version": "3.0", "spec_version": "2.3"},
+        "http_version": "1.1",
+        "method": sent.method,
+        "scheme": "http",
+        "path": unquote_to_bytes(sent.path).decode("utf-8", "replace"),
+        "raw_path": sent.path.encode(),
+        "root_path": "",
+        "query_string": sent.query.encode("latin-1"),
+        "headers": [(name.encode(), value.encode("latin-1")) for name, value in sent.headers],
+        "client": ("127.0.0.1", 1),
+        "server": ("127.0.0.1", 80),
+        "state": {},
+    }
+    parts = [sent.body[:50], sent.body[50:]]
+    status, headers, body = 0, {}, io.BytesIO()
+
+    async def receive():
+        if parts:
+            return {"type": "http.request", "body": parts.pop(0), "more_body": bool(parts)}
+        await asyncio.sleep(0.01 if sent.leaves else 3600)
+        return {"type": "http.disconnect"}
+
+    async def send(message):
+        nonlocal status, headers
+        if message["type"] == "http.response.start":
+            status = message["status"]
+            headers = {name.decode(): value.decode("latin-1") for name, value in message["headers"]}
+        else:
+            body.write(message.get("body", b""))
+
+    began = time.monotonic()
+    await app(scope, receive, send)
+    return Received(status, headers, body.getvalue(), time.monotonic() - began)
+
+
+def fault(sent: Sent, got: Received) -> str | None:
+    """What is wrong with an answer."""
+    if sent.leaves:
+        return None  # nobody hears the answer
+    if got.status == 0:
+        return "no answer"
+    if got.status >= 500 and got.status not in (503, 504):
+        return "5xx"
+    if got.seconds > SLOW and got.status not in (503, 504):
+        return f"took {got.seconds:.1f} s"
+    if got.headers.get("x-content-type-options") != "nosniff" or "x-request-id" not in got.headers:
+        return "a header is missing"
+    whole = sent.method != "HEAD"
+    if whole and int(got.headers.get("content-length", len(got.body))) != len(got.body):
+        return "another length than declared"
+    if got.status >= 400 and got.headers.get("content-type") != "application/problem+json":
+        return "not a problem"
+    if whole and got.headers.get("content-encoding") is None and "json" in got.headers.get("content-type", ""):
+        content = json.loads(got.body, parse_constant=lambda name: f"not JSON: {name}")
+        if got.status >= 400 and content["status"] != got.status:
+            return "another status than said"
+        if "not JSON" in str(content):
+            return "NaN or Infinity in JSON"
+    digest = f'"{hashlib.sha256(got.body).hexdigest()}"'
+    if whole and got.status == 200 and "repr-digest" in got.headers and got.headers["etag"] != digest:
+        return "another digest than declared"
+    return None
+
+
+async def ask_all(results: Path, seed: int, first: int, count: int, together: int = 4) -> tuple[Counter, list[str]]:
+    """Statuses, and what is wrong: answers, and errors that the service logged."""
+    app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
+    names = app.state.service.atlas.catalogue.names()
+    statuses: Counter = Counter()
+    faults: list[str] = []
+    left = iter(range(first, first + count))
+
+    class Errors(logging.Handler):
+        def emit(self, record):
+            faults.append(self.format(record))
+
+    async def client():
+        for k in left:
+            sent = request(seed, k, names)
+            try:
+                got = await answer(app, sent)
+                wrong = fault(sent, got)
+            except Exception as error:  # noqa: BLE001  (whatever gets out of the application)
+                got, wrong = Received(0, {}, b"", 0.0), repr(error)
+            statuses["left" if sent.leaves else str(int(got.status))] += 1
+            if wrong is not None:
+                faults.append(f"{seed} {k}: {wrong}; {got.status} {got.body[:200]!r} for {sent}")
+
+    logged = Errors(logging.ERROR)
+    logging.getLogger("rocking.service").addHandler(logged)
+    try:
+        async with app.router.lifespan_context(app):
+            await asyncio.gather(*(client() for _ in range(together)))
+    finally:
+        logging.getLogger("rocking.service").removeHandler(logged)
+    return statuses, faults
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", type=Path, help="folder that the workflow filled")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--count", type=int, default=20_000)
+    given = parser.parse_args()
+    statuses, faults = asyncio.run(ask_all(given.results, given.seed, given.first, given.count))
+    sys.stdout.write("\n".join([*faults[:100], f"{dict(sorted(statuses.items()))}, {len(faults)} faults", ""]))
+    sys.exit(bool(faults))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+"""Real servers on the loopback, for tests."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+class Server:
+    """A running `rocking serve`."""
+
+    def __init__(self, process, log):
+        self.process = process
+        self.log = log
+        self.port = self._port()
+
+    @property
+    def address(self):
+        return f"http://127.0.0.1:{self.port}"
+
+    def stop(self, seconds=30):
+        """As a service manager does; the exit status."""
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(timeout=seconds)
+
+    def _port(self):
+        """The port that the server took, which it says in its log when it listens."""
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and self.process.poll() is None:
+            listening = re.search(r"running on http://127\.0\.0\.1:(\d+)", self.log.read_text())
+            if listening:
+                return int(listening[1])
+            time.sleep(0.02)
+        raise AssertionError(self.log.read_text())
+
+
+@contextmanager
+def serving(results, log, command=(sys.executable, "-m", "rocking.cli.app"), cwd=ROOT, **environment):
+    """`rocking serve` in a process of its own on a free port."""
+    arguments = [*command, "serve", "--port", "0", "--results", str(results)]
+    with (
+        log.open("w") as output,
+        subprocess.Popen(arguments, cwd=cwd, stdout=output, stderr=output, env=os.environ | environment) as process,
+    ):
+        try:
+            yield Server(process, log)
+        finally:
+            if process.poll() is None:
+                process.terminate()
+                try:
+                    process.wait(timeout=30)
+                except subprocess.TimeoutExpired:
+                    process.kill()

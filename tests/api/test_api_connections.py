@@ -1,0 +1,189 @@
+"""A real server against clients that are slow, long-winded or broken, and its orderly end."""
+
+import json
+import socket
+import threading
+import time
+from contextlib import suppress
+
+import httpx2
+import pytest
+
+from tests.api.servers import serving
+
+POINT = "/v1/response?pulse=sine&slenderness=0.6&frequency_ratio=6&restitution=0.85"
+
+
+@pytest.fixture(scope="module")
+def server(results, tmp_path_factory):
+    limits = {"ROCKING_ARRIVAL_SECONDS": "1", "ROCKING_MAX_HEADER_BYTES": "8192", "ROCKING_MAX_BODY_BYTES": "100000"}
+    with serving(results, tmp_path_factory.mktemp("serve") / "log", **limits) as server:
+        yield server
+
+
+@pytest.fixture
+def connection(server):
+    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as connection:
+        yield connection
+
+
+def answer_of(connection):
+    """Status and body of what comes until the server closes the connection."""
+    status, _, body = whole_answer_of(connection)
+    return status, body
+
+
+def whole_answer_of(connection):
+    """The same, with the head."""
+    received = bytearray()
+    try:
+        while part := connection.recv(65536):
+            received += part
+    except ConnectionResetError:
+        pass  # it closed while we were still talking
+    head, _, body = bytes(received).partition(b"\r\n\r\n")
+    return (int(head.split()[1]) if head else None), head.lower(), body
+
+
+def test_headers_that_do_not_arrive_end_the_connection(connection):
+    began = time.monotonic()
+    connection.sendall(b"GET /health HTTP/1.1\r\nHost: x\r\nX-Slow: ")
+    threading.Thread(target=_drip, args=(connection,), daemon=True).start()
+    status, body = answer_of(connection)
+    assert status == 408
+    assert json.loads(body)["allowed"] == "to arrive within 1 s"
+    assert time.monotonic() - began < 5
+
+
+def _drip(connection):
+    try:
+        for _ in range(100):
+            connection.sendall(b"a")
+            time.sleep(0.1)
+    except OSError:
+        pass  # the server has had enough
+
+
+def test_a_connection_that_says_nothing_is_closed(connection):
+    assert answer_of(connection)[0] == 408
+
+
+def test_slow_clients_do_not_hold_up_others(server):
+    slow = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(200)]
+    try:
+        for one in slow:
+            one.sendall(b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n{")
+        began = time.monotonic()
+        assert httpx2.get(server.address + POINT).status_code == 200
+        assert time.monotonic() - began < 0.9  # before the others are given up
+    finally:
+        for one in slow:
+            one.close()
+
+
+def test_a_body_that_does_not_arrive_is_408(connection):
+    connection.sendall(b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n{")
+    status, body = answer_of(connection)
+    assert status == 408
+    assert json.loads(body)["parameter"] == "body"
+
+
+@pytest.mark.parametrize("part", ["header", "headers", "url"])
+def test_headers_without_measure_are_431(connection, part):
+    start = {
+        "header": b"GET /health HTTP/1.1\r\nHost: x\r\nX-Long: " + b"a" * 20_000,
+        "headers": b"GET /health HTTP/1.1\r\nHost: x\r\n" + b"X-Many: a\r\n" * 2000,
+        "url": b"GET /health?" + b"a" * 20_000 + b" HTTP/1.1\r\n",
+    }[part]
+    with suppress(ConnectionError):  # refused before all was said
+        connection.sendall(start + b"\r\n\r\n")
+    status, body = answer_of(connection)
+    assert status == 431
+    assert "8192 bytes" in json.loads(body)["allowed"]
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),  # somebody else's protocol
+        b"GET / HTTP/9.9\r\n\r\n",
+        b"GET /\x00 HTTP/1.1\r\n\r\n",
+        b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
+        b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+        b"POST /v1/response HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nZZZ\r\n",
+    ],
+)
+def test_what_is_not_http_is_400(connection, said):
+    connection.sendall(said)
+    status, head, body = whole_answer_of(connection)
+    assert status == 400
+    assert b"content-type: application/problem+json" in head
+    assert b"x-content-type-options: nosniff" in head
+    assert json.loads(body)["status"] == 400
+
+
+UPGRADE = b"Host: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+
+
+def test_a_request_to_go_on_in_another_protocol_is_answered_in_this_one(connection, server):
+    connection.sendall(b"GET /health HTTP/1.1\r\n" + UPGRADE + b"\r\n")
+    assert connection.recv(65536).startswith(b"HTTP/1.1 200 ")
+    connection.sendall(b"GET /nowhere HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
+    assert answer_of(connection)[0] == 404
+    assert "pip install" not in server.log.read_text()
+    assert "upgrade" not in server.log.read_text().lower()
+
+
+@pytest.mark.parametrize("length", [b"Content-Length: 2", b"Transfer-Encoding: chunked"])
+def test_a_body_is_not_taken_for_another_protocol(connection, length):
+    connection.sendall(b"POST /v1/response HTTP/1.1\r\n" + UPGRADE + length + b"\r\n\r\n{}")
+    status, body = answer_of(connection)
+    assert status == 400
+    assert "another protocol" in json.loads(body)["detail"]
+
+
+def test_a_declared_body_beyond_the_limit_is_not_waited_for(connection):
+    connection.sendall(
+        b"POST /v1/response HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 9999999999999999\r\n\r\n"
+    )
+    status, _ = answer_of(connection)
+    assert status == 413
+
+
+def test_after_all_this_it_still_answers(server):
+    assert httpx2.get(server.address + POINT).status_code == 200
+    assert "Traceback" not in server.log.read_text()
+
+
+def test_requests_in_flight_are_answered_before_the_end(results, tmp_path):
+    with serving(results, tmp_path / "log") as server:
+        httpx2.get(server.address + POINT)
+        answers = []
+        curves = "/v1/overturning?pulse=sine&restitution=0.77"  # traced on request: some tenths of a second
+        asking = threading.Thread(target=lambda: answers.append(httpx2.get(server.address + curves, timeout=60)))
+        asking.start()
+        deadline = time.monotonic() + 30
+        while "rocking_heavy_running 1.0" not in httpx2.get(server.address + "/metrics").text and not answers:
+            assert time.monotonic() < deadline
+        status = server.stop()
+        asking.join()
+    assert [answer.status_code for answer in answers] == [200]
+    assert status in (0, -15)
+
+
+def test_the_start_takes_less_than_two_seconds_and_opens_no_cube(results, tmp_path):
+    with serving(results, tmp_path / "warm"):
+        pass
+    began = time.monotonic()
+    with serving(results, tmp_path / "log") as server:
+        assert httpx2.get(server.address + "/health").status_code == 200
+        assert time.monotonic() - began < 6  # two on a quiet machine: `python -m benchmarks.service` measures it
+
+
+def test_each_line_of_the_log_is_json(server):
+    httpx2.get(server.address + POINT, headers={"X-Request-ID": "this-one"})
+    time.sleep(0.1)
+    lines = [json.loads(line) for line in server.log.read_text().splitlines()]
+    (ours,) = [line for line in lines if line.get("request_id") == "this-one"]
+    assert ours["status"] == 200
+    assert {"time", "level", "milliseconds", "path", "query"} <= ours.keys()

@@ -1,0 +1,222 @@
+"""GET /v1/spectrum, /v1/overturning and /v1/history, in every form."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+import rocking_api.routers.overturning
+import xarray as xr
+
+from rocking.boundary.curves import join_curves
+from rocking.boundary.tracing import overturning_boundary
+from rocking.datasets.cube import read_dataset, write_dataset
+from rocking.history.time_history import time_history
+from rocking.solver.peak_response import peak_response
+from tests.api.conftest import assert_problem, client_of
+
+BLOCK = {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 50}
+ROUTES = {
+    "/v1/spectrum": SPECTRUM,
+    "/v1/overturning": {"pulse": "sine", "restitution": 0.85},
+    "/v1/history": BLOCK,
+}
+
+
+def read_netcdf(response):
+    assert response.headers["content-type"] == "application/x-netcdf"
+    return xr.open_dataset(io.BytesIO(response.content), engine="scipy").load()
+
+
+def read_csv(response):
+    assert response.headers["content-type"].startswith("text/csv")
+    return list(csv.DictReader(io.StringIO(response.text)))
+
+
+def test_spectrum_lies_within_its_bounds(client):
+    answer = client.get("/v1/spectrum", params=SPECTRUM).json()
+    truth = peak_response("sine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 50), restitution=0.85)
+    assert answer["frequency_ratio"] == np.geomspace(0.5, 12.0, 50).tolist()
+    assert answer["overturned"] == truth.overturned.tolist()
+    assert any(answer["overturned"])
+    assert {"cube", "solver"} >= set(answer["source"])
+    for peak, bound, exact in zip(answer["peak_rotation"], answer["error_bound"], truth.peak_rotation, strict=True):
+        assert peak is None or abs(peak - exact) <= bound
+
+
+def test_the_three_forms_of_a_spectrum_agree(client):
+    answer = client.get("/v1/spectrum", params=SPECTRUM).json()
+    rows = read_csv(client.get("/v1/spectrum", params=SPECTRUM | {"format": "csv"}))
+    stored = read_netcdf(client.get("/v1/spectrum", params=SPECTRUM, headers={"accept": "application/x-netcdf"}))
+    assert [row["outcome"] for row in rows] == answer["outcome"]
+    assert [float(row["peak_rotation"]) if row["peak_rotation"] else None for row in rows] == answer["peak_rotation"]
+    np.testing.assert_array_equal(
+        stored["peak_rotation"], [np.nan if peak is None else peak for peak in answer["peak_rotation"]]
+    )
+    assert stored.attrs["slenderness"] == 0.6
+
+
+def test_curves_are_traced_once_for_all_who_ask(client, monkeypatch):
+    traced = []
+
+    def trace(*args, **kwargs):
+        traced.append(args)
+        return overturning_boundary(*args, **kwargs)
+
+    monkeypatch.setattr(rocking_api.routers.overturning, "overturning_boundary", trace)
+    question = {"pulse": "half_sine", "restitution": 0.8765}
+    answers = [client.get("/v1/overturning", params=question | more) for more in ({}, {"alpha_deg": 0}, {})]
+    assert len(traced) == 1
+    assert answers[0].headers["etag"] == answers[2].headers["etag"]
+    assert answers[0].json()["curves"] == answers[1].json()["curves"]
+    known = client.get("/v1/overturning", params=question, headers={"If-None-Match": answers[0].headers["etag"]})
+    assert known.status_code == 304
+
+
+def test_overturning_reads_the_curves_of_the_workflow(client, results):
+    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+    stored = xr.load_dataset(results / "overturning" / "sine" / "eta-0.85.nc")
+    assert answer["source"] == "dataset"
+    assert answer["data_version"] == client.get("/v1/datasets/overturning/sine/eta-0.85").json()["sha256"]
+    assert [len(curve["slenderness"]) for curve in answer["curves"]] == stored["row_size"].values.tolist()
+    np.testing.assert_array_equal(
+        np.concatenate([curve["slenderness"] for curve in answer["curves"]]), stored["slenderness"]
+    )
+    assert {curve["outcome"] for curve in answer["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
+
+
+def test_overturning_finds_the_curves_of_the_angle_asked_for(own_results):
+    path = own_results / "overturning" / "sine" / "eta-0.85.nc"
+    slender = read_dataset(path)
+    alpha = np.radians(20)
+    rigid = overturning_boundary("sine", restitution=0.85, alpha=alpha, nodes=41).drop_attrs(deep=False)
+    rigid["alpha"] = "curve", np.full(rigid.sizes["curve"], alpha)
+    rigid = rigid.assign_coords({name: slender[name] for name in ("pulse", "restitution")})
+    write_dataset(join_curves([slender, rigid]), path)
+    with client_of(own_results) as client:
+        for angle, stored in ((None, slender), (0, slender), (20, rigid)):
+            asked = ROUTES["/v1/overturning"] | ({} if angle is None else {"alpha_deg": angle})
+            answer = client.get("/v1/overturning", params=asked).json()
+            assert answer["source"] == "dataset"
+            found = [s for curve in answer["curves"] for s in curve["slenderness"]]
+            assert found == stored["slenderness"].values.tolist()
+        asked["alpha_deg"] = 10
+        assert client.get("/v1/overturning", params=asked).json()["source"] == "solver"
+
+
+@pytest.mark.parametrize("changes", [{"restitution": 0.5}, {"pulse": "half_sine"}])
+def test_overturning_traces_curves_that_are_not_stored(client, changes):
+    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | changes).json()
+    assert (answer["source"], answer["data_version"]) == ("solver", None)
+    curve = max(answer["curves"], key=lambda curve: len(curve["slenderness"]))
+    assert curve["outcome"].startswith("OVERTURNED")
+    for s, w in list(zip(curve["slenderness"], curve["frequency_ratio"], strict=True))[::40]:
+        beside = s * (1 + np.array([-1e-9, 1e-9]))
+        pulse, eta = changes.get("pulse", "sine"), changes.get("restitution", 0.85)
+        fate = peak_response(pulse, slenderness=beside, frequency_ratio=w, restitution=eta).overturned
+        assert fate[0] != fate[1] or s < 0.02
+
+
+def test_damaged_curves_are_traced_instead(own_results):
+    (own_results / "overturning" / "sine" / "eta-0.85.nc").write_bytes(b"not a netCDF file")
+    with client_of(own_results) as client:
+        assert client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()["source"] == "solver"
+
+
+def test_overturning_as_csv_and_netcdf(client):
+    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+    rows = read_csv(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "csv"}))
+    stored = read_netcdf(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "nc"}))
+    points = sum(len(curve["slenderness"]) for curve in answer["curves"])
+    assert len(rows) == stored.sizes["point"] == points
+    assert int(rows[-1]["curve"]) == stored.sizes["curve"] - 1
+
+
+def test_history_is_the_solver_s(client):
+    answer = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
+    truth = time_history(**BLOCK, samples=50)
+    for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
+        assert answer[name] == truth[name].values.tolist()
+    assert answer["outcome"] == "SAFE"
+    assert answer["peak_rotation"] == pytest.approx(max(map(abs, answer["rotation"])), rel=0.05)
+
+
+def test_history_of_a_block_that_falls_has_no_peak(client):
+    answer = client.get("/v1/history", params=BLOCK | {"slenderness": 0.1, "duration": 3.0}).json()
+    assert answer["overturned"]
+    assert answer["peak_rotation"] is None
+    assert answer["tau"][-1] <= 3.0
+
+
+def test_history_as_csv_and_netcdf(client):
+    rows = read_csv(client.get("/v1/history", params=BLOCK | {"format": "csv"}))
+    stored = read_netcdf(client.get("/v1/history", params=BLOCK | {"format": "nc"}))
+    assert [float(row["rotation"]) for row in rows] == stored["rotation"].values.tolist()
+
+
+def test_history_with_the_reactions_of_the_ground(client):
+    asked = BLOCK | {"alpha_deg": 20, "samples": 50, "contact": "true"}
+    answer = client.get("/v1/history", params=asked).json()
+    truth = time_history(**BLOCK, alpha=np.radians(20), samples=50, contact=True)
+    for name in ("horizontal_reaction", "normal_reaction", "friction_demand", "friction_demand_over_slope"):
+        assert answer["contact"][name] == truth[name].values.tolist()
+    assert answer["contact"]["largest_friction_demand"] == truth.largest_friction_demand
+    assert (answer["contact"]["lifts_off"], answer["contact"]["warnings"]) == (False, "")
+    rows = read_csv(client.get("/v1/history", params=asked | {"format": "csv"}))
+    assert [float(row["friction_demand"]) for row in rows] == answer["contact"]["friction_demand"]
+    stored = read_netcdf(client.get("/v1/history", params=asked | {"format": "nc"}))
+    np.testing.assert_array_equal(stored["normal_reaction"], truth["normal_reaction"])
+    assert client.get("/v1/history", params=BLOCK).json()["contact"] is None
+
+
+def test_history_of_a_block_that_lifts_off_has_no_friction_demand_there(client):
+    stocky = BLOCK | {"slenderness": 0.2, "frequency_ratio": 12, "alpha_deg": 45, "contact": "true"}
+    contact = client.get("/v1/history", params=stocky).json()["contact"]
+    assert contact["lifts_off"]
+    assert contact["largest_friction_demand"] is None
+    pressed = [normal > 0 for normal in contact["normal_reaction"]]
+    assert [demand is not None for demand in contact["friction_demand"]] == pressed
+    assert not all(pressed)
+    rows = read_csv(client.get("/v1/history", params=stocky | {"format": "csv"}))
+    assert [row["friction_demand"] != "" for row in rows] == pressed
+    slender = client.get("/v1/history", params=BLOCK | {"contact": "true"}).json()["contact"]
+    assert slender["impulse_ratio"] is None
+    assert slender["largest_friction_demand"] == 0
+
+
+@pytest.mark.parametrize(
+    ("route", "changes", "status", "parameter"),
+    [
+        ("/v1/spectrum", {"pulse": "sinus"}, 422, "pulse"),
+        ("/v1/spectrum", {"slenderness": "nan"}, 422, "slenderness"),
+        ("/v1/spectrum", {"frequency_ratio_min": 0}, 422, "frequency_ratio_min"),
+        ("/v1/spectrum", {"frequency_ratio_max": 0.1}, 422, "frequency_ratio_max"),
+        ("/v1/spectrum", {"points": 1}, 422, "points"),
+        ("/v1/spectrum", {"points": 1.5}, 422, "points"),
+        ("/v1/spectrum", {"points": 10**9}, 413, "points"),
+        ("/v1/spectrum", {"format": "xml"}, 422, "format"),
+        ("/v1/spectrum", {"restitution": 0.7, "method": "cube"}, 422, "restitution"),
+        ("/v1/overturning", {"pulse": "sinus"}, 422, "pulse"),
+        ("/v1/overturning", {"restitution": 2}, 422, "restitution"),
+        ("/v1/overturning", {"restitution": "nan"}, 422, "restitution"),
+        ("/v1/overturning", {"alpha_deg": -1}, 422, "alpha_deg"),
+        ("/v1/history", {"pulse": "sinus"}, 422, "pulse"),
+        ("/v1/history", {"slenderness": 0}, 422, "slenderness"),
+        ("/v1/history", {"duration": -1}, 422, "duration"),
+        ("/v1/history", {"duration": "inf"}, 422, "duration"),
+        ("/v1/history", {"samples": 1}, 422, "samples"),
+        ("/v1/history", {"samples": 10**9}, 413, "samples"),
+        ("/v1/history", {"contact": "perhaps"}, 422, "contact"),
+        ("/v1/history", {"colour": "red"}, 422, "colour"),
+    ],
+)
+def test_bad_input(client, route, changes, status, parameter):
+    assert_problem(client.get(route, params=ROUTES[route] | changes), status, parameter)
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_other_methods_are_not_allowed(client, route):
+    response = client.put(route)
+    assert_problem(response, 405)
+    assert "GET" in response.headers["allow"]

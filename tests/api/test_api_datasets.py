@@ -1,0 +1,150 @@
+"""Catalogue, description, download and zarr keys of the data sets."""
+
+import base64
+import hashlib
+
+import pytest
+
+from tests.api.conftest import CUBES, assert_problem, client_of
+
+NAME = "spectra/sine/eta-0.85"
+URL = f"/v1/datasets/{NAME}.nc"
+
+
+@pytest.fixture
+def content(results):
+    return (results / f"{NAME}.nc").read_bytes()
+
+
+def test_catalogue_lists_every_file_with_its_digest(client, results):
+    listed = client.get("/v1/datasets").json()["datasets"]
+    expected = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {"overturning/sine/eta-0.85"}
+    assert {entry["name"] for entry in listed} == expected
+    for entry in listed:
+        stored = (results / f"{entry['name']}.nc").read_bytes()
+        assert entry["sha256"] == hashlib.sha256(stored).hexdigest()
+        assert entry["size"] == len(stored)
+        assert client.get(entry["netcdf"]).content == stored
+        assert client.get(entry["metadata"]).json()["name"] == entry["name"]
+        assert client.get(entry["zarr"] + "/.zmetadata").status_code == 200
+
+
+def test_description_tells_dimensions_variables_and_attributes(client):
+    described = client.get(f"/v1/datasets/{NAME}").json()
+    assert described["dimensions"] == {"alpha": 1, "slenderness": 91, "frequency_ratio": 91}
+    assert described["variables"]["peak_rotation"]["dimensions"] == ["alpha", "slenderness", "frequency_ratio"]
+    assert described["variables"]["outcome"]["attributes"]["flag_values"] == [0, 1, 2, 3]
+    assert described["coordinates"]["restitution"]["shape"] == []
+    assert "CF-1.11" in described["attributes"]["Conventions"]
+
+
+def test_download_carries_its_digest(client, content):
+    response = client.get(URL)
+    digest = hashlib.sha256(content)
+    assert response.content == content
+    assert response.headers["etag"] == f'"{digest.hexdigest()}"'
+    assert response.headers["repr-digest"] == f"sha-256=:{base64.b64encode(digest.digest()).decode()}:"
+    assert response.headers["accept-ranges"] == "bytes"
+    assert response.headers["content-type"] == "application/x-netcdf"
+    assert "spectra-sine-eta-0.85.nc" in response.headers["content-disposition"]
+    assert "content-encoding" not in response.headers
+
+
+def test_head_has_the_headers_and_no_body(client, content):
+    response = client.head(URL)
+    assert response.status_code == 200
+    assert response.content == b""
+    assert int(response.headers["content-length"]) == len(content)
+    assert response.headers["etag"] == client.get(URL).headers["etag"]
+
+
+@pytest.mark.parametrize("form", ["{}", "W/{}", '"other", {}', "*"])
+def test_unchanged_is_304(client, form):
+    etag = client.get(URL).headers["etag"]
+    response = client.get(URL, headers={"if-none-match": form.format(etag)})
+    assert response.status_code == 304
+    assert response.content == b""
+    assert response.headers["etag"] == etag
+
+
+def test_changed_is_sent(client, content):
+    assert client.get(URL, headers={"if-none-match": '"other"'}).content == content
+
+
+@pytest.mark.parametrize(
+    ("asked", "part"),
+    [("bytes=0-3", slice(0, 4)), ("bytes=100-199", slice(100, 200)), ("bytes=-7", slice(-7, None)),
+     ("bytes=90000-", slice(90000, None))],
+)  # fmt: skip
+def test_range_is_206(client, content, asked, part):
+    response = client.get(URL, headers={"range": asked})
+    assert response.status_code == 206
+    assert response.content == content[part]
+    start = part.indices(len(content))[0]
+    assert response.headers["content-range"] == f"bytes {start}-{start + len(response.content) - 1}/{len(content)}"
+
+
+def test_several_ranges_come_as_parts(client, content):
+    response = client.get(URL, headers={"range": "bytes=0-3,100-109"})
+    assert response.status_code == 206
+    assert response.headers["content-type"].startswith("multipart/byteranges")
+    assert content[100:110] in response.content
+
+
+def test_range_of_another_version_sends_the_whole(client, content):
+    etag = client.get(URL).headers["etag"]
+    assert client.get(URL, headers={"range": "bytes=0-3", "if-range": etag}).status_code == 206
+    assert client.get(URL, headers={"range": "bytes=0-3", "if-range": '"other"'}).content == content
+
+
+def test_range_outside_is_416(client, content):
+    response = client.get(URL, headers={"range": f"bytes={len(content)}-"})
+    assert_problem(response, 416, "Range")
+    assert response.headers["content-range"] == f"bytes */{len(content)}"
+
+
+@pytest.mark.parametrize("asked", ["bytes=9-3", "lines=1-2", "nonsense"])
+def test_malformed_range_is_400(client, asked):
+    assert_problem(client.get(URL, headers={"range": asked}), 400, "Range")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["spectra/sine/eta-0.99", "spectra", "../pyproject", "spectra/../../secret", "%2e%2e/x/y", ".hidden/x", "a//b"],
+)
+@pytest.mark.parametrize("suffix", ["", ".nc", ".zarr/.zmetadata"])
+def test_unknown_names_are_404(client, name, suffix):
+    assert_problem(client.get(f"/v1/datasets/{name}{suffix}"), 404)
+
+
+def test_unknown_zarr_key_is_404(client):
+    assert_problem(client.get(f"/v1/datasets/{NAME}.zarr/none/0.0"), 404)
+
+
+def test_zarr_keys_are_cached_by_the_same_etag(client):
+    response = client.get(f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0")
+    assert response.headers["content-type"] == "application/octet-stream"
+    again = client.get(
+        f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0", headers={"if-none-match": response.headers["etag"]}
+    )
+    assert again.status_code == 304
+
+
+def test_a_damaged_file_is_not_handed_on(own_results):
+    path = own_results / f"{NAME}.nc"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2 :] = bytes(len(content) - len(content) // 2)
+    path.write_bytes(content)
+    with client_of(own_results) as client:
+        for suffix in ("", ".nc", ".zarr/.zmetadata"):
+            problem = assert_problem(client.get(f"/v1/datasets/{NAME}{suffix}"), 503)
+            assert "damaged" in problem["detail"]
+
+
+def test_a_replaced_file_is_served_anew(own_results):
+    with client_of(own_results) as client:
+        curves = own_results / "overturning" / "sine" / "eta-0.85.nc"
+        old = client.get("/v1/datasets/overturning/sine/eta-0.85.nc").headers["etag"]
+        curves.write_bytes((own_results / f"{NAME}.nc").read_bytes())
+        again = client.get("/v1/datasets/overturning/sine/eta-0.85.nc", headers={"if-none-match": old})
+        assert again.content == curves.read_bytes()

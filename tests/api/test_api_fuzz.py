@@ -1,0 +1,60 @@
+"""Questions that a machine makes up from the OpenAPI description: no 5xx, and every answer as described.
+
+The same ones each time; `FUZZ_CASES=5000 FUZZ_SEED=1 pytest tests/api/test_api_fuzz.py` asks more, and others.
+"""
+
+import os
+
+import hypothesis
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+CHECKS = [not_a_server_error, content_type_conformance, response_schema_conformance, status_code_conformance]
+
+
+CASES = int(os.environ.get("FUZZ_CASES", "400"))
+SEED = os.environ.get("FUZZ_SEED")
+
+# All routes but the tracing of curves, which takes seconds for each new restitution.
+OPERATIONS = [
+    ("/v1/response", "GET"),
+    ("/v1/response", "POST"),
+    ("/v1/critical_amplitude", "GET"),
+    ("/v1/spectrum", "GET"),
+    ("/v1/map", "GET"),
+    ("/v1/history", "GET"),
+    ("/v1/blocks/response", "GET"),
+    ("/v1/datasets", "GET"),
+    ("/v1/datasets/{name}", "GET"),
+    ("/v1/datasets/{name}.nc", "GET"),
+    ("/v1/datasets/{name}.zarr/{key}", "GET"),
+    ("/health", "GET"),
+    ("/metrics", "GET"),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("path", "method"), OPERATIONS)
+def test_made_up_questions(results, path, method):
+    schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(Settings(results=results, max_samples=2000)))
+
+    # state, counts and catalogue take no parameters: there is nothing to make up
+    share = 2 if path in ("/health", "/metrics", "/v1/datasets") else CASES // (len(OPERATIONS) - 3) + 1
+
+    @settings(max_examples=share, suppress_health_check=list(HealthCheck), derandomize=SEED is None)
+    @given(case=schema[path][method].as_strategy())
+    def ask(case):
+        case.call_and_validate(checks=CHECKS, timeout=100)  # what the service grants, and more
+
+    if SEED is not None:
+        ask = hypothesis.seed(int(SEED))(ask)
+    ask()

@@ -1,0 +1,213 @@
+"""Hostile questions: each has a clear answer below 500, soon."""
+
+import gzip
+import json
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.api.conftest import assert_problem
+
+POINT = {"pulse": "sine", "slenderness": "0.6", "frequency_ratio": "6", "restitution": "0.85"}
+BLOCK = {"pulse": "sine", "half_width": "0.2", "half_height": "0.8", "peak_acceleration": "4", "pulse_period": "0.5"}
+ROUTES = {
+    "/v1/response": POINT,
+    "/v1/blocks/response": BLOCK,
+    "/v1/critical_amplitude": {key: POINT[key] for key in ("pulse", "frequency_ratio", "restitution")},
+    "/v1/spectrum": {key: POINT[key] for key in ("pulse", "slenderness", "restitution")} | {"points": "20"},
+    "/v1/history": POINT | {"samples": "20", "duration": "9"},
+    "/v1/overturning": {key: POINT[key] for key in ("pulse", "restitution")},
+}
+NO_NUMBERS = ["1e400", "-1e400", "nan", "-nan", "inf", "Infinity", "1e", "0x10", "", " ", "١", "1,5", "9" * 5000]
+NO_NUMBERS += ["null", "true", "[]", "{}", "\x00", "%00", "<script>", "' OR 1=1 --", "../../etc/passwd", "\ud7ff"]
+
+
+@pytest.fixture(autouse=True)
+def soon():
+    began = time.monotonic()
+    yield
+    assert time.monotonic() - began < 15
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS)
+@pytest.mark.parametrize("route", ROUTES)
+def test_no_number_is_refused_by_name(client, route, value):
+    for name in ROUTES[route]:
+        if name == "restitution" and value == "true":
+            continue
+        assert_problem(client.get(route, params=ROUTES[route] | {name: value}), 422, name)
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_a_parameter_given_twice_is_refused(client, route):
+    for name, value in ROUTES[route].items():
+        asked = [*ROUTES[route].items(), (name, value)]
+        problem = assert_problem(client.get(route, params=asked), 422, name)
+        assert problem["allowed"] == "one value"
+
+
+@pytest.mark.parametrize("value", ["1e-300", "1e300", "1.7976931348623157e308", "5e-324", "-0.0"])
+@pytest.mark.parametrize("route", ROUTES)
+def test_extreme_numbers_have_an_answer_or_a_reason(client, route, value):
+    for name in ROUTES[route]:
+        if name != "pulse":
+            answer = client.get(route, params=ROUTES[route] | {name: value})
+            assert answer.status_code in (200, 422)
+            json.loads(answer.text, parse_constant=pytest.fail)  # no NaN, no Infinity
+
+
+@pytest.mark.parametrize(("route", "name"), [("spectrum", "points"), ("history", "samples")])
+@pytest.mark.parametrize("value", ["-1", "0", "1", "1e3", "10.5", "9" * 30])
+def test_counts_that_are_none(client, route, name, value):
+    asked = ROUTES[f"/v1/{route}"] | {name: value}
+    assert client.get(f"/v1/{route}", params=asked).status_code in (413, 422)
+
+
+@pytest.mark.parametrize(
+    ("route", "name"),
+    [("spectrum", "points"), ("history", "samples"), ("map", "columns"), ("map", "rows")],
+)
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_integers_beyond_all_doubles(client, route, name, sign):
+    asked = {key: POINT[key] for key in ("pulse", "slenderness", "restitution", "frequency_ratio")}
+    unknown = {"spectrum": ["frequency_ratio"], "map": ["slenderness", "frequency_ratio"]}.get(route, [])
+    asked = {key: value for key, value in asked.items() if key not in unknown} | {name: sign + "9" * 400}
+    answer = client.get(f"/v1/{route}", params=asked)
+    assert_problem(answer, 413 if route == "history" and not sign else 422, name)
+
+
+NESTED = b"[" * 100_000 + b"]" * 100_000
+BODIES = [
+    b"",
+    b"null",
+    b"[]",
+    b'"text"',
+    b"\xff\xfe\x00",
+    b"{" * 100_000,
+    b'{"pulse":' * 50_000,
+    NESTED,
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":' + NESTED + b"}",
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":{"0":1}}',
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":"0.5x"}',
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":[null]}',
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":1e999}',
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":-1}',
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":' + b"9" * 100_000 + b"}",
+    b'{"pulse":["sine"],"restitution":0.9,"frequency_ratio":5,"slenderness":1}',
+    b'{"pulse":"sine","pulse":"sinus","restitution":0.9,"frequency_ratio":5,"slenderness":1}',
+    b'{"pulse":"\\ud800","restitution":0.9,"frequency_ratio":5,"slenderness":1}',
+    b'{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":1,"' + b"x" * 100_000 + b'":1}',
+]
+
+
+@pytest.mark.parametrize("body", BODIES, ids=range(len(BODIES)))
+@pytest.mark.parametrize("media_type", ["application/json", "text/csv", "application/x-netcdf"])
+def test_bodies_that_make_no_sense(client, body, media_type):
+    answer = client.post("/v1/response", content=body, headers={"content-type": media_type})
+    assert_problem(answer, 422)
+    assert len(answer.content) < 2000
+
+
+@pytest.mark.parametrize("media_type", ["application/json", "text/csv", "application/x-netcdf"])
+@pytest.mark.parametrize("coding", ["gzip", "deflate", "br", "gzip, identity"])
+def test_compressed_bodies_are_not_unpacked(client, media_type, coding):
+    bomb = gzip.compress(b" " * 50_000_000)
+    headers = {"content-type": media_type, "content-encoding": coding}
+    assert_problem(client.post("/v1/response", content=bomb, headers=headers), 415, "Content-Encoding")
+
+
+@pytest.mark.parametrize("declared", ["²", "1e3", "-1", "", "9" * 6000])
+def test_odd_lengths_of_a_body(client, declared):
+    headers = {"content-type": "application/json", "content-length": declared.encode("latin-1")}
+    assert client.post("/v1/response", content=b"{}", headers=headers).status_code in (413, 422)
+
+
+def test_a_netcdf_file_that_lies_about_its_size(client):
+    body = bytearray(xr.Dataset({"slenderness": ("point", np.linspace(0.1, 0.9, 50))}).to_netcdf(engine="scipy"))
+    where = body.index(b"point") + 8  # after the name, padded: the length of the dimension
+    for length in (51, 10**6, 2**31 - 1):
+        body[where : where + 4] = length.to_bytes(4, "big")
+        answer = client.post(
+            "/v1/response",
+            params={"pulse": "sine", "frequency_ratio": 5, "restitution": 0.9},
+            content=bytes(body),
+            headers={"content-type": "application/x-netcdf"},
+        )
+        assert answer.status_code in (413, 422), length
+
+
+def test_a_netcdf_file_damaged_anywhere(client):
+    whole = bytes(xr.Dataset({"slenderness": ("point", np.linspace(0.1, 0.9, 5))}).to_netcdf(engine="scipy"))
+    random = np.random.default_rng(5)
+    for _ in range(300):
+        body = bytearray(whole)
+        for position in random.integers(4, len(body), 3):
+            body[position] = random.integers(256)
+        answer = client.post(
+            "/v1/response",
+            params={"pulse": "sine", "frequency_ratio": 5, "restitution": 0.9},
+            content=bytes(body[: random.integers(4, len(body) + 1)]),
+            headers={"content-type": "application/x-netcdf"},
+        )
+        assert answer.status_code in (200, 413, 422)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "..%2f..%2fpyproject",
+        "%2e%2e%2f%2e%2e%2fpyproject",
+        "..%252f..%252fpyproject",
+        "....//....//pyproject",
+        "spectra%2f..%2f..%2fsecret",
+        "spectra/sine/eta-0.85.nc%00",
+        "spectra\\sine\\eta-0.85",
+        "/etc/passwd",
+        "%2fetc%2fpasswd",
+        "file:%2f%2f%2fetc%2fpasswd",
+        "spectra/sine/%2e/eta-0.85",
+        "~root/x",
+        "a" * 256,
+        "spectra/" + "a" * 256,
+        "a" * 5000,
+        "a/" * 2000 + "a",
+        "spectra/\ud7ff/x",
+    ],
+)
+@pytest.mark.parametrize("suffix", ["", ".nc", ".zarr/.zmetadata", ".zarr/../../../x"])
+def test_names_that_lead_elsewhere_are_404(client, name, suffix):
+    assert_problem(client.get(f"/v1/datasets/{name}{suffix}"), 404)
+
+
+@pytest.mark.parametrize("key", ["../../eta-0.85.nc", "..%2f..%2fx", "%00", "a" * 5000, ".zmetadata/../x", ""])
+def test_zarr_keys_that_lead_elsewhere_are_404(client, key):
+    assert client.get(f"/v1/datasets/spectra/sine/eta-0.85.zarr/{key}").status_code == 404
+
+
+@pytest.mark.parametrize("path", ["/static/../app.py", "/static/..%2fapp.py", "/static/%2e%2e/app.py", "/static/%00"])
+def test_only_what_is_static_is_handed_out(client, path):
+    assert client.get(path).status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("header", "value"),
+    [
+        ("accept", "application/json;q=" + "9" * 5000),
+        ("accept", ",".join(["text/csv;q=x"] * 2000)),
+        ("if-none-match", '"' + "a" * 20_000),
+        ("range", "bytes=" + ",".join(f"{k}-{k}" for k in range(3000))),
+        ("range", "bytes=0-" + "9" * 5000),
+        ("if-range", "\x80"),
+        ("accept-encoding", "gzip;q=nan"),
+        ("content-type", "application/json; charset=" + "x" * 5000),
+        ("x-request-id", "\x80\x81"),
+        ("host", "[::::"),
+        ("origin", "null"),
+    ],
+)
+def test_odd_headers(client, header, value):
+    for url in ("/v1/response?pulse=sine&slenderness=2&frequency_ratio=1&restitution=1", "/v1/datasets", "/",
+                "/v1/datasets/spectra/sine/eta-0.85.nc"):  # fmt: skip
+        assert client.get(url, headers={header: value.encode("latin-1")}).status_code < 500

@@ -1,0 +1,316 @@
+"""Under load: queue and time limit of heavy work, clients that go away, questions that arrive together."""
+
+import asyncio
+import json
+import sys
+import threading
+import time
+
+import httpx2
+import pytest
+import rocking_api.http.batch_response
+from rocking_api.execution.batching import Together
+from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
+from rocking_api.models.params import ResponseQuestion
+from starlette.requests import ClientDisconnect
+
+import rocking
+from rocking._numba.cancellation import StopFlag, attempt
+from rocking.errors import StoppedError
+from tests.api.conftest import assert_problem, client_of
+from tests.api.test_api_observed import metrics_of
+
+POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+BATCH = POINT | {"slenderness": [0.6, 0.7]}
+
+
+class Gate:
+    """Heavy work that waits to be let through."""
+
+    def __init__(self):
+        self.open = threading.Event()
+        self.begun = threading.Semaphore(0)
+
+    def work(self, *_):
+        self.begun.release()
+        assert self.open.wait(30)
+        return "done"
+
+
+def test_beyond_the_queue_work_is_refused_and_the_rest_is_done():
+    async def scenario():
+        shop, gate = BoundedExecutor(workers=1, queue=2, seconds=30), Gate()
+        asked = [asyncio.create_task(shop.run(gate.work)) for _ in range(3)]
+        await asyncio.to_thread(gate.begun.acquire)
+        assert (shop.running, shop.waiting) == (1, 2)
+        with pytest.raises(BusyError):
+            await shop.run(gate.work)
+        gate.open.set()
+        assert await asyncio.gather(*asked) == ["done"] * 3
+        assert (shop.running, shop.waiting) == (0, 0)
+
+    asyncio.run(scenario())
+
+
+def test_work_that_cannot_be_stopped_keeps_its_place_after_its_time():
+    async def scenario():
+        shop, gate = BoundedExecutor(workers=1, queue=0, seconds=0.05), Gate()
+        with pytest.raises(TimeLimitError, match=r"0\.05 s"):
+            await shop.run(gate.work)
+        assert shop.running == 1
+        with pytest.raises(BusyError):
+            await shop.run(gate.work)
+        gate.open.set()
+        while shop.running:
+            await asyncio.sleep(0.001)
+
+    asyncio.run(scenario())
+
+
+def slow_search(stop):
+    """An elastic block under a slow pulse: it strikes the ground without end, for half a minute."""
+    return rocking.critical_amplitude("c2", frequency_ratio=0.05, restitution=1.0, alpha=0.2, stop=stop)
+
+
+class Gone:
+    """A request whose client goes away soon."""
+
+    async def receive(self):
+        await asyncio.sleep(0.2)
+        return {"type": "http.disconnect"}
+
+
+@pytest.mark.parametrize(
+    ("seconds", "request_", "error"),
+    [(0.2, None, TimeLimitError), (30, Gone(), ClientDisconnect)],
+    ids=["time", "gone"],
+)
+def test_the_thread_is_free_soon_after_the_time_is_up_or_the_client_has_gone(seconds, request_, error):
+    rocking.peak_response("c2", slenderness=0.5, frequency_ratio=1.0, restitution=0.9, alpha=0.2)  # compiled
+
+    async def scenario():
+        executor = BoundedExecutor(workers=1, queue=0, seconds=seconds)
+        with pytest.raises(error):
+            await executor.run(slow_search, request_)
+        began = time.process_time()
+        while executor.running:
+            await asyncio.sleep(0.001)
+        return time.process_time() - began
+
+    assert asyncio.run(scenario()) < 0.1
+
+
+def test_work_is_not_traced():
+    def work(_):
+        return sys.getprofile(), sys.gettrace()
+
+    assert asyncio.run(BoundedExecutor(1, 0, 30).run(work)) == (None, sys.gettrace())
+
+
+def test_a_full_queue_is_503_with_a_hint_and_points_go_on(results, monkeypatch):
+    gate = Gate()
+    with client_of(results, max_workers=1, max_queue=0) as client:
+        client.get("/v1/response", params=POINT)
+        shop = client.app.state.service.executor
+        monkeypatch.setattr(rocking_api.http.batch_response, "ask", lambda *_, **__: gate.work())
+        batch = threading.Thread(target=client.post, args=("/v1/response",), kwargs={"json": BATCH})
+        batch.start()
+        gate.begun.acquire()
+        refused = client.post("/v1/response", json=BATCH)
+        assert_problem(refused, 503)
+        assert int(refused.headers["retry-after"]) > 0
+        assert client.get("/v1/response", params=POINT).status_code == 200
+        assert client.get("/health").status_code == 200
+        assert metrics_of(client)["rocking_heavy_running",] == shop.running == 1
+        gate.open.set()
+        batch.join()
+
+
+HEAVY = {
+    "/v1/blocks/response": {"pulse": "sine", "half_width": 0.2, "half_height": 0.8, "peak_acceleration": 4.0,
+                            "pulse_period": 0.5, "method": "solver"},
+    "/v1/critical_amplitude": {"pulse": "sine", "frequency_ratio": 6.0, "restitution": 0.85},
+    "/v1/spectrum": {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85},
+    "/v1/map": {"pulse": "sine", "restitution": 0.85},
+    "/v1/overturning": {"pulse": "sine", "restitution": 0.85},
+    "/v1/history": POINT,
+}  # fmt: skip
+WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ratio": -1.0, "slenderness": -1.0,
+         "half_width": -1.0, "tolerance": -1.0, "highest_amplitude": 0.5, "points": 1, "samples": 1, "columns": 1,
+         "rows": 1, "duration": -1.0, "frequency_ratio_min": -1.0, "slenderness_max": 0.0}  # fmt: skip
+
+
+@pytest.mark.parametrize("path", HEAVY)
+def test_a_wrong_question_does_not_wait(results, path):
+    """All places are taken: a right question is refused for that, a wrong one for what is wrong with it."""
+    with client_of(results, max_workers=1, max_queue=0) as client:
+        schema = client.get("/openapi.json").json()["paths"][path]["get"]["parameters"]
+        gate = Gate()
+        held = client.app.state.service.executor._pool.submit(gate.work)
+        client.app.state.service.executor._inside[held] = StopFlag()
+        try:
+            assert_problem(client.get(path, params=HEAVY[path]), 503)
+            for name in {parameter["name"] for parameter in schema} & set(WRONG):
+                assert_problem(client.get(path, params=HEAVY[path] | {name: WRONG[name]}), 422, name)
+        finally:
+            gate.open.set()
+
+
+@pytest.mark.parametrize("form", ["json", "csv"])
+def test_a_wrong_batch_does_not_wait(results, form):
+    with client_of(results, max_workers=1, max_queue=0) as client:
+        gate = Gate()
+        held = client.app.state.service.executor._pool.submit(gate.work)
+        client.app.state.service.executor._inside[held] = StopFlag()
+
+        def post(**wrong):
+            if form == "json":
+                return client.post("/v1/response", json=BATCH | wrong)
+            asked = {key: value for key, value in (POINT | wrong).items() if key != "slenderness"}
+            body = f"slenderness\n{wrong.get('slenderness', 0.6)}\n"
+            return client.post("/v1/response", params=asked, content=body, headers={"content-type": "text/csv"})
+
+        try:
+            assert_problem(post(), 503)
+            for name in ("pulse", "alpha_deg", "tolerance", "restitution", "frequency_ratio", "slenderness"):
+                assert_problem(post(**{name: WRONG[name]}), 422, name)
+        finally:
+            gate.open.set()
+
+
+def test_too_long_is_504(results, monkeypatch):
+    monkeypatch.setattr(rocking_api.http.batch_response, "PIECE", 1)
+    with client_of(results, max_seconds=0.2) as client:
+        many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
+        problem = assert_problem(client.post("/v1/response", json=many), 504)
+        assert "0.2 s" in problem["detail"]
+
+
+@pytest.mark.parametrize("path", ["/v1/critical_amplitude", "/v1/overturning"])
+def test_a_search_that_takes_too_long_is_504_and_leaves_its_place(results, path):
+    """An elastic block under a slow pulse has changes of fate without number: it takes half a minute."""
+    question = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
+    if path == "/v1/critical_amplitude":
+        question["frequency_ratio"] = 0.05
+    with client_of(results, max_seconds=0.3) as client:
+        assert_problem(client.get(path, params=question), 504)
+        began = time.monotonic()
+        while client.app.state.service.executor.running:
+            time.sleep(0.01)
+            assert time.monotonic() - began < 0.5
+
+
+def test_a_part_of_the_work_may_have_an_end_of_its_own():
+    def both(stop):
+        return attempt(slow_search, 0.05, stop), attempt(lambda part: part.is_set(), 10.0, stop)
+
+    assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
+
+
+def test_the_end_of_the_whole_is_no_end_of_a_part():
+    async def scenario():
+        ended = []
+
+        def work(stop):
+            try:
+                return attempt(slow_search, 30.0, stop)
+            except StoppedError:
+                ended.append("the whole")
+                raise
+
+        executor = BoundedExecutor(1, 0, 0.1)
+        with pytest.raises(TimeLimitError):
+            await executor.run(work)
+        while executor.running:
+            await asyncio.sleep(0.001)
+        return ended
+
+    assert asyncio.run(scenario()) == ["the whole"]
+
+
+def test_batches_in_pieces_are_the_same(client, monkeypatch):
+    many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
+    whole = client.post("/v1/response", json=many).json()
+    monkeypatch.setattr(rocking_api.http.batch_response, "PIECE", 7)
+    assert client.post("/v1/response", json=many).json() == whole
+
+
+def test_questions_asked_together_have_the_answers_of_questions_asked_alone(results):
+    questions = [POINT | {"slenderness": 0.05 + 0.03 * k} for k in range(30)]
+    questions += [POINT | {"method": "cube", "slenderness": s} for s in (0.01, 0.6, 0.02)]
+    questions += [POINT | {"slenderness": -1.0}, POINT | {"tolerance": -1.0}, POINT | {"pulse": "sinus"}]
+    with client_of(results) as client:
+        alone = [client.get("/v1/response", params=question) for question in questions]
+        calls = _count_calls(client.app.state.service.atlas)
+        together = asyncio.run(_all_at_once(client.app, questions))
+    assert [answer.status_code for answer in alone] == [status for status, _ in together]
+    for one, (_, body) in zip(alone, together, strict=True):
+        found = json.loads(body)
+        assert found == one.json()
+    assert len(calls) < len(questions) / 2
+
+
+def test_a_question_waits_for_those_that_come_with_the_next_turns_of_the_loop(results):
+    async def one_a_turn(together, questions):
+        asked = []
+        for question in questions:
+            asked.append(asyncio.create_task(together.ask(question)))
+            await asyncio.sleep(0)
+        return await asyncio.gather(*asked)
+
+    questions = [ResponseQuestion(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
+    with client_of(results) as client:
+        atlas = client.app.state.service.atlas
+
+        def gathered():
+            return Together(atlas, BoundedExecutor(1, 16, 30.0))
+
+        alone = [asyncio.run(one_a_turn(gathered(), [question]))[0] for question in questions]
+        calls = _count_calls(atlas)
+        assert asyncio.run(one_a_turn(gathered(), questions)) == alone
+    assert len(calls) == 1
+
+
+def test_an_error_inside_reaches_all_that_asked(results, monkeypatch):
+    with client_of(results) as client:
+        monkeypatch.setattr(client.app.state.service.atlas, "is_open", lambda *_: 1 / 0)
+        together = asyncio.run(_all_at_once(client.app, [POINT, POINT | {"slenderness": 0.5}]))
+    assert [status for status, _ in together] == [500, 500]
+
+
+def test_blocks_that_strike_without_end_do_not_hold_up_the_event_loop(results):
+    """One of them takes a sixth of a second, twice."""
+    elastic = {"pulse": "c2", "slenderness": 1 - 1e-7, "frequency_ratio": 0.05, "restitution": 1.0, "alpha_deg": 11.0}
+    with client_of(results) as client:
+        together = client.app.state.service.together
+        client.get("/v1/response", params=POINT)
+
+        async def scenario():
+            asked = asyncio.create_task(together.ask(ResponseQuestion(**elastic)))
+            longest, before = 0.0, time.perf_counter()
+            while not asked.done():
+                await asyncio.sleep(0.001)
+                longest, before = max(longest, time.perf_counter() - before), time.perf_counter()
+            return longest, (await asked).source
+
+        longest, source = asyncio.run(scenario())
+    assert source == "solver"
+    assert longest < 0.1
+
+
+def _count_calls(atlas):
+    calls, respond = [], atlas.response
+
+    def counted(*args, **kwargs):
+        calls.append(args)
+        return respond(*args, **kwargs)
+
+    atlas.response = counted
+    return calls
+
+
+async def _all_at_once(app, questions):
+    transport = httpx2.ASGITransport(app=app, raise_app_exceptions=False)
+    async with httpx2.AsyncClient(transport=transport, base_url="http://service") as client:
+        answers = await asyncio.gather(*(client.get("/v1/response", params=question) for question in questions))
+    return [(answer.status_code, answer.content) for answer in answers]

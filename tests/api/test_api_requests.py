@@ -1,0 +1,14 @@
+"""Random requests to all routes; `python -m tests.api.fuzzer` sends more of them, and others."""
+
+import asyncio
+
+import pytest
+
+from tests.api.fuzzer import ask_all
+
+
+@pytest.mark.slow
+def test_random_requests(results):
+    statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=600))
+    assert not faults
+    assert {"200", "304", "404", "405", "413", "415", "422"} <= set(statuses)

@@ -1,0 +1,267 @@
+"""GET and POST /v1/response."""
+
+import io
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from rocking.datasets.cube import write_dataset
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
+from rocking.spectra.cubes import spectra
+from tests.api.conftest import assert_problem, client_of
+
+QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+
+
+def ask(client, **changes):
+    return client.get("/v1/response", params=QUESTION | changes)
+
+
+def test_an_answer_from_a_cube(client):
+    answer = ask(client).json()
+    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
+    assert answer["source"] == "cube"
+    assert abs(answer["peak_rotation"] - truth.peak_rotation) <= answer["error_bound"] <= 1e-4
+    assert answer["outcome"] == Outcome(truth.outcome).name == "SAFE"
+    assert answer["impacts"] == truth.impacts
+    assert not answer["overturned"]
+    assert answer["query"] == QUESTION | {"alpha_deg": None, "method": "auto", "tolerance": 1e-4}
+    stored = client.get("/v1/datasets/spectra/sine/eta-0.85").json()
+    assert answer["data_version"] == stored["sha256"]
+
+
+def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
+    window = {"slenderness": np.linspace(0.5, 0.7, 41), "frequency_ratio": np.geomspace(5.0, 8.0, 31)}
+    for cube in spectra("sine", restitution=[0.82, 0.84, 0.86, 0.88, 0.90], **window):
+        write_dataset(cube, tmp_path / "spectra" / "sine" / f"eta-{float(cube.restitution):.2f}.nc")
+    with client_of(tmp_path) as client:
+        answer = ask(client, restitution=0.87).json()
+        below = client.get("/v1/datasets/spectra/sine/eta-0.86").json()
+    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.87)
+    assert answer["source"] == "cube"
+    assert answer["data_version"] == below["sha256"]
+    assert abs(answer["peak_rotation"] - truth.peak_rotation) <= answer["error_bound"] <= 1e-4
+
+
+def test_an_answer_from_the_solver_is_the_solver_s(client):
+    answer = ask(client, method="solver").json()
+    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
+    assert answer["source"] == "solver"
+    assert answer["peak_rotation"] == truth.peak_rotation
+    assert 0 < answer["error_bound"] < 1e-9
+    assert answer["data_version"] is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}, {"tolerance": 1e-13}],
+    ids=["no cube of this restitution", "outside the cube", "no cube of this pulse", "too coarse"],
+)
+def test_auto_asks_the_solver_where_no_cube_answers(client, changes):
+    answer = ask(client, **changes).json()
+    assert answer["source"] == "solver"
+    asked = {key: value for key, value in (QUESTION | changes).items() if key not in ("pulse", "tolerance")}
+    assert answer["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **asked).peak_rotation
+
+
+def test_overturned_has_no_peak_and_says_why(client):
+    answer = ask(client, slenderness=0.3, frequency_ratio=2.0).json()
+    assert answer["overturned"]
+    assert answer["peak_rotation"] is answer["error_bound"] is None
+    assert "overturns" in answer["note"]
+
+
+def test_above_slenderness_one_nothing_moves(client):
+    answer = ask(client, slenderness=1.5, method="cube").json()
+    assert (answer["outcome"], answer["peak_rotation"], answer["error_bound"]) == ("NO_UPLIFT", 0.0, 0.0)
+
+
+def test_mirrored_pulse_answers_alike(client):
+    direct, mirrored = ask(client).json(), ask(client, pulse="-sine").json()
+    assert mirrored["peak_rotation"] == direct["peak_rotation"]
+    assert mirrored["source"] == "cube"
+
+
+@pytest.mark.parametrize(
+    ("changes", "parameter"),
+    [
+        ({"pulse": "sinus"}, "pulse"),
+        ({"restitution": 1.01}, "restitution"),
+        ({"restitution": -0.1}, "restitution"),
+        ({"slenderness": 0}, "slenderness"),
+        ({"slenderness": -1}, "slenderness"),
+        ({"slenderness": "nan"}, "slenderness"),
+        ({"slenderness": "inf"}, "slenderness"),
+        ({"slenderness": "much"}, "slenderness"),
+        ({"frequency_ratio": "-inf"}, "frequency_ratio"),
+        ({"frequency_ratio": 0}, "frequency_ratio"),
+        ({"tolerance": -1}, "tolerance"),
+        ({"tolerance": "nan"}, "tolerance"),
+        ({"method": "guess"}, "method"),
+        ({"alpha_deg": 95}, "alpha_deg"),
+        ({"tolerence": 1e-6}, "tolerence"),
+        ({"frequency_ratio": 40, "method": "cube"}, "frequency_ratio"),
+        ({"slenderness": 0.01, "method": "cube"}, "slenderness"),
+        ({"restitution": 0.7, "method": "cube"}, "restitution"),
+        ({"tolerance": 1e-13, "method": "cube"}, "tolerance"),
+    ],
+)
+def test_bad_input_names_parameter_value_and_range(client, changes, parameter):
+    problem = assert_problem(ask(client, **changes), 422, parameter)
+    value = next(iter(changes.values()))
+    assert str(problem["value"]).startswith(str(value)) or float(problem["value"]) == value
+
+
+def test_a_missing_parameter_is_named(client):
+    problem = assert_problem(client.get("/v1/response", params={"pulse": "sine"}), 422, "slenderness")
+    assert problem["allowed"] == "required"
+
+
+BATCH = {
+    "slenderness": np.array([0.6, 0.3, 1.2, 0.62]),
+    "frequency_ratio": np.array([6.0, 2.0, 1.0, 20.0]),
+    "restitution": np.array([0.85, 0.85, 0.85, 0.7]),
+}
+TRUTH = [Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY, Outcome.NO_UPLIFT, Outcome.SAFE]
+
+
+def test_json_batch_answers_as_single_questions(client):
+    body = {"pulse": "sine"} | {name: values.tolist() for name, values in BATCH.items()}
+    answer = client.post("/v1/response", json=body).json()
+    assert answer["query"]["points"] == 4
+    for k in range(4):
+        single = ask(client, **{name: values[k] for name, values in BATCH.items()}).json()
+        for name in ("peak_rotation", "overturned", "outcome", "impacts", "exceeded_alpha", "error_bound", "source"):
+            assert answer[name][k] == single[name]
+    assert answer["data_versions"] == [ask(client).json()["data_version"]]
+
+
+def test_numbers_broadcast_against_arrays(client):
+    body = {"pulse": "sine", "slenderness": [0.5, 0.6], "frequency_ratio": 6.0, "restitution": 0.85}
+    assert client.post("/v1/response", json=body).json()["outcome"] == ["SAFE", "SAFE"]
+    body["slenderness"] = []
+    assert client.post("/v1/response", json=body).json()["outcome"] == []
+
+
+def test_csv_batch(client):
+    lines = [",".join(BATCH), *(",".join(map(repr, map(float, row))) for row in zip(*BATCH.values(), strict=True))]
+    answer = client.post(
+        "/v1/response",
+        params={"pulse": "sine", "tolerance": 1e-3},
+        content="\r\n".join(lines),
+        headers={"content-type": "text/csv"},
+    )
+    assert answer.headers["content-type"].startswith("text/csv")
+    header, *rows = [line.split(",") for line in answer.text.splitlines()]
+    assert [row[header.index("outcome")] for row in rows] == [outcome.name for outcome in TRUTH]
+    assert rows[1][header.index("peak_rotation")] == ""
+    assert float(rows[0][header.index("error_bound")]) <= 1e-3
+
+
+def test_netcdf_batch_in_and_out(client):
+    grid = xr.Dataset(coords={"slenderness": [0.5, 0.6, 1.5], "frequency_ratio": [5.0, 6.0]})
+    answer = client.post(
+        "/v1/response",
+        params={"pulse": "sine", "restitution": 0.85},
+        content=bytes(grid.to_netcdf(engine="scipy")),
+        headers={"content-type": "application/x-netcdf"},
+    )
+    assert answer.headers["content-type"] == "application/x-netcdf"
+    found = xr.open_dataset(io.BytesIO(answer.content), engine="scipy").load()
+    truth = peak_response(
+        "sine", slenderness=found.slenderness, frequency_ratio=found.frequency_ratio, restitution=0.85
+    )
+    assert found.sizes == {"point": 6}
+    np.testing.assert_array_equal(found.outcome, truth.outcome)
+    assert np.all(np.abs(found.peak_rotation - truth.peak_rotation) <= found.error_bound)
+    assert found.attrs["pulse"] == "sine"
+    assert found.outcome.attrs["flag_meanings"].split()[1] == "safe"
+
+
+def test_the_accept_header_chooses_the_form(client):
+    body = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+    answer = client.post("/v1/response", json=body, headers={"accept": "text/csv;q=1, */*"})
+    assert answer.text.splitlines()[0].startswith("slenderness,frequency_ratio,restitution,peak_rotation")
+
+
+def post(client, content, media_type, **parameters):
+    return client.post("/v1/response", params=parameters, content=content, headers={"content-type": media_type})
+
+
+@pytest.mark.parametrize(
+    ("content", "media_type", "parameters", "parameter"),
+    [
+        (b"{", "application/json", {}, "body"),
+        (b"[1, 2]", "application/json", {}, "body"),
+        (b'{"pulse": "sine", "slenderness": [NaN], "frequency_ratio": 1, "restitution": 1}', "application/json", {},
+         "slenderness"),
+        (b'{"pulse": "sine", "slenderness": [1, 2], "frequency_ratio": [1, 2, 3], "restitution": 1}',
+         "application/json", {}, "slenderness"),
+        (b'{"pulse": "sine", "slenderness": [[1]], "frequency_ratio": 1, "restitution": 1}', "application/json", {},
+         "slenderness"),
+        (b'{"pulse": "sine", "slenderness": 1, "frequency_ratio": 1, "restitution": 1}', "application/json",
+         {"method": "cube"}, "method"),
+        (b"slenderness,frequency_ratio\n0.5,5\n", "text/csv", {"pulse": "sine"}, "restitution"),
+        (b"slenderness,mass\n0.5,5\n", "text/csv", {"pulse": "sine"}, "body"),
+        (b"slenderness,frequency_ratio,restitution\n0.5,5\n", "text/csv", {"pulse": "sine"}, "body"),
+        (b"slenderness,frequency_ratio,restitution\n0.5,5,x\n", "text/csv", {"pulse": "sine"}, "body"),
+        (b"slenderness\n\xff\n", "text/csv", {"pulse": "sine"}, "body"),
+        (b"slenderness\n0.5\n", "text/csv", {"pulse": "sine", "slenderness": "0.4"}, "slenderness"),
+        (b"slenderness\n0.5\n", "text/csv", {"pulse": "sine", "restitution": "0.4", "frequency_ratio": "x"},
+         "frequency_ratio"),
+        (b"slenderness\n0.5\n", "text/csv", {"pulse": "sine", "eta": "0.4"}, "eta"),
+        (b"\x89HDF\r\n", "application/x-netcdf", {"pulse": "sine"}, "body"),
+        (b"CDF\x01\x00\x00", "application/x-netcdf", {"pulse": "sine"}, "body"),
+    ],
+)  # fmt: skip
+def test_bodies_that_cannot_be_read_are_explained(client, content, media_type, parameters, parameter):
+    assert_problem(post(client, content, media_type, **parameters), 422, parameter)
+
+
+def test_unknown_form_of_body(client):
+    assert_problem(post(client, b"<x/>", "application/xml"), 415, "Content-Type")
+
+
+def test_too_much_at_once(results):
+    with client_of(results, max_points=3, max_body_bytes=2000) as client:
+        body = {"pulse": "sine", "slenderness": [0.5] * 4, "frequency_ratio": 5.0, "restitution": 0.85}
+        assert_problem(client.post("/v1/response", json=body), 413, "points")
+        body["slenderness"] = [0.5] * 3
+        assert client.post("/v1/response", json=body).status_code == 200
+        assert_problem(post(client, b" " * 2001, "application/json"), 413, "body")
+        chunks = iter([b"slenderness\n", *[b"0.5\n"] * 1000])  # no Content-Length
+        assert_problem(post(client, chunks, "text/csv", pulse="sine"), 413, "body")
+        grid = xr.Dataset(coords={"slenderness": [0.5, 0.6], "frequency_ratio": [5.0, 6.0]})
+        content = bytes(grid.to_netcdf(engine="scipy"))
+        assert_problem(post(client, content, "application/x-netcdf", pulse="sine", restitution=1.0), 413, "points")
+
+
+def test_other_methods_are_not_allowed(client):
+    response = client.put("/v1/response")
+    assert_problem(response, 405)
+    assert response.headers["allow"] == "GET, POST"
+
+
+@pytest.mark.parametrize(
+    ("changes", "parameter"),
+    [
+        ({"slenderness": 1e-10}, "slenderness"),
+        ({"frequency_ratio": 1e7}, "frequency_ratio"),
+        ({"frequency_ratio": 1e-7}, "frequency_ratio"),
+        ({"alpha_deg": 1e-9}, "alpha_deg"),
+    ],
+)
+def test_beyond_the_border_of_the_service(client, changes, parameter):
+    assert_problem(ask(client, **changes), 422, parameter)
+
+
+@pytest.mark.parametrize("slenderness", [1e-9, 1e-4, 0.5, 0.9999999, 1.0, 1e300])
+@pytest.mark.parametrize("frequency_ratio", [1e-6, 0.05, 50.0, 1e6])
+@pytest.mark.parametrize("alpha_deg", [0.0, 1e-6, 89.9])
+def test_up_to_the_border_every_question_has_an_answer(client, slenderness, frequency_ratio, alpha_deg):
+    answer = ask(client, slenderness=slenderness, frequency_ratio=frequency_ratio, alpha_deg=alpha_deg)
+    assert answer.status_code == 200
+    found = answer.json()
+    assert found["overturned"] == (found["peak_rotation"] is None)

@@ -1,0 +1,191 @@
+"""Health, pages, and what the service does when data sets are missing or damaged."""
+
+import hashlib
+import logging
+import re
+import time
+from pathlib import Path
+
+import pytest
+import rocking_api
+from fastapi.testclient import TestClient
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
+
+from tests.api.conftest import assert_problem, client_of
+
+STATIC = Path(rocking_api.__file__).parent / "static"
+QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+
+
+def health_of(client):
+    """What /health says once every data set was checked."""
+    deadline = time.monotonic() + 30
+    while (health := client.get("/health").json())["unchecked"] and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return health
+
+
+def test_healthy(client):
+    assert health_of(client) | {"version": ""} == {
+        "status": "ok",
+        "version": "",
+        "datasets": 3,
+        "unchecked": 0,
+        "problems": {},
+    }
+
+
+def test_without_results_the_solver_answers_and_health_says_so(tmp_path):
+    with client_of(tmp_path / "none") as client:
+        health = health_of(client)
+        assert health["status"] == "degraded"
+        assert "make reproduce" in health["problems"]["spectra"]
+        assert client.get("/v1/response", params=QUESTION).json()["source"] == "solver"
+        assert client.get("/v1/datasets").json() == {"datasets": []}
+        assert_problem(client.get("/v1/response", params=QUESTION | {"method": "cube"}), 422, "restitution")
+
+
+def test_with_a_damaged_cube_the_solver_answers_and_health_says_so(client, own_results):
+    path = own_results / "spectra" / "sine" / "eta-0.85.nc"
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with client_of(own_results) as damaged:
+        answer = damaged.get("/v1/response", params=QUESTION).json()
+        assert answer["source"] == "solver"
+        assert (
+            answer["peak_rotation"]
+            == client.get("/v1/response", params=QUESTION | {"method": "solver"}).json()["peak_rotation"]
+        )
+        health = health_of(damaged)
+        assert health["status"] == "degraded"
+        assert "damaged" in health["problems"]["spectra/sine/eta-0.85"]
+        assert_problem(damaged.get("/v1/response", params=QUESTION | {"method": "cube"}), 503)
+        path.write_bytes(whole)  # mended: noticed without a restart
+        assert damaged.get("/v1/response", params=QUESTION).json()["source"] == "cube"
+        assert health_of(damaged)["status"] == "ok"
+
+
+def test_a_cube_under_another_name_is_refused(own_results):
+    own = own_results / "spectra"
+    (own / "sine" / "eta-0.85.nc").write_bytes((own / "cosine" / "eta-0.90.nc").read_bytes())
+    with client_of(own_results) as client:
+        assert client.get("/v1/response", params=QUESTION).json()["source"] == "solver"
+        assert "holds cosine" in health_of(client)["problems"]["spectra/sine/eta-0.85"]
+
+
+def test_the_start_warns_of_what_is_missing(tmp_path, caplog):
+    with caplog.at_level(logging.WARNING, "rocking.service"), client_of(tmp_path):
+        deadline = time.monotonic() + 20
+        while "no spectrum cubes" not in caplog.text and time.monotonic() < deadline:
+            time.sleep(0.02)
+    assert "no spectrum cubes" in caplog.text
+
+
+@pytest.mark.parametrize("page", ["/", "/docs"])
+def test_pages_load_nothing_from_outside(client, page):
+    response = client.get(page)
+    assert response.headers["content-type"].startswith("text/html")
+    assert "default-src 'self'" in response.headers["content-security-policy"]
+    for link in re.findall(r'(?:src|href|action)="([^"]+)"', response.text):
+        assert link.startswith("/")
+        assert client.get(link).status_code in (200, 422)  # 422: the form's action, without its parameters
+    assert "http" not in response.text
+
+
+def test_vendored_files_are_what_was_published():
+    listed = (STATIC / "swagger-ui" / "SHA256SUMS").read_text().split()
+    digests = dict(zip(listed[1::2], listed[::2], strict=True))
+    assert {"LICENSE", "NOTICE"} < set(digests)
+    assert set(digests) == {path.name for path in (STATIC / "swagger-ui").iterdir()} - {"SHA256SUMS"}
+    for name, digest in digests.items():
+        assert hashlib.sha256((STATIC / "swagger-ui" / name).read_bytes()).hexdigest() == digest
+
+
+def test_openapi_describes_every_route(client):
+    described = client.get("/openapi.json").json()
+    assert set(described["paths"]) == {
+        "/v1/response",
+        "/v1/spectrum",
+        "/v1/map",
+        "/v1/overturning",
+        "/v1/history",
+        "/v1/blocks/response",
+        "/v1/critical_amplitude",
+        "/v1/datasets",
+        "/v1/datasets/{name}",
+        "/v1/datasets/{name}.nc",
+        "/v1/datasets/{name}.zarr/{key}",
+        "/health",
+        "/metrics",
+    }
+    text = str(described)
+    for reference in set(re.findall(r"#/components/schemas/(\w+)", text)):
+        assert reference in described["components"]["schemas"]
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/", "/docs", "/openapi.json", "/health", "/metrics", "/v1/datasets", "/v1/datasets/spectra/sine/eta-0.85.nc",
+     "/v1/datasets/spectra/sine/eta-0.85.zarr/.zmetadata", "/v1/response?pulse=sine", "/nowhere",
+     "/static/explorer/main.js", "/v1/map?pulse=sine&restitution=0.85&columns=2&rows=2"],
+)  # fmt: skip
+def test_no_browser_is_to_guess_the_type_of_an_answer(client, path):
+    for answer in (client.get(path), client.head(path), client.get(path, headers={"if-none-match": "*"})):
+        assert answer.headers.get_list("x-content-type-options") == ["nosniff"]
+
+
+@pytest.mark.parametrize("path", ["/", "/docs", "/static/explorer/main.js"])
+@pytest.mark.parametrize("asked", ["bytes=0-3", "bytes=5-2", "bytes=99999999-", "x"])
+def test_pages_are_sent_as_a_whole(client, path, asked):
+    answer = client.get(path, headers={"range": asked})
+    assert (answer.status_code, answer.content) == (200, client.get(path).content)
+
+
+def test_an_empty_name_of_the_results_is_refused(monkeypatch):
+    """It would be the current folder."""
+    with pytest.raises(ValueError, match="name of a folder"):
+        Settings(results="")
+    monkeypatch.setenv("ROCKING_RESULTS", "")
+    with pytest.raises(ValueError, match="name of a folder"):
+        Settings()
+
+
+def test_unknown_route_is_a_problem(client):
+    assert_problem(client.get("/v2/response"), 404)
+
+
+def test_an_error_of_our_own_tells_nothing_of_the_inside(results):
+    app = create_app(Settings(results=results))
+
+    @app.get("/broken")
+    async def broken():
+        raise ZeroDivisionError("inside")
+
+    with TestClient(app, raise_server_exceptions=False) as client:
+        problem = assert_problem(client.get("/broken"), 500)
+        assert "inside." not in problem["detail"]
+        assert "ZeroDivision" not in problem["detail"]
+
+
+def test_only_text_is_compressed(client):
+    accept = {"accept-encoding": "gzip"}
+    question = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85}
+    assert client.get("/v1/spectrum", params=question, headers=accept).headers["content-encoding"] == "gzip"
+    netcdf = client.get("/v1/spectrum", params=question | {"format": "nc"}, headers=accept)
+    assert "content-encoding" not in netcdf.headers
+
+
+def test_other_origins_are_let_in_only_if_asked(results, client):
+    origin = {"origin": "https://example.org"}
+    assert "access-control-allow-origin" not in client.get("/health", headers=origin).headers
+    with client_of(results, cors_origins=("https://example.org",)) as open_client:
+        headers = open_client.get("/health", headers=origin).headers
+    assert headers["access-control-allow-origin"] == "https://example.org"
+    assert "ETag" in headers["access-control-expose-headers"]
+
+
+def test_settings_come_from_the_environment(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROCKING_RESULTS", str(tmp_path))
+    monkeypatch.setenv("ROCKING_MAX_POINTS", "7")
+    assert (Settings().results, Settings().max_points) == (tmp_path, 7)

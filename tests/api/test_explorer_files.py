@@ -1,0 +1,72 @@
+"""The files of the explorer: what was published, named where they are used, and asked for again after an upgrade."""
+
+import hashlib
+import re
+from pathlib import Path
+
+import pytest
+import rocking_api
+
+STATIC = Path(rocking_api.__file__).parent / "static"
+SCRIPTS = sorted((STATIC / "explorer").glob("*.js"))
+
+
+def test_the_vendored_library_is_what_was_published():
+    listed = (STATIC / "uplot" / "SHA256SUMS").read_text().split()
+    digests = dict(zip(listed[1::2], listed[::2], strict=True))
+    assert set(digests) == {path.name for path in (STATIC / "uplot").iterdir()} - {"SHA256SUMS"}
+    assert "MIT" in (STATIC / "uplot" / "LICENSE").read_text()
+    for name, digest in digests.items():
+        assert hashlib.sha256((STATIC / "uplot" / name).read_bytes()).hexdigest() == digest
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
+def test_scripts_say_what_they_are_and_import_what_exists(path):
+    text = path.read_text()
+    assert text.startswith("// "), "a first line that tells the one idea of the file"
+    assert text.count("\n") < 250
+    for names, source in re.findall(r"import \{([^}]*)\} from \"\./([\w.]+)\"", text):
+        exported = set(
+            re.findall(
+                r"^export (?:async )?(?:function|const|class) (\w+)",
+                (STATIC / "explorer" / source).read_text(),
+                re.MULTILINE,
+            )
+        )
+        for name in filter(None, (name.strip() for name in names.split(","))):
+            assert name in exported, f"{source} exports no {name}"
+            assert len(re.findall(rf"\b{name}\b", text)) > 1, f"{name} is imported and not used"
+    assert "http" not in text
+
+
+def test_every_script_is_part_of_the_page():
+    imported = set(re.findall(r"from \"\./([\w.]+)\"", "".join(path.read_text() for path in SCRIPTS)))
+    assert {path.name for path in SCRIPTS} == imported | {"main.js"}
+
+
+def test_ids_are_there_and_unique():
+    page = (STATIC / "index.html").read_text()
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+    asked = {name for path in SCRIPTS for name in re.findall(r'getElementById\("([^"]+)"\)', path.read_text())}
+    named = {
+        name
+        for names in re.findall(r'\b(?:for|data-field|aria-labelledby|aria-describedby)="([^"]+)"', page)
+        for name in names.split()
+    }
+    assert asked | named <= set(ids)
+
+
+def test_no_style_or_script_inside_the_page(client):
+    response = client.get("/")
+    assert "unsafe" not in response.headers["content-security-policy"]
+    assert not re.search(r"<style|\sstyle=|\son\w+=|<script>", response.text)
+
+
+def test_files_are_asked_for_again(client):
+    for path in ("/", "/static/explorer/main.js", "/static/uplot/uPlot.iife.min.js"):
+        first = client.get(path)
+        assert first.headers["cache-control"] == "no-cache"
+        assert first.headers["x-content-type-options" if path == "/" else "etag"]
+    again = client.get(path, headers={"if-none-match": first.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")

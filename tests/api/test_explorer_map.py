@@ -1,0 +1,89 @@
+"""GET /v1/map: the answers of the front door, in every form, bounded, and kept by who has them already."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
+from tests.api.conftest import assert_problem, client_of
+
+WINDOW = {"frequency_ratio_min": 0.7, "frequency_ratio_max": 9.0, "slenderness_min": 0.1, "slenderness_max": 1.1}
+QUESTION = {"pulse": "cosine", "restitution": 0.9, "alpha_deg": 14.0, "columns": 21, "rows": 12} | WINDOW
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return peak_response(
+        "cosine",
+        slenderness=np.linspace(0.1, 1.1, 12)[:, None],
+        frequency_ratio=np.geomspace(0.7, 9.0, 21),
+        restitution=0.9,
+        alpha=np.radians(14.0),
+    )
+
+
+def test_rows_hold_what_the_front_door_answers(client, truth):
+    answer = client.get("/v1/map", params=QUESTION).json()
+    assert {Outcome.NO_UPLIFT, Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY} <= set(truth.outcome.ravel().tolist())
+    assert [Outcome[answer["outcomes"][code]] for code in answer["outcome"]] == truth.outcome.ravel().tolist()
+    peaks = np.array([np.nan if peak is None else peak for peak in answer["peak_rotation"]])
+    np.testing.assert_allclose(peaks, truth.peak_rotation.ravel(), rtol=0, atol=0.5001e-4)
+    assert len(answer["frequency_ratio"]) == 21
+    assert (answer["slenderness"][0], answer["slenderness"][-1]) == (0.1, 1.1)
+
+
+def test_csv_and_netcdf_hold_every_digit(client, truth):
+    rows = list(csv.DictReader(io.StringIO(client.get("/v1/map", params=QUESTION | {"format": "csv"}).text)))
+    written = [float(row["peak_rotation"]) if row["peak_rotation"] else np.nan for row in rows]
+    np.testing.assert_array_equal(written, truth.peak_rotation.ravel())
+    assert [int(row["impacts"]) for row in rows] == truth.impacts.ravel().tolist()
+    content = client.get("/v1/map", params=QUESTION | {"format": "nc"}).content
+    stored = xr.open_dataset(io.BytesIO(content), engine="scipy").load()
+    assert stored["peak_rotation"].dims == ("slenderness", "frequency_ratio")
+    np.testing.assert_array_equal(stored["peak_rotation"], truth.peak_rotation)
+    np.testing.assert_array_equal(stored["outcome"], truth.outcome)
+    assert float(stored["slenderness"][3]) == float(rows[3 * 21]["slenderness"])
+    assert stored.attrs["restitution"] == 0.9
+
+
+def test_a_map_is_not_sent_twice(client):
+    first = client.get("/v1/map", params=QUESTION)
+    assert "max-age" in first.headers["cache-control"]
+    known = {"if-none-match": first.headers["etag"]}
+    again = client.get("/v1/map", params=QUESTION, headers=known)
+    assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", first.headers["etag"])
+    other = client.get("/v1/map", params=QUESTION | {"restitution": 0.8}, headers=known)
+    assert other.status_code == 200
+    assert other.headers["etag"] != first.headers["etag"]
+
+
+@pytest.mark.parametrize(
+    ("change", "parameter"),
+    [
+        ({"pulse": "sin"}, "pulse"),
+        ({"restitution": 1.2}, "restitution"),
+        ({"alpha_deg": 95.0}, "alpha_deg"),
+        ({"frequency_ratio_min": 0.0}, "frequency_ratio_min"),
+        ({"frequency_ratio_max": 0.7}, "frequency_ratio_max"),
+        ({"slenderness_min": 0.0}, "slenderness_min"),
+        ({"slenderness_max": 0.1}, "slenderness_max"),
+        ({"slenderness_max": "inf"}, "slenderness_max"),
+        ({"rows": 1}, "rows"),
+        ({"columns": 2.5}, "columns"),
+        ({"colums": 7}, "colums"),
+        ({"format": "png"}, "format"),
+    ],
+)
+def test_a_wrong_window_is_explained(client, change, parameter):
+    assert_problem(client.get("/v1/map", params=QUESTION | change), 422, parameter)
+
+
+def test_the_grid_is_bounded(tmp_path):
+    with client_of(tmp_path, max_samples=200) as small:
+        assert small.get("/v1/map", params=QUESTION | {"columns": 20, "rows": 10}).status_code == 200
+        assert_problem(small.get("/v1/map", params=QUESTION | {"columns": 20, "rows": 11}), 413, "columns")
+        assert_problem(small.get("/v1/map", params=QUESTION | {"columns": 3, "rows": 90}), 413, "rows")

@@ -1,0 +1,202 @@
+"""Bytes that the service holds for its clients, and how long it does."""
+
+import asyncio
+import http.client
+import socket
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from rocking_api.execution.executor import BusyError
+from rocking_api.http.in_flight import PIECE, Holding, InFlight, InFlightLayer
+
+from tests.api.conftest import assert_problem, client_of
+from tests.api.servers import serving
+
+POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+HISTORY = "/v1/history?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=0.85&samples=100000"
+CLIENTS = 20
+
+
+def test_beyond_the_limit_others_are_refused_but_one_alone_is_not():
+    total = InFlight(100)
+    one, other = Holding(total), Holding(total)
+    one.add(60)
+    other.add(40)
+    for holding in (one, other):
+        with pytest.raises(BusyError):
+            holding.add(1)
+    other.release()
+    one.add(1000)  # alone
+    assert total.held == 1060
+    one.release()
+    one.add(5)  # nobody waits for it any more
+    assert total.held == 0
+
+
+def sent_through(layer_of, body):
+    """The messages of an answer."""
+    messages = []
+
+    async def app(_, __, send):
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": body})
+
+    async def send(message):
+        messages.append(message)
+
+    asyncio.run(layer_of(app)({"type": "http", "headers": []}, None, send))
+    return messages
+
+
+@pytest.mark.parametrize("size", [0, 1, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE, 3 * PIECE + 7])
+def test_large_answers_are_sent_in_pieces(size):
+    body = bytes(k % 251 for k in range(size))
+    total = InFlight(10 * PIECE)
+    head, *parts = sent_through(lambda app: InFlightLayer(app, total), body)
+    assert head["status"] == 200
+    assert b"".join(part["body"] for part in parts) == body
+    assert [part.get("more_body", False) for part in parts] == [True] * (len(parts) - 1) + [False]
+    assert max(len(part["body"]) for part in parts) <= PIECE
+    assert total.held == 0
+
+
+def test_an_answer_beyond_the_limit_is_503():
+    total = InFlight(10)
+    Holding(total).add(10)
+    head, part = sent_through(lambda app: InFlightLayer(app, total), bytes(2 * PIECE))
+    assert head["status"] == 503
+    assert (b"retry-after", b"2") in head["headers"]
+    assert b"ask again" in part["body"]
+    assert total.held == 10
+    head, _ = sent_through(lambda app: InFlightLayer(app, total), b"small")
+    assert head["status"] == 200
+
+
+def test_a_body_beyond_the_limit_is_503(results):
+    with client_of(results, max_bytes_in_flight=50) as client:
+        other = Holding(client.app.state.service.in_flight)
+        other.add(1)
+        refused = client.post("/v1/response", json=POINT)
+        assert_problem(refused, 503)
+        assert int(refused.headers["retry-after"]) > 0
+        assert client.get("/v1/response", params=POINT).status_code == 200
+        other.release()
+        assert client.post("/v1/response", json=POINT).status_code == 200
+        assert client.app.state.service.in_flight.held == 0
+
+
+@pytest.fixture(scope="module")
+def server(results, tmp_path_factory):
+    limits = {"ROCKING_ARRIVAL_SECONDS": "3", "ROCKING_READING_SECONDS": "3", "ROCKING_MAX_QUEUE": str(CLIENTS)}
+    with serving(results, tmp_path_factory.mktemp("serve") / "log", **limits) as server:
+        read(server)  # what it takes to answer at all
+        yield server
+
+
+def read(server):
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=60)
+    connection.request("GET", HISTORY)
+    size = len(connection.getresponse().read())
+    connection.close()
+    return size
+
+
+def half_a_body(connection, size=60_000_000):
+    connection.sendall(b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % size)
+    block = b" " * 1_000_000
+    for _ in range(size // len(block) - 1):
+        connection.sendall(block)
+
+
+def no_reading(connection):
+    connection.sendall(b"GET %s HTTP/1.1\r\nHost: x\r\n\r\n" % HISTORY.encode())
+
+
+def no_reading_of_many(connection):
+    """Answers that are small, but not read either."""
+    connection.sendall(b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n" * 500)
+
+
+def megabytes(process):
+    (line,) = [line for line in Path(f"/proc/{process.pid}/status").read_text().splitlines() if "VmRSS" in line]
+    return int(line.split()[1]) / 1024
+
+
+def sockets(process):
+    """Number of sockets that a process has open."""
+    with suppress(FileNotFoundError):  # one that is just closed
+        return sum("socket:" in str(link.readlink()) for link in Path(f"/proc/{process.pid}/fd").iterdir())
+    return sockets(process)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="counts bytes and sockets as Linux tells them")
+@pytest.mark.parametrize("behaviour", [half_a_body, no_reading, no_reading_of_many])
+def test_clients_that_neither_send_nor_read_cost_little_and_are_dropped(server, behaviour):
+    before = most = megabytes(server.process)
+    open_before = sockets(server.process)
+    dropped = threading.Event()
+
+    def client():
+        with socket.socket() as connection, suppress(OSError):  # dropped while it sends
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            connection.settimeout(60)
+            connection.connect(("127.0.0.1", server.port))
+            behaviour(connection)
+            dropped.wait()
+
+    clients = [threading.Thread(target=client) for _ in range(CLIENTS)]
+    for one in clients:
+        one.start()
+    began = time.monotonic()
+    try:
+        while time.monotonic() - began < 1 or sockets(server.process) > open_before:
+            most = max(most, megabytes(server.process))
+            assert time.monotonic() - began < 60  # 3 s each, and what the work takes on a busy machine
+            time.sleep(0.05)
+    finally:
+        dropped.set()
+        for one in clients:
+            one.join()
+    assert most - before < 250
+    assert read(server) > 5e6
+
+
+def test_a_slow_client_that_reads_is_served(server):
+    with socket.socket() as connection:
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
+        connection.connect(("127.0.0.1", server.port))
+        connection.settimeout(10)
+        connection.sendall(b"GET %s HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n" % HISTORY.encode())
+        received, began = 0, time.monotonic()
+        while part := connection.recv(65536):
+            received += len(part)
+            if time.monotonic() - began < 5:  # longer than one that stands still is waited for
+                time.sleep(0.2)
+    assert received > 5e6
+
+
+@pytest.mark.parametrize("rest", [b"a" * 1_000_000, b"a" * 1000, b"\r\n"])
+def test_a_connection_is_not_kept_because_a_body_ends_after_its_answer(server, rest):
+    length = 0 if rest.isspace() else 1_000_000
+    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as connection:
+        connection.sendall(b"POST /health HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % length)
+        assert b" 405 " in connection.recv(65536)
+        connection.sendall(rest)
+        assert connection.recv(65536) == b""  # closed
+
+
+def test_the_rest_of_a_body_is_not_waited_for(server):
+    """The answer (405) has left; the body still drips."""
+    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as connection:
+        connection.sendall(b"POST /health HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
+        assert b" 405 " in connection.recv(65536)
+        began = time.monotonic()
+        with suppress(OSError):  # a broken pipe, or a reset
+            while time.monotonic() - began < 20:
+                connection.sendall(b"a")
+                time.sleep(0.1)
+    assert time.monotonic() - began < 10

@@ -1,0 +1,131 @@
+"""Arguments that numpy would silently turn into other numbers, and objects that are no pulse: refused by name."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import rocking
+from rocking import InvalidArgumentError, closed_form
+from rocking.errors import in_range
+from rocking.excitation.pulses import AbstractPulse
+
+GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
+TIME = np.array(["2014-08-24T10:20:44"], dtype="datetime64[s]")
+AMBIGUOUS = {
+    "flags": np.array([True, False]),
+    "flag": True,
+    "complex": np.array([0.4 + 0.1j]),
+    "text": np.array(["0.4"]),
+    "list-of-text": ["0.4"],
+    "bytes": b"0.4",
+    "instants": TIME,
+    "spans": TIME - TIME[0],
+    "masked": np.ma.masked_array([0.4, 0.5], mask=[False, True]),
+    "masked-constant": np.ma.masked,
+    "objects": np.array([0.4, None], dtype=object),
+    "object-flags": np.array([0.4, True], dtype=object),
+    "ragged": [[0.4], [0.4, 0.5]],
+    "labelled-text": xr.DataArray(["0.4"], dims="block"),
+}
+
+
+class ThirdPulse(AbstractPulse):
+    """A pulse that is neither a sum of sinusoids nor a wavelet."""
+
+    def shape(self, phi):
+        return np.ones_like(phi)
+
+    def mirrored(self):
+        return self
+
+    def _turns(self, *window):  # noqa: ARG002
+        return ()
+
+
+@pytest.mark.parametrize("value", AMBIGUOUS.values(), ids=AMBIGUOUS)
+@pytest.mark.parametrize("name", GROUPS)
+def test_values_that_are_not_plain_numbers_are_refused(name, value):
+    with pytest.raises(
+        InvalidArgumentError, match=rf"(?s)^`{name}` = .*allowed: real numbers, none of them masked, in"
+    ) as e:
+        rocking.peak_response("sine", **GROUPS | {name: value})
+    assert e.value.parameter == name
+    assert e.value.value is value
+
+
+def test_real_numbers_of_any_kind_are_taken():
+    expected = rocking.peak_response("sine", **GROUPS).peak_rotation
+    unmasked = np.ma.masked_array([0.4], mask=[False])
+    for value in (np.float32(0.5), 1, np.array([0.25], dtype=object), np.array([1], dtype=np.uint8), []):
+        in_range("slenderness", value, 0.0, 1.0)
+    for value in (unmasked, [0.4], pd.Series([0.4]), xr.DataArray([0.4], dims="block")):
+        assert rocking.peak_response("sine", **GROUPS | {"slenderness": value}).peak_rotation == expected
+
+
+LABELLED = {
+    "dimensions": (xr.DataArray([0.3, 0.4], dims="block"), xr.DataArray([4.0, 5.0], dims="motion")),
+    "order": (xr.DataArray(np.full((2, 2), 0.3), dims=("i", "j")), xr.DataArray(np.full((2, 2), 4.0), dims=("j", "i"))),
+    "coordinates": (
+        xr.DataArray([0.3, 0.4], dims="block", coords={"block": [1, 2]}),
+        xr.DataArray([4.0, 5.0], dims="block", coords={"block": [2, 1]}),
+    ),
+    "series": (pd.Series([0.3, 0.4], index=[1, 2]), pd.Series([4.0, 5.0], index=[2, 1])),
+}
+
+
+@pytest.mark.parametrize(("slenderness", "frequency_ratio"), LABELLED.values(), ids=LABELLED)
+def test_labels_that_differ_are_not_paired_by_position(slenderness, frequency_ratio):
+    groups = GROUPS | {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
+    with pytest.raises(InvalidArgumentError, match=r"`slenderness, frequency_ratio` .*broadcast or align first"):
+        rocking.peak_response("sine", **groups)
+    plain = GROUPS | {"slenderness": slenderness.values, "frequency_ratio": frequency_ratio.values}
+    assert rocking.peak_response("sine", **plain).shape == slenderness.shape
+
+
+def test_labels_that_agree_are_taken_in_their_order():
+    slenderness, frequency_ratio = xr.broadcast(*LABELLED["dimensions"])
+    found = rocking.peak_response("sine", **GROUPS | {"slenderness": slenderness, "frequency_ratio": frequency_ratio})
+    for i, s in enumerate([0.3, 0.4]):
+        for j, omega in enumerate([4.0, 5.0]):
+            one = rocking.peak_response("sine", **GROUPS | {"slenderness": s, "frequency_ratio": omega})
+            np.testing.assert_array_equal(found.peak_rotation[i, j], one.peak_rotation)
+
+
+QUESTIONS = {
+    "peak_response": lambda pulse: rocking.peak_response(pulse, **GROUPS),
+    "time_history": lambda pulse: rocking.time_history(pulse, **GROUPS),
+    "critical_amplitude": lambda pulse: rocking.critical_amplitude(pulse, frequency_ratio=5.0, restitution=0.85),
+    "overturning_boundary": lambda pulse: rocking.overturning_boundary(pulse, restitution=0.85, nodes=16),
+    "margin_without_impact": lambda pulse: closed_form.margin_without_impact(pulse, 2.0, 5.0),
+}
+NO_PULSES = {
+    "none": None,
+    "number": 5,
+    "bytes": b"sine",
+    "list": ["sine"],
+    "array": np.array(["sine"]),
+    "class": AbstractPulse,
+    "third class": ThirdPulse("third", 0.0, 1.0, ()),
+    "unknown": "square",
+}
+
+
+@pytest.mark.parametrize("pulse", NO_PULSES.values(), ids=NO_PULSES)
+@pytest.mark.parametrize("ask", QUESTIONS.values(), ids=QUESTIONS)
+def test_what_is_no_pulse_is_refused(ask, pulse):
+    with pytest.raises(InvalidArgumentError, match=r"^`pulse` = .*mavroeidis_papageorgiou") as error:
+        ask(pulse)
+    assert error.value.value is pulse
+
+
+@pytest.mark.parametrize("name", [None, 5, b"sine", ["sine"]])
+def test_names_of_pulses_are_strings(name):
+    with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
+        rocking.get_pulse(name)
+
+
+@pytest.mark.parametrize("cycles", [None, "2", [2.0], True])
+def test_parameters_of_pulses_are_numbers(cycles):
+    with pytest.raises(InvalidArgumentError, match=r"^`cycles` = "):
+        rocking.get_pulse("mavroeidis_papageorgiou", cycles=cycles)

@@ -1,0 +1,133 @@
+"""Work ends soon after its flag is set, wherever it is, and no incomplete answer comes back."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking._numba.cancellation import StopFlag, attempt
+from rocking._numba.simd import LANES
+from rocking.boundary.frequency import critical_frequency_ratio
+from rocking.errors import StoppedError
+from rocking.history.motion import motion_of
+from rocking.solver.kernels.batch import rock_arcs, rock_many
+from rocking.solver.state import ANSWER, FLIGHT, SINGLE, prepared, prepared_steps
+from rocking.spectra.cubes import spectra
+
+MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
+"""Slendernesses just below uplift: an elastic block then strikes the ground 200,000 times."""
+
+ELASTIC = {"frequency_ratio": 0.05, "restitution": 1.0}
+
+SOON = 0.1
+"""Processor time in which the work ends [s]: on a free machine the time on the clock is the same."""
+
+AXES = {"slenderness": MANY[:40], "frequency_ratio": np.linspace(0.04, 0.05, 40)}
+
+
+def peak(stop, **groups):
+    return rocking.peak_response("c2", **{"slenderness": MANY} | ELASTIC | groups, stop=stop)
+
+
+def contact(stop):
+    return rocking.time_history("c2", slenderness=MANY[-1], **ELASTIC, alpha=0.2, contact=True, stop=stop)
+
+
+def frequency(stop):
+    groups = {"slenderness": MANY[-1], "restitution": 1.0, "alpha": 0.2}
+    return critical_frequency_ratio("c2", **groups, window=(0.01, 0.1), stop=stop)
+
+
+WORK = {
+    "arcs": peak,
+    "steps": lambda stop: peak(stop, alpha=0.2),
+    "threads": lambda stop: peak(stop, alpha=0.2, slenderness=np.repeat(MANY, 9), threads=2),
+    "etas": lambda stop: peak(stop, slenderness=MANY[-1], restitution=np.linspace(0.99999, 1.0, 999)),
+    "amplitude": lambda stop: rocking.critical_amplitude("c2", **ELASTIC, alpha=0.2, stop=stop),
+    "frequency": frequency,
+    "boundary": lambda stop: rocking.overturning_boundary("c2", restitution=1.0, nodes=201, alpha=0.2, stop=stop),
+    "cube": lambda stop: list(spectra("c2", restitution=[1.0], **AXES, alpha=[0.2], stop=stop)),
+    "contact": contact,
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _loaded():
+    for alpha in (None, 0.2):
+        rocking.time_history("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
+        rocking.peak_response("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
+
+
+@pytest.mark.parametrize("name", WORK)
+def test_work_ends_soon_after_the_flag_is_set(name):
+    stop, ended = StopFlag(), []
+
+    def work():
+        try:
+            WORK[name](stop)
+        except StoppedError:
+            ended.append(time.process_time())
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join(0.3)
+    assert thread.is_alive()
+    asked = time.process_time()
+    stop.set()
+    thread.join(30)
+    assert ended, "it went on to its end"
+    assert ended[0] - asked < SOON
+
+
+def test_a_kernel_reads_the_flag_within_one_cell():
+    """One block with 200,000 impacts: the load of the flag must not be moved out of the loop."""
+    s, w, eta = (np.array([x]) for x in (MANY[-1], 0.05, 1.0))
+    for alpha in (0.0, 0.2):
+        flag, answers = np.zeros(1, np.uint8), np.zeros(1, ANSWER)
+        pulse = prepared(rocking.get_pulse("c2"), FLIGHT if alpha else SINGLE)
+        scratch = (np.repeat(pulse, LANES), prepared_steps(pulse)) if alpha else (pulse.copy(),)
+        kernel = rock_many if alpha else rock_arcs
+        timer = threading.Timer(0.003, flag.fill, [1])
+        timer.start()
+        kernel(s, w, eta, np.array([alpha]), *scratch, flag, answers)
+        timer.join()
+        reached = (scratch[0][0] if alpha else scratch[0])["impacts"]
+        assert 0 < reached < 200_000
+
+
+def test_a_flag_that_is_set_before_ends_the_work_at_once():
+    stop = StopFlag()
+    stop.set()
+    with pytest.raises(StoppedError):
+        rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop)
+    with pytest.raises(StoppedError):
+        motion_of("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop).events()
+
+
+def test_a_flag_that_is_not_set_changes_no_answer():
+    groups = {"slenderness": np.linspace(0.1, 0.9, 99), "frequency_ratio": 3.0, "restitution": 0.9}
+    free, watched = (rocking.peak_response("sine", **groups, stop=stop) for stop in (None, StopFlag()))
+    np.testing.assert_array_equal(free.peak_rotation, watched.peak_rotation)
+
+
+def test_a_part_stops_with_the_whole_and_not_the_other_way_round():
+    whole = StopFlag()
+    with whole.part() as part:
+        part.set()
+        assert not whole.is_set()
+    with whole.part() as part:
+        whole.set()
+        assert part.is_set()
+    with whole.part() as part:
+        assert part.is_set()
+
+
+def test_what_is_not_done_in_its_time_is_given_up():
+    stop = StopFlag()
+    began = time.process_time()
+    assert attempt(WORK["amplitude"], 0.1, stop) is None
+    assert time.process_time() - began < 0.1 + SOON
+    assert not stop.is_set()
+    assert attempt(lambda part: part.is_set(), 10.0, stop) is False

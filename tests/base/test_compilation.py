@@ -1,0 +1,225 @@
+"""Machine code of the kernels: one form of each for all questions, the same in every process, kept on disk."""
+
+import os
+import shutil
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rocking
+import rocking._numba.compilation
+from rocking import interpolation, lookup_kernel, precompile, rock_many, sampling, solve, stencil_choice
+from rocking._numba.compilation import entry, kernel, plain
+from rocking.datasets.cube import write_dataset
+from rocking.errors import InvalidArgumentError
+from rocking.excitation.pulses import SinusoidalPulse
+from rocking.excitation.shapes import MAX_SINUSOIDS
+from rocking.lookup.open import open_cube
+from rocking.solver.arcs.arc import hyperbolic
+from rocking.solver.state import FLIGHT, LANES, SINGLE, prepared, prepared_steps
+from rocking.spectra.cubes import spectra
+
+ROOT = Path(__file__).parents[2]
+
+ENTRIES = (
+    *(rock_many.rock_many, rock_many.rock_arcs, sampling.rock_and_sample, sampling.sample_arcs, sampling.rock_freely),
+    *(interpolation.level_weight, lookup_kernel.interpolate_many),
+    *(stencil_choice.choose_stencils, stencil_choice.interpolate_cells),
+)
+
+
+def read_only(*values):
+    array = np.array(values, dtype=float)
+    array.flags.writeable = False
+    return array
+
+
+def test_each_entry_has_one_form_whatever_is_asked(tmp_path):
+    precompile.load_kernels()
+    forms = {one.__name__: len(one.signatures) for one in ENTRIES}  # other tests may have added to them
+    for name in rocking.PULSE_NAMES:
+        for pulse in (name, "-" + name):
+            for alpha in (None, 0.3, read_only(0.0, 0.3)):
+                groups = {"slenderness": read_only(0.4, 0.5), "restitution": 0.9, "alpha": alpha}
+                rocking.peak_response(pulse, frequency_ratio=3, **groups)
+                rocking.peak_response(pulse, frequency_ratio=np.ones((4, 4))[::2, ::2], tolerance=1e-6, **groups)
+            rocking.time_history(pulse, slenderness=0.4, frequency_ratio=3, restitution=1, alpha=0.3, contact=True)
+            rocking.time_history(pulse, slenderness=0.4, frequency_ratio=3, restitution=0, samples=2)
+    axes = {"slenderness": np.linspace(0.1, 0.9, 9), "frequency_ratio": np.geomspace(1, 5, 9), "alpha": [0.0, 0.3]}
+    for cube in spectra("sine", restitution=[0.85, 0.9], **axes):
+        write_dataset(cube, tmp_path / f"eta-{float(cube['restitution']):.2f}.nc")
+    opened = open_cube(tmp_path)
+    for eta in (0.85, read_only(0.86, 0.9)):
+        opened.response(slenderness=read_only(0.8), frequency_ratio=3, restitution=eta, alpha=0.1)
+    assert {one.__name__: len(one.signatures) for one in ENTRIES} == forms
+
+
+def test_records_of_one_sinusoid_and_of_many_differ_by_rounding_only():
+    rng = np.random.default_rng(2)
+    cells = [rng.uniform(0.02, 1, 20_000), np.exp(rng.uniform(-1, 2.5, 20_000)), rng.uniform(0.3, 0.8, 20_000)]
+    for name in ("-sine", "c2", "rectangular"):
+        pulse = rocking.get_pulse(name)
+        answers = [np.zeros(20_000, solve.ANSWER) for _ in range(2)]
+        flag, slender = np.zeros(1, np.uint8), np.zeros(20_000)
+        rock_many.rock_arcs(*cells, slender, prepared(pulse, SINGLE).copy(), flag, answers[0])
+        many = prepared(pulse, FLIGHT)
+        rock_many.rock_many(*cells, slender, np.repeat(many, LANES), prepared_steps(many), flag, answers[1])
+        for field in solve.ANSWER.names:
+            if answers[0][field].dtype.kind == "f":
+                np.testing.assert_allclose(answers[0][field], answers[1][field], rtol=1e-9, atol=1e-13)
+            else:
+                np.testing.assert_array_equal(answers[0][field], answers[1][field])
+
+
+def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
+    """A sine in as many equal parts."""
+    sine, groups = rocking.get_pulse("sine"), {"slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.9}
+    whole = rocking.peak_response(sine, **groups).peak_rotation
+    for count in (2, 5, MAX_SINUSOIDS):
+        terms = tuple((c / count, w, d) for c, w, d in sine.terms for _ in range(count))
+        parts = SinusoidalPulse("parts", sine.start, sine.end, sine.stationary, terms)
+        np.testing.assert_allclose(rocking.peak_response(parts, **groups).peak_rotation, whole, rtol=1e-12)
+    with pytest.raises(InvalidArgumentError, match=f"1 to {MAX_SINUSOIDS} triples"):
+        SinusoidalPulse("many", sine.start, sine.end, sine.stationary, sine.terms * (MAX_SINUSOIDS + 1))
+
+
+def test_plain_arrays_are_taken_as_they_are_and_others_are_copied():
+    array = np.ones((3, 4))
+    assert plain(array) is array
+    for other in (array[:, ::2], array.T, np.broadcast_to(1.0, (3,)), read_only(1.0), *np.broadcast_arrays(1.0, array)):
+        made = plain(other)
+        assert made.flags.carray
+        np.testing.assert_array_equal(made, other)
+
+
+def script(code, **environment):
+    """What a new process prints that runs some code."""
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=os.environ | environment
+    )
+    return run.stdout
+
+
+@pytest.mark.slow
+def test_the_process_that_compiles_and_the_next_one_answer_alike_bit_by_bit(tmp_path):
+    code = """
+import hashlib, numpy as np, rocking
+from rocking.solver.kernels.batch import rock_arcs, rock_many
+rng = np.random.default_rng(7)
+s, w, e = rng.uniform(0.02, 0.95, 20_000), np.exp(rng.uniform(-1.2, 2.5, 20_000)), rng.uniform(0.5, 0.95, 20_000)
+digest = hashlib.sha256()
+for name in ("ricker", "sine", "mavroeidis_papageorgiou"):
+    for alpha in (None, 0.35):
+        found = rocking.peak_response(name, slenderness=s, frequency_ratio=w, restitution=e, alpha=alpha)
+        for field in found.__dataclass_fields__:
+            digest.update(getattr(found, field).tobytes())
+print(sum(sum(one.stats.cache_misses.values()) for one in (rock_arcs, rock_many)), digest.hexdigest())
+"""
+    found = [script(code, NUMBA_CACHE_DIR=str(tmp_path)).split() for _ in range(2)]
+    assert [misses for misses, _ in found] == ["2", "0"]
+    assert found[0][1] == found[1][1]
+
+
+def digest_of(package):
+    return rocking._numba.compilation._digest(package)
+
+
+def test_the_cache_folder_follows_every_kernel_source_and_what_it_imports(tmp_path):
+    (tmp_path / "inner").mkdir()
+    one, constants = tmp_path / "inner" / "one.py", tmp_path / "inner" / "constants.py"
+    one.write_text("from rocking.inner.constants import X\n\n@kernel\ndef f(x): ...\n")
+    constants.write_text("X = 1\n")
+    (tmp_path / "other.py").write_text("def g(x): ...\n")
+    first = digest_of(tmp_path)
+    (tmp_path / "other.py").write_text("def g(x): return 1\n")  # holds no kernel
+    assert digest_of(tmp_path) == first
+    one.write_text("from rocking.inner.constants import X\n\n@kernel\ndef f(x): return 1\n")
+    second = digest_of(tmp_path)
+    assert second != first
+    constants.write_text("X = 2\n")  # frozen into the machine code
+    third = digest_of(tmp_path)
+    assert third not in (first, second)
+    (tmp_path / "two.py").write_text("@entry\ndef h(x): ...\n")
+    assert digest_of(tmp_path) not in (first, second, third)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The choice of the folder in a process with a package, a user and an environment of its own."""
+    monkeypatch.setattr(rocking._numba.compilation, "_PACKAGE", tmp_path / "package")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    (tmp_path / "package").mkdir()
+    return rocking._numba.compilation.cache_folder.__wrapped__
+
+
+def closed(path):
+    """A place where no folder can be made, not even by the superuser."""
+    path.write_text("")
+
+
+def test_the_cache_lies_beside_the_package_or_where_it_can_be_written_to(folder, tmp_path, monkeypatch):
+    assert Path(folder()).parent == tmp_path / "package" / "__pycache__"
+    shutil.rmtree(tmp_path / "package" / "__pycache__")
+    closed(tmp_path / "package" / "__pycache__")
+    assert Path(folder()).parent == tmp_path / "user" / "rocking"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "given"))
+    assert Path(folder()).parent == tmp_path / "given"
+
+
+def test_without_a_place_for_the_cache_kernels_work_with_one_warning(folder, tmp_path, monkeypatch):
+    closed(tmp_path / "package" / "__pycache__")
+    closed(tmp_path / "user")
+    with pytest.warns(RuntimeWarning, match="NUMBA_CACHE_DIR") as said:
+        assert folder() is None
+    assert len(said) == 1
+    monkeypatch.setattr(rocking._numba.compilation, "cache_folder", lambda: None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+
+        @entry
+        def twice(x):
+            return 2.0 * x
+
+        assert twice(1.5) == 3.0
+
+
+@pytest.mark.slow
+def test_a_process_without_a_place_for_the_cache_answers_after_one_warning(tmp_path):
+    code = """
+import warnings
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    import rocking
+    found = rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+print(len([one for one in said if "NUMBA_CACHE_DIR" in str(one.message)]), found.outcome)
+"""
+    closed(tmp_path / "file")
+    assert script(code, NUMBA_CACHE_DIR=str(tmp_path / "file")).split() == ["1", "1"]
+
+
+def test_kernels_release_the_interpreter_and_do_not_reorder_sums():
+    for compiled in (*ENTRIES, hyperbolic):
+        options = compiled.targetoptions
+        assert options["nogil"]
+        assert options["fastmath"] == {"contract"}  # nothing that would assume away nan or rounding
+    assert rock_many.rock_many.nopython_signatures is not None
+
+
+def test_division_by_zero_is_arithmetic_and_no_exception():
+    @kernel
+    def divide(x, y):
+        return x / y
+
+    assert divide(1.0, 0.0) == float("inf")
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system binds no process to a core")
+def test_only_the_cores_of_this_process_are_used():
+    bind = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})"
+    code = f"{bind}; import rocking.solver.peak_response; print(rocking.solver.peak_response.CORES)"
+    assert script(code) == "1\n"

@@ -1,0 +1,171 @@
+"""Boundaries between the fates: on every vertex the fate changes, and nothing that is drawn is invented."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking import Outcome, closed_form
+from rocking.boundary.search import RESOLUTION, fate_code
+
+
+def curves(boundary):
+    """(slenderness, frequency_ratio, code inside, code of the neighbour) of each vertex."""
+    sizes = boundary.row_size.values
+
+    def code(prefix: str):
+        outcome, impacts = (boundary[prefix + name].values.astype(int) for name in ("outcome", "impacts"))
+        return np.repeat(np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, outcome + 4 * impacts, 0), sizes)
+
+    return boundary.slenderness.values, boundary.frequency_ratio.values, code(""), code("neighbour_")
+
+
+@pytest.mark.parametrize("alpha", [None, 0.3])
+@pytest.mark.parametrize("pulse", ["sine", "-cosine", "half_sine", "rectangular", "c1"])
+def test_the_fate_changes_at_every_vertex(pulse, alpha):
+    nodes = 61 if alpha is None else 41
+    boundary = rocking.overturning_boundary(pulse, restitution=0.9, alpha=alpha, nodes=nodes)
+    s, omega, own, neighbour = curves(boundary)
+    assert boundary.row_size.values.sum() == s.size
+    assert s.size > 50
+    assert (own != neighbour).all()
+    # a vertex lies inside its own region, and one step of the resolution along one of the axes beyond it
+    here = fate_code(rocking.peak_response(pulse, slenderness=s, frequency_ratio=omega, restitution=0.9, alpha=alpha))
+    assert (here == own).mean() > 0.98  # exp(log omega) rounds
+    reach = 4 * RESOLUTION
+    around = [(s + ds, omega * math.exp(dw)) for ds, dw in ((reach, 0), (-reach, 0), (0, reach), (0, -reach))]
+    codes = [
+        fate_code(rocking.peak_response(pulse, slenderness=x, frequency_ratio=w, restitution=0.9, alpha=alpha))
+        for x, w in around
+    ]
+    assert np.any([code != here for code in codes], axis=0).all()
+    assert np.any([code == own for code in [here, *codes]], axis=0).all()
+    # under slow pulses several fates crowd into less than the resolution
+    assert np.any([code == neighbour for code in codes], axis=0).mean() > 0.98
+
+
+def test_sine_against_the_closed_forms():
+    boundary = rocking.overturning_boundary(
+        "sine", restitution=0.9, frequency_ratio=(1.5, 8.0), slenderness=(0.05, 0.95), nodes=81
+    )
+    s, omega, own, neighbour = curves(boundary)
+    closed = closed_form.overturning_amplitudes(omega, 0.9)
+    directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
+    assert directly.sum() > 40
+    np.testing.assert_allclose(s[directly], 1 / closed.direct[directly], rtol=0, atol=1e-10)
+    after_one = (own == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
+    assert after_one.sum() > 40
+    gap = np.fmin(
+        np.abs(s[after_one] - 1 / closed.falls_from[after_one]),
+        np.abs(s[after_one] - 1 / closed.safe_again[after_one]),
+    )
+    # where the curve turns over in omega, 1/a is a square root of the distance: compare along omega there
+    steep = np.abs(closed.safe_again / closed.falls_from - 1)[after_one] < 0.2
+    assert gap[~steep].max() < 1e-10
+    assert np.nan_to_num(gap[steep]).max(initial=0) < 1e-5
+
+
+@pytest.mark.parametrize("alpha", [None, 0.05])
+def test_the_thin_safe_band_between_two_ways_of_overturning_is_seen(alpha):
+    # between case 1.1 or 1.2 and case 2 a slow sine leaves a band of safe blocks of relative width 1e-3 and less
+    boundary = rocking.overturning_boundary(
+        "sine", restitution=0.85, alpha=alpha, frequency_ratio=(0.5, 1.0), slenderness=(0.6, 1.0), nodes=61
+    )
+    s, omega, own, neighbour = curves(boundary)
+    directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
+    after_one = (own == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
+    assert directly.sum() > 20
+    assert after_one.sum() > 20
+    if alpha is None:
+        closed = closed_form.overturning_amplitudes(omega, 0.85)
+        np.testing.assert_allclose(s[directly], 1 / closed.direct[directly], rtol=0, atol=1e-10)
+        width = 1 / closed.safe_again - 1 / closed.direct
+        assert 0 < np.nanmin(width) < 1e-4
+        middle = 0.5 * (1 / closed.safe_again + 1 / closed.direct)
+        fates = rocking.peak_response("sine", slenderness=middle, frequency_ratio=omega, restitution=0.85)
+        assert not fates.overturned[np.isfinite(middle)].any()
+
+
+def test_islands_are_drawn():
+    boundary = rocking.overturning_boundary(
+        "sine", restitution=0.9, frequency_ratio=(0.6, 1.1), slenderness=(0.88, 1.0), nodes=201
+    )
+    assert {3, 5} <= set(boundary.impacts.values.tolist())
+    assert set(boundary.impacts.values.tolist()) <= {0, 1, 3, 5, 7, 9, 11, 13}  # odd, or directly
+
+
+@pytest.mark.parametrize("alpha", [None, 0.25])
+@pytest.mark.parametrize("pulse", ["sine", "cosine", "c1"])
+def test_thresholds_separate_the_fates(pulse, alpha):
+    for omega in (1.0, 2.5, 5.0):
+        found = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
+        assert (np.diff(found.amplitude) > 0).all()
+        assert (np.diff(found.overturns_above.astype(int)) != 0).all()  # the fate goes to and fro
+        assert found.overturns_above[0]
+        s = 1 / found.amplitude
+        below, above = (
+            rocking.peak_response(pulse, slenderness=s + side * RESOLUTION * 3, frequency_ratio=omega, restitution=0.9,
+                                  alpha=alpha)
+            for side in (1, -1)
+        )  # fmt: skip
+        np.testing.assert_array_equal(above.overturned, found.overturns_above)
+        np.testing.assert_array_equal(below.overturned, ~found.overturns_above)
+        falls = np.where(found.overturns_above, above.outcome, below.outcome)
+        np.testing.assert_array_equal(falls, found.outcome)
+        impacts = np.where(found.overturns_above, above.impacts, below.impacts)
+        np.testing.assert_array_equal(impacts, found.impacts)
+
+
+@pytest.mark.parametrize(("pulse", "omega"), [("sine", 4.0), ("half_sine", 3.0), ("rectangular", 3.0)])
+def test_thresholds_and_curves_agree(pulse, omega):
+    found = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.85, highest_amplitude=20.0)
+    boundary = rocking.overturning_boundary(
+        pulse, restitution=0.85, frequency_ratio=(omega / 1.001, omega * 1.001), slenderness=(0.05, 1.0), nodes=33
+    )
+    s, frequency_ratio, _, neighbour = curves(boundary)
+    middle = (np.abs(frequency_ratio / omega - 1) < 1e-12) & (neighbour == 0)
+    np.testing.assert_allclose(np.unique(s[middle].round(13)), np.sort(1 / found.amplitude), rtol=0, atol=1e-10)
+
+
+def test_thresholds_up_to_the_highest_amplitude_only():
+    all_of_them = rocking.critical_amplitude("sine", frequency_ratio=4.0, restitution=0.85)
+    some = rocking.critical_amplitude("sine", frequency_ratio=4.0, restitution=0.85, highest_amplitude=5.0)
+    np.testing.assert_allclose(some.amplitude, all_of_them.amplitude[:2], rtol=1e-11)
+    none = rocking.critical_amplitude("sine", frequency_ratio=100.0, restitution=0.85, highest_amplitude=2.0)
+    assert none.amplitude.size == none.overturns_above.size == none.impacts.size == 0
+
+
+def test_a_window_without_boundary_gives_no_curves():
+    empty = rocking.overturning_boundary(
+        "sine", restitution=0.85, frequency_ratio=(50.0, 60.0), slenderness=(0.5, 0.9), nodes=17
+    )
+    assert empty.sizes["point"] == 0
+    assert empty.sizes["curve"] == 0
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        ("restitution", 1.2),
+        ("restitution", math.nan),
+        ("alpha", 2.0),
+        ("nodes", 3),
+        ("frequency_ratio", (0.0, 1.0)),
+        ("frequency_ratio", (2.0, 1.0)),
+        ("slenderness", (0.5, 0.2)),
+        ("slenderness", (0.5, 1.5)),
+    ],
+)
+def test_wrong_windows(argument, value):
+    with pytest.raises(rocking.InvalidArgumentError, match=argument):
+        rocking.overturning_boundary("sine", **{"restitution": 0.9, "nodes": 17, argument: value})
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [("frequency_ratio", 0.0), ("restitution", -0.1), ("highest_amplitude", 1.0), ("highest_amplitude", math.inf)],
+)
+def test_wrong_thresholds(argument, value):
+    with pytest.raises(rocking.InvalidArgumentError, match=argument):
+        rocking.critical_amplitude("sine", **{"frequency_ratio": 2.0, "restitution": 0.9, argument: value})

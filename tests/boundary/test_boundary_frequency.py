@@ -1,0 +1,78 @@
+"""Critical frequency ratios: the fate changes there and nowhere else, and they are the critical amplitudes turned."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rocking.boundary.amplitude import critical_amplitude
+from rocking.boundary.frequency import critical_frequency_ratio
+from rocking.errors import InvalidArgumentError
+from rocking.solver.peak_response import peak_response
+
+WINDOW = (0.3, 20.0)
+
+
+@pytest.mark.parametrize("alpha", [None, 0.2])
+@pytest.mark.parametrize("pulse", ["sine", "-cosine", "ricker"])
+@pytest.mark.parametrize("slenderness", [0.15, 0.4, 0.7])
+def test_the_fate_changes_there_and_nowhere_else(pulse, slenderness, alpha):
+    found = critical_frequency_ratio(pulse, slenderness=slenderness, restitution=0.85, window=WINDOW, alpha=alpha)
+    assert found.frequency_ratio.size > 0
+
+    def overturns(omega):
+        asked = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": 0.85, "alpha": alpha}
+        return peak_response(pulse, **asked).overturned
+
+    below, above = (overturns(found.frequency_ratio * (1 + shift)) for shift in (-1e-10, 1e-10))
+    np.testing.assert_array_equal(above, found.overturns_above)
+    np.testing.assert_array_equal(below, ~found.overturns_above)
+    # between two thresholds, and outside of them all, there is one fate
+    omega = np.geomspace(*WINDOW, 3001)
+    passed = np.searchsorted(found.frequency_ratio, omega)
+    fates = np.append(np.where(found.overturns_above, False, True), found.overturns_at_ends[1])
+    np.testing.assert_array_equal(overturns(omega), fates[passed])
+    assert found.overturns_at_ends == tuple(overturns(np.array(WINDOW)).tolist())
+
+
+def test_a_critical_amplitude_has_its_frequency_as_a_critical_frequency():
+    for omega in (2.0, 4.0, 5.0):
+        for a in critical_amplitude("sine", frequency_ratio=omega, restitution=0.9).amplitude:
+            found = critical_frequency_ratio("sine", slenderness=1 / a, restitution=0.9, window=WINDOW)
+            assert np.abs(found.frequency_ratio / omega - 1).min() < 1e-8
+
+
+def test_without_impact_a_cosine_overturns_below_the_closed_form():
+    # a = (1 + omega^2)/(1 - exp(-2 pi/omega)): from larger frequencies on the block stands, impacts apart
+    omega = 3.0
+    a = (1 + omega**2) / -math.expm1(-2 * math.pi / omega)
+    found = critical_frequency_ratio("cosine", slenderness=1 / a, restitution=0.0, window=(1.0, 9.0))
+    assert found.overturns_at_ends[0]
+    assert found.frequency_ratio[0] == pytest.approx(omega, rel=1e-10)
+
+
+def test_a_block_that_never_uplifts_has_none():
+    found = critical_frequency_ratio("sine", slenderness=1.0, restitution=0.9, window=WINDOW)
+    assert found.frequency_ratio.size == 0
+    assert found.overturns_at_ends == (False, False)
+
+
+@pytest.mark.parametrize("window", [(1e-9, 1e-6), (1e6, 1e9)])
+def test_the_window_may_reach_to_the_border_of_the_solver(window):
+    found = critical_frequency_ratio("sine", slenderness=0.4, restitution=0.85, window=window)
+    assert found.overturns_at_ends == ((True, True) if window[0] < 1.0 else (False, False))
+
+
+@pytest.mark.parametrize("window", [(2.0, 2.0), (3.0, 2.0), (0.0, 1.0), (1.0, math.inf), (1e-3, 100.0)])
+def test_a_wrong_window_is_named(window):
+    with pytest.raises(InvalidArgumentError, match="`window`"):
+        critical_frequency_ratio("sine", slenderness=0.4, restitution=0.9, window=window)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("slenderness", 0.0), ("restitution", 1.1), ("alpha", 2.0), ("slenderness", math.nan)]
+)
+def test_what_is_out_of_range_is_named(name, value):
+    asked = {"slenderness": 0.4, "restitution": 0.9, "alpha": None} | {name: value}
+    with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
+        critical_frequency_ratio("sine", window=WINDOW, **asked)

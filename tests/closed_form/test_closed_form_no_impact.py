@@ -1,0 +1,99 @@
+"""Overturning without a further impact, for any pulse, and the published special cases."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+
+from rocking import closed_form as cf
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.solver.peak_response import peak_response
+from tests.direct_integration import integrate
+
+
+def test_half_sine_of_shi_et_al_1996():
+    np.testing.assert_allclose(cf.half_sine_amplitude([1, 2, 3]), [1.322397, 1.800724, 2.293872], atol=0.6e-6)
+
+
+def test_rectangular_of_housner_1963():
+    omega = np.array([0.5, 1.0, 4.0])
+    np.testing.assert_allclose(cf.rectangular_amplitude(omega), 1 / (1 - np.exp(-np.pi / omega)), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("pulse", "closed"),
+    [
+        ("sine", cf.case_2_amplitude),
+        ("half_sine", cf.half_sine_amplitude),
+        ("rectangular", cf.rectangular_amplitude),
+        ("cosine", cf.cosine_amplitude),
+    ],
+)
+@pytest.mark.parametrize("omega", [0.5, 1.0, 3.0, 8.0])
+def test_general_criterion_contains_the_special_ones(pulse, closed, omega):
+    a = float(closed(omega))
+    assert cf.margin_without_impact(pulse, a, omega) == pytest.approx(0, abs=1e-12)
+    assert cf.margin_without_impact(pulse, a * (1 + 1e-9), omega) > 0
+    assert cf.margin_without_impact(f"-{pulse}", a * (1 - 1e-9), omega) < 0
+
+
+@pytest.mark.parametrize("name", PULSE_NAMES)
+def test_uplift_phase_is_the_first_of_any_pulse(name):
+    pulse = get_pulse(name)
+    phi = np.linspace(pulse.start, pulse.end, 200_001)
+    for a in (1.0 + 1e-6, 1.3, 4.0, 1e4):
+        reached = np.flatnonzero(np.abs(a * pulse.shape(phi)) >= 1)
+        uplift = cf.first_uplift_phase(pulse, a)
+        if reached.size:
+            assert phi[max(reached[0] - 1, 0)] - 1e-12 <= uplift <= phi[reached[0]] + 1e-12
+        assert abs(a * pulse.shape(uplift)) >= 1 - 1e-12
+    assert math.isnan(cf.first_uplift_phase(pulse, 0.99))
+    assert cf.margin_without_impact(pulse, 0.99, 1.0) == -1
+
+
+@pytest.mark.parametrize("name", PULSE_NAMES)
+@pytest.mark.parametrize("omega", [0.01, 0.7, 5.0, 40.0])
+def test_discounted_integral_against_quadrature(name, omega):
+    pulse = get_pulse(name)
+    start = pulse.start + 0.3 * (pulse.end - pulse.start)
+    reach = min(pulse.end, start + 45 * omega)
+
+    phi = np.linspace(start, reach, 400_001)
+    values = pulse.shape(phi) * np.exp(-(phi - start) / omega) / omega
+    plain = simpson(values, x=phi)
+    assert cf.discounted_integral(name, omega, start) == pytest.approx(plain, rel=1e-10, abs=1e-13)
+
+
+@pytest.mark.parametrize("name", [n for n in PULSE_NAMES if not n.startswith("ricker")])
+def test_criterion_agrees_with_the_solver_for_sinusoids(name):
+    check_against_solver(name, 400)
+
+
+@pytest.mark.parametrize("name", [n for n in PULSE_NAMES if n.startswith("ricker")])
+def test_criterion_agrees_with_the_solver_for_wavelets(name):
+    check_against_solver(name, 60)
+
+
+def check_against_solver(name, n):
+    rng = np.random.default_rng(5)
+    omega, slenderness = np.exp(rng.uniform(np.log(0.3), np.log(10), n)), rng.uniform(0.05, 0.95, n)
+    found = peak_response(name, slenderness=slenderness, frequency_ratio=omega, restitution=0.9)
+    margin = np.array([cf.margin_without_impact(name, 1 / s, w) for s, w in zip(slenderness, omega, strict=True)])
+    directly = found.outcome == 2
+    assert (margin[directly] >= 0).all()
+    untouched = found.impacts == 0
+    np.testing.assert_array_equal(directly[untouched], margin[untouched] >= 0)
+
+
+def test_criterion_after_an_impact_vanishes_on_the_curves_of_the_sine():
+    for omega, eta in ((2.0, 0.9), (3.0, 0.8)):
+        a = float(cf.case_1_1_amplitudes(omega, eta).lower)
+        motion = integrate(a, omega, eta)
+        phase = omega * motion.impact_times[0] + float(cf.uplift_phase(a))
+        margin = cf.margin_after_impact("sine", a, omega, eta, phase, motion.impact_velocities[0])
+        assert margin == pytest.approx(0, abs=1e-9)  # (3.20)
+        a = float(cf.case_1_2_amplitudes(omega, eta).upper)
+        velocity = float(cf.case_1_2_impact_velocity(a, omega))
+        assert cf.margin_after_impact("sine", a, omega, eta, 2 * np.pi, velocity) == pytest.approx(0, abs=1e-12)
+        assert cf.margin_after_impact("-sine", a, omega, eta, 2 * np.pi, -velocity) == pytest.approx(0, abs=1e-12)

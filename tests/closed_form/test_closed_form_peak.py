@@ -1,0 +1,119 @@
+"""Peak rotation after an impact that follows the pulse, (4.12) to (4.16), and the measured scale law."""
+
+import numpy as np
+import pytest
+
+from rocking import closed_form as cf
+from rocking.errors import InvalidArgumentError
+from rocking.groups.scale_law import largest_deviation, restitution_exponent, scale_law_deviation
+from rocking.solver.peak_response import peak_response
+from tests.direct_integration import peak_of_free_rocking
+
+
+@pytest.mark.parametrize("velocity", [0.0, 1e-3, 0.3, 0.9, 0.999])
+def test_peak_of_velocity_is_that_of_free_rocking(velocity):
+    assert cf.peak_of_velocity(velocity) == pytest.approx(peak_of_free_rocking(velocity), rel=1e-9, abs=1e-15)  # (4.12)
+
+
+def test_peak_of_velocity_at_and_beyond_the_barrier():
+    assert cf.peak_of_velocity(1.0) == 1
+    assert np.isnan(cf.peak_of_velocity(1.0 + 1e-12))
+    assert cf.peak_of_velocity(1e-9) == pytest.approx(5e-19, rel=1e-12)
+
+
+def test_closed_spectrum_is_exact_where_its_lobe_holds_the_peak():
+    rng = np.random.default_rng(3)
+    n = 4000
+    omega = np.exp(rng.uniform(np.log(1.5), np.log(15), n))
+    a = cf.limit_amplitude(omega) + rng.uniform(0, 1, n) * (cf.case_2_amplitude(omega) - cf.limit_amplitude(omega))
+    eta = rng.uniform(0.8, 0.96, n)
+    found = peak_response("sine", slenderness=1 / a, frequency_ratio=omega, restitution=eta)
+    after_impact = found.peak_mode == 3  # one impact, then free rocking
+    assert after_impact.sum() > 500
+    closed = cf.case_1_2_peak(a, omega, eta)
+    np.testing.assert_allclose(closed[after_impact], found.peak_rotation[after_impact], rtol=1e-9)  # (4.13)
+    np.testing.assert_array_equal(np.isnan(closed), found.overturned)
+    np.testing.assert_allclose(cf.case_1_2_peak_by_pulse(a, omega, eta) * a, closed, rtol=1e-15)
+
+
+def test_no_peak_after_an_impact_where_the_block_overturns_without_one():
+    """(4.13) and its leading term mean something below (3.10) only, and are never negative."""
+    assert np.isnan(cf.case_1_2_peak(1 / 0.3, 2, 0.9))
+    omega = np.geomspace(0.3, 12.0, 60)
+    ratio = np.concatenate([np.linspace(0.5, 0.999, 40), np.linspace(1.001, 4.0, 40)])[:, None]
+    a = cf.case_2_amplitude(omega) * ratio
+    a, omega = np.broadcast_arrays(np.maximum(a, 1.0), omega)
+    directly = peak_response("sine", slenderness=1 / a, frequency_ratio=omega, restitution=0.9).outcome == 2
+    assert 0.3 < directly.mean() < 0.7
+    for form in (cf.case_1_2_peak, cf.case_1_2_peak_by_pulse, cf.small_peak, cf.small_peak_by_pulse):
+        found = form(a, omega, 0.9)
+        assert np.isnan(found[directly]).all()
+        assert (found[np.isfinite(found)] >= 0).all()
+    assert np.isfinite(cf.scale_function(a, omega)[~directly]).mean() > 0.9
+
+
+def test_small_forms_are_the_leading_term():
+    a, omega = 3.0, np.array([20.0, 40.0, 80.0])
+    exact = cf.case_1_2_peak(a, omega, 0.85)
+    error = cf.small_peak(a, omega, 0.85) / exact - 1  # (4.14)
+    velocity_squared = 0.85**2 * cf.scale_function(a, omega)
+    np.testing.assert_allclose(error, -velocity_squared / 4, rtol=0.1)  # the next term of the series
+    np.testing.assert_allclose(cf.small_peak_by_pulse(a, omega, 0.85), cf.small_peak(a, omega, 0.85) / a)  # (4.15)
+
+
+def test_scale_law_is_exact_for_its_own_formula():
+    eta = np.array([0.80, 0.85, 0.90, 0.96])
+    peak = cf.small_peak(3.0, np.array([5.0, 10.0]), eta[:, None])  # (4.16)
+    np.testing.assert_allclose(scale_law_deviation(peak, eta, reference=0.85), 0, atol=1e-14)
+    np.testing.assert_allclose(restitution_exponent(peak, eta), 2, rtol=1e-12)
+    np.testing.assert_allclose(largest_deviation(peak, eta, reference=0.85), 0, atol=1e-14)
+
+
+def test_scale_law_measured_on_the_closed_spectrum():
+    eta = np.arange(0.80, 0.961, 0.02)
+    omega = np.array([8.0, 20.0, 60.0])
+    peak = cf.case_1_2_peak(3.0, omega, eta[:, None])
+    deviation = largest_deviation(peak, eta, reference=0.88)
+    exponent = restitution_exponent(peak, eta)
+    assert (np.diff(deviation) < 0).all()  # the law is asymptotic: smaller rotations obey it better
+    assert (np.diff(exponent) < 0).all()
+    assert exponent[-1] == pytest.approx(2, abs=0.01)
+
+
+def test_scale_law_says_nothing_of_overturned_blocks():
+    eta = np.array([0.8, 0.9, 1.0])
+    peak = np.array([[0.1, np.nan, np.nan], [0.2, np.nan, 0.3], [0.3, 0.4, np.nan]])
+    deviation = scale_law_deviation(peak, eta, reference=0.9)
+    np.testing.assert_array_equal(np.isnan(deviation), [[0, 1, 1], [0, 1, 0], [0, 1, 1]])
+    np.testing.assert_array_equal(np.isnan(largest_deviation(peak, eta, reference=0.9)), [False, True, True])
+    np.testing.assert_array_equal(np.isnan(restitution_exponent(peak, eta)), [False, True, True])
+
+
+def test_scale_law_along_any_axis():
+    eta = np.array([0.8, 0.9, 1.0])
+    peak = np.random.default_rng(0).uniform(0.1, 1, (4, 3))
+    turned = scale_law_deviation(peak.T, eta, reference=1.0)
+    np.testing.assert_array_equal(scale_law_deviation(peak, eta, reference=1.0, axis=1), turned.T)
+    np.testing.assert_array_equal(restitution_exponent(peak, eta, axis=-1), restitution_exponent(peak.T, eta))
+    expected = (peak[:, 2] / 1.0**2) / (peak[:, 0] / 0.8**2) - 1
+    np.testing.assert_allclose(turned[0], expected)
+
+
+def test_scale_law_refuses_wrong_questions():
+    with pytest.raises(InvalidArgumentError, match="`reference`"):
+        scale_law_deviation([0.1, 0.2], [0.8, 0.9], reference=0.85)
+    with pytest.raises(InvalidArgumentError, match="`restitution`"):
+        scale_law_deviation([0.1, 0.2, 0.3], [0.8, 0.9], reference=0.8)
+    with pytest.raises(InvalidArgumentError, match="`restitution`"):
+        restitution_exponent([0.1, 0.2], [0.0, 0.9])
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_scale_law_of_a_block_of_peaks(axis):
+    eta, rng = np.array([0.8, 0.9, 1.0]), np.random.default_rng(2)
+    peaks = rng.uniform(0.1, 0.9, (3, 4, 5))
+    deviation = scale_law_deviation(np.moveaxis(peaks, 0, axis), eta, reference=0.9, axis=axis)
+    np.testing.assert_array_equal(np.moveaxis(deviation, axis, 0), scale_law_deviation(peaks, eta, reference=0.9))
+    for i in range(4):
+        one = scale_law_deviation(peaks[:, i], eta, reference=0.9)
+        np.testing.assert_array_equal(np.moveaxis(deviation, axis, 0)[:, i], one)

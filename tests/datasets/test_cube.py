@@ -1,0 +1,224 @@
+"""Data sets: what is written is described by the conventions, comes back whole, and damage is noticed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from compliance_checker.runner import CheckSuite
+from netCDF4 import Dataset
+
+from rocking.datasets.cube import NO_STENCIL, OVERTURNS, SQUARED, VARIABLES, read_dataset, read_spectrum, write_dataset
+from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.model.response import Outcome
+from rocking.solver.peak_response import peak_response
+from rocking.spectra.cubes import spectrum
+
+SLENDERNESS = np.linspace(0.1, 0.8, 29)
+FREQUENCY_RATIO = np.geomspace(0.8, 10.0, 41)
+
+NOT_APPLICABLE = (
+    "geospatial_", "time_coverage_",  # a control space is nowhere and never
+    "standard_name",  # CF has none for rocking
+    "date_",  # equal content gives equal bytes, on any day
+    "product_version",  # code_sha256 says it more exactly
+    "creator_email", "creator_url", "creator_institution", "contributor_", "publisher_", "naming_authority",
+    "metadata_link", "program", "platform", "instrument", "keywords_vocabulary", "comment",  # nothing true to say
+)  # fmt: skip
+"""Recommendations of ACDD-1.3 that make no sense here; all others are followed."""
+
+
+@pytest.fixture(scope="module")
+def cube() -> xr.Dataset:
+    return spectrum("sine", restitution=0.85, slenderness=SLENDERNESS, frequency_ratio=FREQUENCY_RATIO)
+
+
+@pytest.fixture
+def written(cube: xr.Dataset, tmp_path: Path) -> Path:
+    path = tmp_path / "eta-0.85.nc"
+    write_dataset(cube, path)
+    return path
+
+
+def complaints(path: Path, standard: str) -> list[str]:
+    suite = CheckSuite()
+    suite.load_all_available_checkers()
+    dataset = suite.load_dataset(str(path))
+    groups, errors = suite.run_all(dataset, [standard])[standard]
+    dataset.close()
+    assert not errors
+    return [message for group in groups if group.value[0] < group.value[1] for message in group.msgs]
+
+
+@pytest.mark.filterwarnings("ignore")  # of the checker's own dependencies
+def test_spectrum_follows_cf(written: Path) -> None:
+    assert complaints(written, "cf:1.11") == []
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    "product", ["spectra/cosine/eta-0.90.nc", "overturning/sine/eta-0.85.nc", "figures/figure-08.nc"]
+)
+def test_products_follow_cf_and_acdd(smoke_results: Path, product: str) -> None:
+    path = smoke_results / product
+    assert complaints(path, "cf:1.11") == []
+    remaining = [
+        message
+        for message in complaints(path, "acdd:1.3")
+        if not any(exception in message for exception in NOT_APPLICABLE)
+    ]
+    assert remaining == []
+
+
+def test_every_variable_is_described(cube: xr.Dataset) -> None:
+    for name, variable in cube.variables.items():
+        assert variable.attrs["units"] in {"1", "rad"}, name
+        assert variable.attrs["long_name"], name
+    assert all("equation" in cube[name].attrs for name in VARIABLES)
+
+
+def test_cube_survives_the_file(cube: xr.Dataset, written: Path) -> None:
+    back = read_spectrum(written)
+    xr.testing.assert_equal(back, cube)
+    assert back.peak_rotation.dtype == np.float64
+    assert {name: back[name].dtype.str[1:] for name in VARIABLES} == {
+        name: kind for name, (kind, _) in VARIABLES.items()
+    }
+    assert back.attrs["title"] == cube.attrs["title"]
+
+
+def test_files_are_readable_by_everybody_and_writable_by_their_owner(written: Path) -> None:
+    assert written.stat().st_mode & 0o777 == 0o644
+
+
+def test_same_content_gives_the_same_bytes(written: Path, tmp_path: Path) -> None:
+    write_dataset(read_spectrum(written), tmp_path / "again.nc")
+    assert (tmp_path / "again.nc").read_bytes() == written.read_bytes()
+
+
+def test_failed_write_leaves_the_old_file_and_no_other(
+    cube: xr.Dataset, written: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = written.read_bytes()
+
+    def fail(_: xr.Dataset, path: Path, **__: object) -> None:
+        Path(path).write_bytes(b"half a file")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_dataset(cube, written)
+    assert written.read_bytes() == before
+    assert list(written.parent.iterdir()) == [written]
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match="no such data set"):
+        read_dataset(tmp_path / "nothing.nc")
+
+
+def test_truncated_file(written: Path) -> None:
+    content = written.read_bytes()
+    written.write_bytes(content[: len(content) // 2])
+    with pytest.raises(DatasetError, match="damaged"):
+        read_dataset(written)
+
+
+def test_flipped_bits(written: Path) -> None:
+    whole = written.read_bytes()
+    rng = np.random.default_rng(20120404)
+    for place in rng.choice(len(whole), size=60, replace=False):
+        content = bytearray(whole)
+        content[place] ^= 0xFF
+        written.write_bytes(content)
+        with pytest.raises(DatasetError, match="damaged"):
+            read_dataset(written)
+
+
+def test_the_seal_is_no_hindrance_to_other_readers(written: Path) -> None:
+    ours = read_dataset(written)
+    for engine in ("netcdf4", "h5netcdf"):
+        with xr.open_dataset(written, engine=engine, decode_times=False) as theirs:
+            xr.testing.assert_identical(theirs.load(), ours)
+
+
+def test_changed_value(written: Path) -> None:
+    with Dataset(written, "a") as opened:
+        opened["peak_rotation"][0, 28, 40] += 1e-9
+    with pytest.raises(DatasetError, match="damaged"):
+        read_dataset(written)
+
+
+def test_foreign_file(tmp_path: Path) -> None:
+    xr.Dataset({"peak_rotation": ("x", [1.0])}).to_netcdf(tmp_path / "foreign.nc")
+    with pytest.raises(DatasetError, match="not written by this package"):
+        read_dataset(tmp_path / "foreign.nc")
+
+
+@pytest.mark.parametrize("change", ["variable", "type", "axis", "restitution"])
+def test_other_schema(cube: xr.Dataset, tmp_path: Path, change: str) -> None:
+    other = {
+        "variable": lambda: cube.drop_vars("peak_mode"),
+        "type": lambda: cube.assign(impacts=cube.impacts.astype("f8")),
+        "axis": lambda: cube.isel(slenderness=slice(None, None, -1)),
+        "restitution": lambda: cube.drop_vars("restitution"),
+    }[change]()
+    write_dataset(other, tmp_path / "other.nc")
+    with pytest.raises(DatasetError, match=change if change != "type" else "impacts"):
+        read_spectrum(tmp_path / "other.nc")
+
+
+def test_nodes_are_the_answers_of_the_solver(cube: xr.Dataset) -> None:
+    solved = peak_response("sine", slenderness=SLENDERNESS[:, None], frequency_ratio=FREQUENCY_RATIO, restitution=0.85)
+    np.testing.assert_array_equal(cube.peak_rotation.values[0], solved.peak_rotation)
+    np.testing.assert_array_equal(cube.outcome.values[0], solved.outcome)
+
+
+def test_interpolation_error_marks_smooth_cells_only(cube: xr.Dataset) -> None:
+    error = cube.interpolation_error.values[0]
+    assert np.isnan(error[-1]).all()
+    assert np.isnan(error[:, -1]).all()
+    stencil = cube.stencil.values[0]
+    assert (error[stencil == OVERTURNS] == 0).all()
+    np.testing.assert_array_equal(stencil == NO_STENCIL, np.isnan(error) & ~((stencil >= 0) & np.isnan(error)))
+    i, j = np.nonzero(np.isfinite(error) & (stencil != OVERTURNS))
+    assert i.size > 200
+    for corner in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        assert (cube.outcome.values[0][i + corner[0], j + corner[1]] == Outcome.SAFE).all()
+    # a random point of a cell is hardly further off than the probes: no lobe hides between them
+    rng = np.random.default_rng(3)
+    u, v = rng.random((2, i.size))
+    s = SLENDERNESS[i] + u * (SLENDERNESS[1] - SLENDERNESS[0])
+    omega = FREQUENCY_RATIO[j] * (FREQUENCY_RATIO[1] / FREQUENCY_RATIO[0]) ** v
+    central = np.isin(cube.stencil.values[0][i, j], (0, SQUARED))  # the 16 nodes around the cell
+    squared = cube.stencil.values[0][i, j] == SQUARED
+    assert central.mean() > 0.25
+    assert squared.any()
+    solved = peak_response("sine", slenderness=s, frequency_ratio=omega, restitution=0.85)
+    weights = [lagrange(u), lagrange(v)]
+    peak = cube.peak_rotation.values[0]
+    nodes = {(m, n): peak[np.clip(i - 1 + m, 0, 28), np.clip(j - 1 + n, 0, 40)] for m in range(4) for n in range(4)}
+    plain, square = (
+        sum(weights[0][m] * weights[1][n] * form(z) for (m, n), z in nodes.items())
+        for form in (lambda z: z, lambda z: (1 - z) ** 2)
+    )
+    interpolated = np.where(squared, 1 - np.sqrt(np.maximum(square, 0)), plain)
+    ratio = np.abs(interpolated - solved.peak_rotation)[central] / error[i, j][central]
+    assert np.quantile(ratio, 0.99) < 2.5
+
+
+def lagrange(t: np.ndarray) -> list[np.ndarray]:
+    """Weights of the nodes -1, 0, 1, 2 at t in [0, 1], written down independently of the package."""
+    return [
+        -t * (t - 1) * (t - 2) / 6,
+        (t + 1) * (t - 1) * (t - 2) / 2,
+        -(t + 1) * t * (t - 2) / 2,
+        (t + 1) * t * (t - 1) / 6,
+    ]
+
+
+def test_sweep_refuses_what_the_solver_would() -> None:
+    with pytest.raises(InvalidArgumentError, match="frequency_ratio"):
+        spectrum("sine", restitution=0.85, slenderness=SLENDERNESS, frequency_ratio=[0.0, 1.0, 2.0, 3.0])

@@ -1,0 +1,74 @@
+"""Digests of code and settings change with what a result depends on, and with nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rocking.datasets.provenance import code_digest, settings_digest, source_files
+
+TREE = {
+    "rocking/__init__.py": "import lazy_loader",
+    "rocking/a.py": "import math\nfrom rocking.b import x",
+    "rocking/b.py": "from rocking.group import y",
+    "rocking/c.py": "",
+    "rocking/group/__init__.py": "from rocking.group.inner import y",
+    "rocking/group/inner.py": "y = 1",
+    "rocking/group/other.py": "",
+    "script.py": "from rocking import a",
+    "lazy.py": "from rocking import peak_response",
+    "nested.py": "import rocking.group.other",
+}
+
+GROUP = {"rocking/group/__init__.py", "rocking/group/inner.py"}
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    for name, text in TREE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("script", "expected"),
+    [
+        ("script.py", {"script.py", "rocking/a.py", "rocking/b.py", *GROUP}),
+        ("nested.py", {"nested.py", "rocking/group/other.py", *GROUP}),
+        ("lazy.py", {"lazy.py", *(name for name in TREE if name.startswith("rocking/"))}),
+    ],
+)  # fmt: skip
+def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> None:
+    found = source_files(tree / script, root=tree)
+    assert {path.relative_to(tree).as_posix() for path in found} == expected
+
+
+def test_digest_sees_dependencies_and_the_lock_only(tree: Path) -> None:
+    first = code_digest(tree / "script.py", root=tree)
+    (tree / "rocking/c.py").write_text("unrelated = 1")
+    assert code_digest(tree / "script.py", root=tree) == first
+    (tree / "rocking/group/inner.py").write_text("y = 2")
+    second = code_digest(tree / "script.py", root=tree)
+    assert second != first
+    (tree / "environment.lock").write_text("numpy==2.4.6")
+    assert code_digest(tree / "script.py", root=tree) != second
+
+
+def test_digest_does_not_depend_on_where_the_code_lies(tree: Path, tmp_path: Path) -> None:
+    moved = tmp_path / "elsewhere"
+    for name, text in TREE.items():
+        (moved / name).parent.mkdir(parents=True, exist_ok=True)
+        (moved / name).write_text(text)
+    assert code_digest(moved / "script.py", root=moved) == code_digest(tree / "script.py", root=tree)
+
+
+def test_package_digest_covers_every_module() -> None:
+    assert len(code_digest()) == 64
+    assert code_digest() == code_digest()
+
+
+def test_settings_digest_ignores_order() -> None:
+    assert settings_digest({"a": [1, 2], "b": 0.5}) == settings_digest({"b": 0.5, "a": [1, 2]})
+    assert settings_digest({"a": [1, 2]}) != settings_digest({"a": [2, 1]})

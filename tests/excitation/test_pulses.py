@@ -1,0 +1,320 @@
+"""Pulses: each definition evaluated plainly, unit peak, stationary phases, mirror images, and the physics of type C."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy import cos, exp, pi, sin, sqrt
+
+import rocking
+from rocking.errors import InvalidArgumentError
+from rocking.excitation.pulses import (
+    PULSE_NAMES,
+    AbstractPulse,
+    SinusoidalPulse,
+    WaveletPulse,
+    get_pulse,
+)
+from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+
+PHI_1, PHI_2 = 0.0697034 * pi, 0.0409760 * pi
+BETA = sqrt(6) * sqrt(3 - sqrt(6)) * exp(-(3 - sqrt(6)) / 2)
+
+
+def antisymmetric(phi):
+    z = phi / sqrt(3)
+    return (z**2 - 3) * z * exp(-(z**2) / 2) / BETA
+
+
+# name: (f(phi), start, end), from the definitions
+PLAIN = {
+    "sine": (sin, 0, 2 * pi),
+    "cosine": (cos, 0, 2 * pi),
+    "half_sine": (sin, 0, pi),
+    "rectangular": (np.ones_like, 0, pi),
+    "c1": (cos, PHI_1, 3 * pi - PHI_1),
+    "c2": (cos, PHI_2, 5 * pi - PHI_2),
+    "ricker": (lambda phi: (1 - phi**2 / 2) * exp(-(phi**2) / 4), -4 * pi, 4 * pi),
+    "ricker_antisymmetric": (antisymmetric, -4 * pi, 4 * pi),
+}
+FAMILY = [(1.0 + 1e-6, 0.0), (1.3, 0.7), (2.0, 0.0), (2.0, pi / 2), (3.7, -1.0), (20.0, 2.0)]
+EVERY = [get_pulse(name) for name in PULSE_NAMES]
+EVERY += [get_pulse("mavroeidis_papageorgiou", cycles=g, phase=n) for g, n in FAMILY]
+
+
+def label(pulse):
+    return f"{pulse.name}-{pulse.end:.3f}"
+
+
+def mavroeidis_papageorgiou(phi, gamma, nu):
+    return -(sin(phi / gamma) * cos(phi + nu) + gamma * sin(phi + nu) * (1 + cos(phi / gamma)))
+
+
+def test_every_name_has_a_plain_definition():
+    assert set(PULSE_NAMES) == {*PLAIN, "mavroeidis_papageorgiou"}
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_definition(name):
+    formula, start, end = PLAIN[name]
+    pulse = get_pulse(name)
+    assert (pulse.start, pulse.end) == pytest.approx((start, end), abs=2e-7 * pi)
+    phi = np.linspace(pulse.start, pulse.end, 999)
+    np.testing.assert_allclose(pulse.shape(phi), formula(phi), atol=1e-14)
+
+
+@pytest.mark.parametrize(("gamma", "nu"), FAMILY)
+def test_definition_of_mavroeidis_papageorgiou(gamma, nu):
+    pulse = get_pulse("mavroeidis_papageorgiou", cycles=gamma, phase=nu)
+    assert (pulse.start, pulse.end) == pytest.approx((-pi * gamma, pi * gamma))
+    assert isinstance(pulse, SinusoidalPulse)
+    assert len(pulse.terms) == 3
+    phi = np.linspace(pulse.start, pulse.end, 400_001)
+    plain = mavroeidis_papageorgiou(phi, gamma, nu)
+    np.testing.assert_allclose(pulse.shape(phi), plain / np.abs(plain).max(), atol=2e-8)
+
+
+@pytest.mark.parametrize(("gamma", "nu"), FAMILY)
+def test_mavroeidis_papageorgiou_is_the_derivative_of_its_velocity(gamma, nu):
+    pulse = get_pulse("mavroeidis_papageorgiou", cycles=gamma, phase=nu)
+    phi, step = np.linspace(pulse.start, pulse.end, 40_001), 1e-4
+
+    def velocity(x):
+        return (1 + cos(x / gamma)) * cos(x + nu) / 2  # the published pulse, unit amplitude
+
+    slope = (velocity(phi + step) - velocity(phi - step)) / (2 * step)
+    ratio = np.abs(slope).max()
+    np.testing.assert_allclose(pulse.shape(phi), slope / ratio, atol=3e-3)
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_unit_peak(pulse):
+    phi = np.linspace(pulse.start, pulse.end, 100_001)
+    ends_and_turns = np.array([pulse.start, *pulse.stationary, pulse.end])
+    assert np.abs(pulse.shape(ends_and_turns)).max() == pytest.approx(1, abs=4e-15)
+    assert np.abs(pulse.shape(phi)).max() <= 1 + 4e-15
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_stationary_phases_are_all_and_only_the_turns(pulse):
+    phi = pulse.start + (pulse.end - pulse.start) * (np.arange(100_000) + 0.3137) / 100_000  # no turn on a point
+    slope = np.diff(pulse.shape(phi))
+    turns = np.flatnonzero(slope[:-1] * slope[1:] < 0)
+    assert len(turns) == len(pulse.stationary)
+    np.testing.assert_allclose(phi[turns + 1], pulse.stationary, atol=2 * (phi[1] - phi[0]))
+    assert list(pulse.stationary) == sorted(pulse.stationary)
+    for turn in pulse.stationary:
+        assert pulse.start < turn < pulse.end
+        step = 1e-4
+        central = (pulse.shape(turn + step) - pulse.shape(turn - step)) / (2 * step)
+        assert central == pytest.approx(0, abs=1e-7)
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_monotone_pieces_cover_the_window(pulse):
+    pieces = pulse.monotone_pieces
+    assert pieces[0][0] == pulse.start
+    assert pieces[-1][1] == pulse.end
+    assert all(left[1] == right[0] for left, right in itertools.pairwise(pieces))
+    for low, high in pieces:
+        slope = np.diff(pulse.shape(np.linspace(low, high, 200)))
+        assert (slope > -1e-15).all() or (slope < 1e-15).all()
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_mirror_image(pulse):
+    mirrored = pulse.mirrored()
+    phi = np.linspace(pulse.start, pulse.end, 101)
+    np.testing.assert_array_equal(mirrored.shape(phi), -pulse.shape(phi))
+    assert (mirrored.start, mirrored.end, mirrored.stationary) == (pulse.start, pulse.end, pulse.stationary)
+    assert mirrored.name == "-" + pulse.name
+    assert mirrored.mirrored() == pulse
+
+
+@pytest.mark.parametrize("name", PULSE_NAMES)
+def test_a_leading_minus_mirrors(name):
+    assert get_pulse("-" + name) == get_pulse(name).mirrored()
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_acceleration_is_zero_outside_the_window(pulse):
+    outside = [pulse.start - 1e-6, pulse.end + 1e-6, -100.0, 100.0]
+    np.testing.assert_array_equal(pulse.acceleration(outside), 0)
+    inside = np.linspace(pulse.start, pulse.end, 11)
+    np.testing.assert_array_equal(pulse.acceleration(inside), pulse.shape(inside))
+    assert pulse.acceleration(np.zeros((2, 3))).shape == (2, 3)
+
+
+@pytest.mark.parametrize("name", ["c1", "c2"])
+def test_type_c_leaves_the_ground_at_rest_where_it_was(name):
+    pulse = get_pulse(name)
+
+    def final(f):  # Gauss quadrature, exact for these
+        x, w = np.polynomial.legendre.leggauss(60)
+        phi = pulse.start + (pulse.end - pulse.start) * (x + 1) / 2
+        return float(np.sum(f(phi) * w) * (pulse.end - pulse.start) / 2)
+
+    assert final(pulse.shape) == pytest.approx(0, abs=1e-13)
+    assert final(lambda phi: (pulse.end - phi) * pulse.shape(phi)) == pytest.approx(0, abs=1e-12)
+
+
+def test_type_c_starts_with_the_published_jump():
+    assert get_pulse("c1").start / pi == pytest.approx(0.0697034, abs=1e-7)
+    assert get_pulse("c2").start / pi == pytest.approx(0.0409760, abs=1e-7)
+
+
+def test_full_sine_and_rickers_leave_no_velocity():
+    for name in ("sine", "ricker", "ricker_antisymmetric"):
+        pulse = get_pulse(name)
+        phi = np.linspace(pulse.start, pulse.end, 20_001)
+        assert np.trapezoid(pulse.shape(phi), phi) == pytest.approx(0, abs=1e-12)
+
+
+def test_constant_of_the_antisymmetric_ricker():
+    assert pytest.approx(1.380, abs=5e-4) == BETA
+
+
+@pytest.mark.parametrize("name", ["square", "", "--sine", "Sine", "sine "])
+def test_unknown_pulses_are_refused(name):
+    with pytest.raises(InvalidArgumentError, match="`pulse`"):
+        get_pulse(name)
+
+
+def test_parameters_belong_to_one_pulse():
+    with pytest.raises(InvalidArgumentError, match="pulse sine"):
+        get_pulse("sine", cycles=2.0)
+    with pytest.raises(InvalidArgumentError, match="mavroeidis_papageorgiou"):
+        get_pulse("mavroeidis_papageorgiou", colour=2.0)
+    for name, value in (("cycles", 1.0), ("cycles", 21.0), ("phase", 7.0), ("phase", math.nan)):
+        with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
+            get_pulse("mavroeidis_papageorgiou", **{name: value})
+
+
+def test_abstract_pulse_cannot_be_made():
+    with pytest.raises(TypeError, match="abstract"):
+        AbstractPulse("none", 0.0, 1.0, ())
+
+
+def without_stationary(pulse):
+    """The same shape, made by somebody who does not know its turns."""
+    own = (pulse.terms,) if isinstance(pulse, SinusoidalPulse) else (pulse.polynomial, pulse.spread)
+    return type(pulse)(pulse.name, pulse.start, pulse.end, (), *own)
+
+
+@pytest.mark.parametrize("pulse", EVERY, ids=label)
+def test_stationary_phases_are_found_if_not_given(pulse):
+    made = without_stationary(pulse)
+    np.testing.assert_allclose(made.stationary, pulse.stationary, rtol=0, atol=3e-15 * max(1.0, pulse.end))
+
+
+@pytest.mark.parametrize("name", PULSE_NAMES)
+def test_a_pulse_made_by_hand_answers_as_the_one_of_the_catalogue(name):
+    groups = {"slenderness": [0.2, 0.5, 0.8], "frequency_ratio": [[1.0], [4.0]], "restitution": 0.85}
+    for alpha in (None, 0.3):
+        own, known = (
+            rocking.peak_response(pulse, **groups, alpha=alpha) for pulse in (without_stationary(get_pulse(name)), name)
+        )
+        np.testing.assert_array_equal(own.outcome, known.outcome)
+        np.testing.assert_allclose(own.peak_rotation, known.peak_rotation, rtol=1e-11)
+
+
+def scaled(kind, start, end, *shape):
+    """A pulse of that shape with unit peak, and its largest value before."""
+    probe = np.linspace(start, end, 20_001)
+
+    def divided(peak):
+        if kind is SinusoidalPulse:
+            return (tuple((c / peak, w, d) for c, w, d in shape[0]),)
+        return tuple(c / peak for c in shape[0]), shape[1]
+
+    peak = 1.0
+    for _ in range(8):  # the largest value lies between two points: the refusal says how much larger it is
+        try:
+            return kind("drawn", start, end, (), *divided(peak))
+        except InvalidArgumentError as error:
+            assume(error.parameter == "max |f|" and error.value > 1e-3)
+            peak *= error.value
+    raise AssertionError(probe)
+
+
+NUMBER = st.floats(-3.0, 3.0)
+TERMS = st.lists(st.tuples(st.floats(0.1, 2.0), st.floats(0.0, 5.0), NUMBER), min_size=1, max_size=MAX_SINUSOIDS)
+POLYNOMIALS = st.lists(NUMBER.map(lambda x: round(x, 3)), min_size=1, max_size=MAX_POLYNOMIAL)
+
+
+def assert_monotone_between_turns(pulse):
+    for low, high in pulse.monotone_pieces:
+        assert low < high
+        slope = np.diff(pulse.shape(np.linspace(low, high, 2001)))
+        assert (slope > -4e-15).all() or (slope < 4e-15).all()
+    assert np.abs(pulse.shape(np.linspace(pulse.start, pulse.end, 2001))).max() <= 1 + 2e-12
+
+
+@given(terms=TERMS, start=NUMBER, length=st.floats(0.1, 20.0))
+def test_no_turn_of_a_sum_of_sinusoids_is_missed(terms, start, length):
+    assert_monotone_between_turns(scaled(SinusoidalPulse, start, start + length, tuple(terms)))
+
+
+@given(polynomial=POLYNOMIALS, spread=st.floats(0.5, 20.0), start=NUMBER, length=st.floats(0.1, 20.0))
+def test_no_turn_of_a_wavelet_is_missed(polynomial, spread, start, length):
+    assert_monotone_between_turns(scaled(WaveletPulse, start, start + length, tuple(polynomial), spread))
+
+
+def test_a_turn_of_order_three_is_one_and_of_order_two_is_none():
+    flat = WaveletPulse("flat", -1.0, 1.0, (), (0.0, 0.0, 0.0, math.exp(0.01)), 100.0)  # phi^3: f' touches 0 at 0
+    assert flat.stationary == ()
+    assert flat.mirrored().stationary == ()
+    cusp = SinusoidalPulse("flat top", -2.0, 2.0, (), ((4 / 3, 1.0, 0.0), (-1 / 3, 2.0, 0.0)))  # f'' = 0 at its top too
+    assert cusp.stationary == pytest.approx((0.0,), abs=1e-5)
+
+
+def test_a_window_without_the_top_of_its_sinusoid():
+    start, end = pi / 3, 2 * pi / 3
+    one = SinusoidalPulse("one", start, end, (), ((2.0, 1.0, 0.0),))
+    two = SinusoidalPulse("two", start, end, (), ((1.0, 1.0, 0.0), (1.0, 1.0, 0.0)))
+    groups = {"slenderness": [0.3, 0.6, 0.9], "frequency_ratio": [[0.5], [2.0]], "restitution": 0.8}
+    ours, theirs = (rocking.peak_response(pulse, **groups) for pulse in (one, two))
+    np.testing.assert_array_equal(ours.outcome, theirs.outcome)
+    np.testing.assert_allclose(ours.peak_rotation, theirs.peak_rotation, rtol=1e-12)
+
+
+SINE = ((1.0, 1.0, -pi / 2),)
+WRONG = {
+    "name": lambda: SinusoidalPulse("", 0.0, 1.0, (), ((1.0, 0.0, 0.0),)),
+    "start": lambda: SinusoidalPulse("x", math.nan, 1.0, (), ((1.0, 0.0, 0.0),)),
+    "end": lambda: SinusoidalPulse("x", 1.0, 1.0, (), ((1.0, 0.0, 0.0),)),
+    "stationary": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (pi / 2,), SINE),
+    "stationary ": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (3 * pi / 2, pi / 2), SINE),
+    "stationary  ": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (pi / 2, 4.0), SINE),
+    "stationary   ": lambda: SinusoidalPulse("x", 0.0, MAX_PIECES * pi + 0.1, (), ((1.0, 1.0, 0.0),)),
+    "max |f|": lambda: SinusoidalPulse("x", 0.0, 2 * pi, (), ((2.0, 1.0, -pi / 2),)),
+    "max |f| ": lambda: WaveletPulse("x", 1.0, 2.0, (), (1.0,), 4.0),
+    "terms": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ()),
+    "terms ": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ((1.0, 0.0),)),
+    "terms  ": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ((1.0, -1.0, 0.0),)),
+    "terms   ": lambda: SinusoidalPulse(
+        "x", 0.0, 1.0, (), ((1 / (MAX_SINUSOIDS + 1), 0.0, 0.0),) * (MAX_SINUSOIDS + 1)
+    ),
+    "polynomial": lambda: WaveletPulse("x", -1.0, 1.0, (), (), 4.0),
+    "polynomial ": lambda: WaveletPulse("x", -1.0, 1.0, (), (1.0,) + (0.0,) * MAX_POLYNOMIAL, 4.0),
+    "spread": lambda: WaveletPulse("x", -1.0, 1.0, (), (1.0,), 0.0),
+    "pulse": lambda: SinusoidalPulse("x", 0.0, 1.0, (), ((1.0, 0.0, 0.0), (0.5, 1.0, 0.0), (-0.5, 1.0, 0.0))),
+}
+
+
+@pytest.mark.parametrize("parameter", WRONG)
+def test_what_the_solver_cannot_follow_is_refused_when_it_is_made(parameter):
+    with pytest.raises(InvalidArgumentError) as error:
+        WRONG[parameter]()
+    assert error.value.parameter == parameter.strip()
+
+
+def test_the_longest_pulse_is_followed():
+    pulse = SinusoidalPulse("long", 0.0, MAX_PIECES * pi, (), ((1.0, 1.0, 0.0),))
+    assert len(pulse.monotone_pieces) == MAX_PIECES
+    found = rocking.peak_response(pulse, slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
+    short = rocking.peak_response("cosine", slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
+    assert found.peak_rotation >= short.peak_rotation > 0.0

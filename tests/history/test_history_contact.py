@@ -1,0 +1,146 @@
+"""Extremes of the contact through a whole motion, what is said about them, and who pays for them."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rocking
+from rocking.excitation.pulses import PULSE_NAMES
+from rocking.history.contact import LARGEST_FRICTION, PRACTICAL_FRICTION, extremes_of
+from rocking.history.motion import motion_of
+
+QUESTIONS = (
+    {"slenderness": 0.45, "frequency_ratio": 4.0, "restitution": 0.85},
+    {"slenderness": 0.7, "frequency_ratio": 2.0, "restitution": 0.6},
+    {"slenderness": 0.15, "frequency_ratio": 3.0, "restitution": 0.9},
+)
+
+
+@pytest.mark.parametrize("alpha", [None, 0.1, 0.45])
+@pytest.mark.parametrize("pulse", [*PULSE_NAMES])
+def test_extremes_are_those_of_a_very_finely_sampled_motion(pulse, alpha):
+    for question in QUESTIONS:
+        fine = rocking.time_history(pulse, **question, alpha=alpha, contact=True, samples=100_001)
+        coarse = rocking.time_history(pulse, **question, alpha=alpha, contact=True, samples=2)
+        for name in ("largest_friction_demand_over_slope", "smallest_normal_reaction", "lifts_off"):
+            assert fine.attrs[name] == coarse.attrs[name]  # not a matter of the samples shown
+        until = fine.tau.size
+        if fine.overturned:
+            until = int(np.flatnonzero(np.abs(fine.rotation.values) <= 1)[-1]) + 1
+        demand = fine.friction_demand_over_slope.values[:until].max()
+        if np.isfinite(demand):
+            assert demand * (1 - 1e-12) <= fine.largest_friction_demand_over_slope
+            if not fine.lifts_off:
+                assert fine.largest_friction_demand_over_slope == pytest.approx(demand, rel=2e-3)
+        lowest = fine.normal_reaction.values[:until].min()
+        assert lowest - 5e-3 * (1 + abs(lowest)) <= fine.smallest_normal_reaction <= lowest + 1e-12
+        assert fine.largest_friction_demand_over_slope > 1 - 1e-9  # it uplifts
+
+
+def test_the_last_moment_before_an_impact_counts():
+    # it lands so fast under such a pulse that the ground carries least of it then
+    question = {"slenderness": 0.25, "frequency_ratio": 3.0, "restitution": 0.72, "alpha": 0.57}
+    impact = rocking.time_history("cosine", **question).impact_time.values[0]
+    before = rocking.time_history("cosine", **question, duration=impact * (1 - 1e-9), contact=True)
+    whole = rocking.time_history("cosine", **question, contact=True)
+    assert before.normal_reaction.values[-1] == pytest.approx(whole.smallest_normal_reaction, abs=1e-6)
+    assert whole.normal_reaction.sel(tau=impact) > whole.smallest_normal_reaction + 0.1
+
+
+def test_a_stocky_block_under_a_strong_pulse_lifts_off(tmp_path):
+    question = {"slenderness": 0.2, "frequency_ratio": 12.0, "restitution": 0.85, "alpha": math.radians(45)}
+    history = rocking.time_history("sine", **question, contact=True)
+    assert history.lifts_off == 1
+    assert history.smallest_normal_reaction < 0
+    assert history.largest_friction_demand == math.inf
+    assert "lifts off" in history.warnings
+    pulled = history.normal_reaction.values <= 0
+    assert pulled.any()
+    np.testing.assert_array_equal(np.isinf(history.friction_demand.values), pulled)
+    history.to_netcdf(tmp_path / "history.nc")
+    again = xr.load_dataset(tmp_path / "history.nc")
+    assert again.largest_friction_demand == math.inf
+    np.testing.assert_array_equal(again.friction_demand, history.friction_demand)
+
+
+def test_a_block_that_overturns_is_judged_until_it_passes_alpha_for_good():
+    question = {"slenderness": 0.2, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": math.radians(20)}
+    history = rocking.time_history("sine", **question, contact=True, samples=50_001)
+    assert history.overturned
+    last = np.flatnonzero(np.abs(history.rotation.values) <= 1)[-1] + 1
+    demand = history.friction_demand.values
+    assert history.largest_friction_demand == pytest.approx(demand[:last].max(), rel=1e-6)
+    assert demand[last:].max() > 3 * history.largest_friction_demand  # falling asks for more, and it does not matter
+    brief = rocking.time_history("sine", **question, contact=True, duration=0.4)
+    assert brief.largest_friction_demand <= history.largest_friction_demand * (1 + 1e-9)
+
+
+def test_warnings_name_what_is_needed():
+    slides = rocking.time_history(
+        "ricker", slenderness=0.2, frequency_ratio=5.0, restitution=0.85, alpha=math.radians(20), contact=True
+    )
+    assert slides.largest_friction_demand > PRACTICAL_FRICTION
+    assert f"{slides.largest_friction_demand:.3g}" in slides.warnings
+    impact = rocking.time_history(
+        "sine", slenderness=0.6, frequency_ratio=5.0, restitution=0.5, alpha=math.radians(10), contact=True
+    )
+    assert impact.largest_friction_demand < PRACTICAL_FRICTION < impact.impulse_ratio
+    assert "impact" in impact.warnings
+    calm = rocking.time_history(
+        "sine", slenderness=0.6, frequency_ratio=5.0, restitution=0.93, alpha=math.radians(12), contact=True
+    )
+    assert calm.warnings == ""
+
+
+def contact_of(**question):
+    return extremes_of(motion_of("sine", **question))
+
+
+def test_the_sentence_puts_first_that_the_rocking_model_does_not_apply():
+    upright = contact_of(slenderness=0.6, frequency_ratio=5.0, restitution=0.93, alpha=math.radians(12))
+    assert (upright.rocking_applies, upright.sentence) == (True, "rocks and comes to rest")
+    squat = {"restitution": 0.25, "alpha": math.radians(45)}
+    slides = contact_of(slenderness=0.9, frequency_ratio=4.0, **squat)
+    assert LARGEST_FRICTION < slides.largest_friction_demand < math.inf
+    assert not slides.rocking_applies
+    assert slides.sentence.startswith("would slide: the rocking model does not apply")
+    assert slides.sentence.endswith("rocks and comes to rest")
+    lifts = contact_of(slenderness=0.2, frequency_ratio=12.0, **squat)
+    assert lifts.sentence.startswith("would lift off the ground: the rocking model does not apply")
+    assert not lifts.rocking_applies
+
+
+def test_a_block_at_rest_may_slide_but_does_not_overturn():
+    strong, weak = "never uplifts, but slides unless the coefficient of friction is at least 1.9", "never uplifts"
+    for amplitude, sentence in ((0.95, strong), (0.4, weak)):
+        still = contact_of(slenderness=1 / amplitude, frequency_ratio=4.0, restitution=0.5, alpha=math.atan(2.0))
+        assert still.largest_friction_demand == pytest.approx(2.0 * amplitude)  # a_g/g
+        assert still.rocking_applies
+        assert still.sentence == sentence
+    slender = contact_of(slenderness=0.2, frequency_ratio=3.0, restitution=0.9)
+    assert slender.rocking_applies  # friction is not judged in the slender limit
+
+
+@pytest.mark.parametrize("alpha", [None, 1e-12, 1e-3, 0.5, 1.57])
+def test_far_corners_give_numbers(alpha):
+    for slenderness in (1e-9, 0.5, 1 - 1e-12, 1e9):
+        for omega in (1e-6, 1.0, 1e6):
+            for eta in (0.0, 1.0):
+                history = rocking.time_history(
+                    "sine", slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha, contact=True
+                )
+                for name in ("horizontal_reaction", "normal_reaction"):
+                    assert np.isfinite(history[name].values).all()
+                assert not np.isnan(history.friction_demand_over_slope.values).any()
+                assert history.largest_friction_demand >= 0
+                assert math.isfinite(history.smallest_normal_reaction)
+
+
+def test_nobody_pays_who_does_not_ask():
+    question = QUESTIONS[0] | {"alpha": 0.3}
+    plain, full = (rocking.time_history("sine", **question, contact=contact) for contact in (False, True))
+    assert "friction_demand" not in plain
+    assert "warnings" not in plain.attrs
+    xr.testing.assert_equal(plain, full[list(plain)])

@@ -1,0 +1,92 @@
+"""The block: geometry and parameters, (2.1), (2.2), (2.4)."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rocking.errors import InvalidArgumentError
+from rocking.model.block import STANDARD_GRAVITY, Block
+
+lengths = st.floats(1e-3, 1e3)
+
+
+@given(b=lengths, h=lengths)
+def test_geometry(b, h):
+    block = Block(half_width=b, half_height=h)
+    R = math.hypot(b, h)
+    assert h * math.sin(block.alpha) == pytest.approx(
+        b * math.cos(block.alpha), rel=1e-12, abs=1e-13 * R
+    )  # below (2.1)
+    assert block.half_diagonal * math.sin(block.alpha) == pytest.approx(b, rel=1e-12)
+    assert block.half_diagonal * math.cos(block.alpha) == pytest.approx(h, rel=1e-12)
+    assert block.uplift_acceleration == pytest.approx(STANDARD_GRAVITY * b / h, rel=1e-12)
+
+
+@given(b=lengths, h=lengths)
+def test_frequency_parameter_is_that_of_a_rectangle_about_its_corner(b, h):
+    block = Block(half_width=b, half_height=h)
+    inertia = 4 / 3 * block.half_diagonal**2  # I_0/m of a uniform rectangle about a corner
+    assert block.frequency_parameter**2 == pytest.approx(block.gravity * block.half_diagonal / inertia, rel=1e-12)
+
+
+@given(alpha=st.floats(0.01, 1.5), R=lengths)
+def test_angle_and_diagonal_there_and_back(alpha, R):
+    block = Block.from_slenderness_angle(alpha, R)
+    assert block.alpha == pytest.approx(alpha, rel=1e-12)
+    assert block.half_diagonal == pytest.approx(R, rel=1e-12)
+
+
+@given(b=lengths, h=lengths)
+def test_housner_restitution_conserves_angular_momentum(b, h):
+    block = Block(half_width=b, half_height=h)
+    R = block.half_diagonal
+    # before impact the centre moves perpendicular to one diagonal; its moment about the other corner plus the spin
+    centre = R * R * math.cos(2 * block.alpha) + R * R / 3
+    assert block.housner_restitution == pytest.approx(centre / (4 / 3 * R * R), rel=1e-12, abs=1e-12)  # (2.4)
+
+
+@given(alpha=st.floats(0.05, 1.5))
+def test_inelastic_restitution_is_that_of_a_ground_that_only_pushes(alpha):
+    """Housner's impact lets the old corner rise; where it would have to sink, the ground pushes at both corners."""
+    block = Block.from_slenderness_angle(alpha, 1.0)
+    b, h = block.half_width, block.half_height
+    # turning with unit rate about the corner (b, 0) towards the corner (-b, 0), its centre (0, h) goes (-h, -b);
+    # to stop it takes vertical impulses at the two corners over the mass, whose sum is b and whose moment is:
+    old, new = np.linalg.solve([[1, 1], [b, -b]], [b, -(h * h + 1 / 3)])
+    assert new > 0
+    if abs(block.housner_restitution) > 1e-9:
+        assert (old > 0) == (block.housner_restitution < 0)
+    assert block.inelastic_restitution == (0.0 if old > 0 else pytest.approx(block.housner_restitution, abs=1e-9))
+
+
+def test_restitution_of_slender_blocks_tends_to_one():
+    assert Block.from_slenderness_angle(1e-6, 1.0).housner_restitution == pytest.approx(1, abs=2e-12)
+    assert Block.from_slenderness_angle(math.radians(54.7356103), 1.0).housner_restitution == pytest.approx(0, abs=1e-8)
+
+
+def test_smaller_gravity_slows_rocking():
+    earth, moon = Block(0.2, 1.0), Block(0.2, 1.0, gravity=1.62)
+    assert moon.frequency_parameter / earth.frequency_parameter == pytest.approx(math.sqrt(1.62 / STANDARD_GRAVITY))
+    assert moon.alpha == earth.alpha
+
+
+@pytest.mark.parametrize("name", ["half_width", "half_height", "gravity"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf, "wide"])
+def test_impossible_blocks_are_refused_by_name(name, value):
+    good = {"half_width": 0.2, "half_height": 1.0, "gravity": 9.81}
+    with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
+        Block(**{**good, name: value})
+
+
+@pytest.mark.parametrize(("alpha", "R"), [(0.0, 1.0), (math.pi / 2, 1.0), (0.2, 0.0), (math.nan, 1.0)])
+def test_impossible_angles_are_refused(alpha, R):
+    with pytest.raises(InvalidArgumentError, match=r"`alpha`|`half_diagonal`"):
+        Block.from_slenderness_angle(alpha, R)
+
+
+def test_block_is_frozen():
+    with pytest.raises(AttributeError):
+        Block(0.2, 1.0).half_width = 0.3

@@ -1,0 +1,56 @@
+"""environment.lock holds names, versions and hashes only, and agrees with pyproject.toml."""
+
+import ast
+import re
+import sys
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
+
+ROOT = Path(__file__).parents[2]
+LOCK = (ROOT / "environment.lock").read_text()
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+PINS = {canonicalize_name(name): version for name, version in re.findall(r"^([\w.-]+)==(\S+)", LOCK, re.MULTILINE)}
+DIRECT = [
+    *PROJECT["build-system"]["requires"],
+    *PROJECT["project"]["dependencies"],
+    *(line for part in PROJECT["project"]["optional-dependencies"].values() for line in part),
+]
+
+
+def test_every_line_is_a_pin_or_a_hash() -> None:
+    assert re.fullmatch(r"([\w.-]+==[\w.+!-]+( \\\n    --hash=sha256:[0-9a-f]{64})+\n)+", LOCK)
+
+
+def test_no_host_path_or_index() -> None:
+    assert not re.search(r"https?:|file:|--index|--extra-index|--find-links|@|/", LOCK)
+
+
+@pytest.mark.parametrize("line", DIRECT)
+def test_direct_requirement_is_pinned_within_its_bound(line: str) -> None:
+    requirement = Requirement(line)
+    pin = PINS[canonicalize_name(requirement.name)]
+    assert requirement.specifier.contains(Version(pin)), f"{line}: pinned {pin}"
+
+
+def test_no_requirement_is_stated_twice() -> None:
+    names = [canonicalize_name(Requirement(line).name) for line in DIRECT if not line.startswith("setuptools")]
+    assert len(names) == len(set(names))
+
+
+def test_what_the_package_imports_is_required() -> None:
+    distributions = metadata.packages_distributions()
+    required = {canonicalize_name(Requirement(line).name) for line in PROJECT["project"]["dependencies"]}
+    required |= {"starlette", "anyio", "pydantic-core"}  # parts of FastAPI and pydantic, whose documentation names them
+    trees = [ast.parse(path.read_text()) for folder in ("rocking", "api") for path in (ROOT / folder).rglob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+    tops = {name.split(".")[0] for name in names} - sys.stdlib_module_names - {"rocking", "api"}
+    for top in tops:
+        assert required & {canonicalize_name(name) for name in distributions.get(top, [])}, f"{top} is not required"

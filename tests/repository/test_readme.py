@@ -1,0 +1,133 @@
+"""Every command of README.md is run: the Python blocks, the requests, the command line; make's recipes are looked at.
+
+`make test` runs this file and the smoke configuration of the workflow, so the make lines themselves are not run again:
+their recipes are printed by `make --dry-run`, and what they call is run here or in the tests of the workflow.
+"""
+
+import json
+import re
+import shlex
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rocking
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+PYTHON_BLOCKS = [code for language, code in BLOCKS if language == "python"]
+COMMANDS = [
+    shlex.split(line, comments=True)
+    for language, code in BLOCKS
+    if language == "bash"
+    for line in code.replace("\\\n", " ").splitlines()
+]
+MAKE = [command for command in COMMANDS if command[0] == "make"]
+CURL = [command for command in COMMANDS if command[0] == "curl"]
+ROCKING = [command for command in COMMANDS if command[0] == ".venv/bin/rocking"]
+
+
+def recipe(*arguments: str) -> str:
+    answer = subprocess.run(["make", "--dry-run", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
+    return answer.stdout.strip().splitlines()[-1]
+
+
+def installed(program: str) -> str:
+    """Path of a program in the environment that runs the tests."""
+    return str(Path(sys.executable).with_name(program))
+
+
+def free_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
+
+
+@pytest.fixture(scope="module")
+def server_port(smoke_results: Path) -> Iterator[int]:
+    """Port of what `make serve` starts, here over the results of the smoke configuration."""
+    port = free_port()
+    program, *arguments = shlex.split(recipe("serve", f"PORT={port}"))
+    place = smoke_results.parent
+    with subprocess.Popen([installed(program), *arguments], cwd=place, stderr=subprocess.PIPE, text=True) as process:
+        for _ in range(600):
+            try:
+                with urllib.request.urlopen(f"http://127.0.0.1:{port}/health", timeout=5):
+                    break
+            except OSError:
+                assert process.poll() is None, process.stderr and process.stderr.read()
+                time.sleep(0.1)
+        yield port
+        process.terminate()
+
+
+def test_every_command_has_a_test() -> None:
+    assert len(MAKE) + len(CURL) + len(ROCKING) == len(COMMANDS)
+    assert len(PYTHON_BLOCKS) == 3
+    assert MAKE
+    assert CURL
+    assert ROCKING
+
+
+@pytest.mark.parametrize(
+    ("target", "program"),
+    [("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"), ("test", "pytest"), ("serve", "rocking serve")],
+)
+def test_make_targets_of_the_readme(target: str, program: str) -> None:
+    assert ["make", target] in MAKE
+    assert len(MAKE) == 3
+    assert recipe(target).startswith(program)
+
+
+@pytest.mark.parametrize("command", ROCKING, ids=" ".join)
+def test_command_line(command: list[str]) -> None:
+    subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, check=True)
+
+
+def test_first_python_block(capsys: pytest.CaptureFixture[str]) -> None:
+    names: dict[str, object] = {}
+    exec(PYTHON_BLOCKS[0], names)
+    (printed,) = (text for language, text in BLOCKS if language == "text")
+    assert capsys.readouterr().out == printed
+    assert isinstance(names["response"], rocking.Response)
+
+
+@pytest.mark.slow
+def test_data_set_block(
+    smoke_results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(smoke_results.parent)
+    exec(PYTHON_BLOCKS[1], {})
+    assert "peak_rotation" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_cube_block(smoke_results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(smoke_results.parent)
+    names: dict[str, Any] = {}
+    exec(PYTHON_BLOCKS[2], names)
+    assert names["found"].outcome == rocking.Outcome.SAFE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", CURL, ids=" ".join)
+def test_requests(command: list[str], server_port: int) -> None:
+    url = command[-1].replace(":8000", f":{server_port}")
+    assert url != command[-1]
+    if shutil.which("curl"):
+        body = subprocess.run(
+            [*command[:-1], "--silent", "--fail", url], capture_output=True, text=True, check=True
+        ).stdout
+    else:  # a machine with Python and make alone
+        with urllib.request.urlopen(url) as answer:
+            body = answer.read().decode()
+    assert json.loads(body)["source"] in ("cube", "solver")

@@ -1,0 +1,135 @@
+"""Chatter: rest is declared only where following every impact would come to rest too, and unseen."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import rocking
+from rocking import Outcome
+from rocking.excitation.pulses import PULSE_NAMES
+from rocking.solver.arcs.events import fly
+from rocking.solver.kernels.chatter import settles
+from rocking.solver.state import IMPACT, prepared_steps
+from rocking.solver.taylor.flight import fly_steps
+from tests.kernels import cell, flight_from
+
+SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))
+WANTED = st.tuples(
+    st.sampled_from(SIGNED),
+    st.floats(0.02, 0.999),
+    st.floats(-2.5, 2.0).map(lambda x: 10**x),
+    st.one_of(st.floats(0, 0.95), st.floats(0.95, 0.999)),
+    st.one_of(st.just(0.0), st.floats(-6, 0.15).map(lambda x: 10**x)),
+    st.floats(0, 1),
+    st.floats(0.001, 0.999),
+    st.floats(-9, 0).map(lambda x: 10**x),
+    st.sampled_from([-1.0, 1.0]),
+)
+
+
+def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
+    """Impact by impact until next to nothing is left: the phase then, and the highest peak [z]."""
+    highest, first, steps = 0.0, w, prepared_steps(flight)
+    while w > 1e-7 * first:
+        flight_from(flight, phase, w, sign)
+        if flight["by_arcs"]:
+            ended, h, landing, _, peak = fly(flight)
+        else:
+            ended, landing, _ = fly_steps(flight, steps)
+            h, peak = float(flight["elapsed"]), float(flight["largest"])
+        highest = max(highest, peak)
+        if ended != IMPACT:
+            return math.inf, highest
+        phase, w, sign = phase + float(flight["omega"]) * h, -eta * landing, -sign
+    return phase, highest
+
+
+@given(WANTED)
+@settings(max_examples=500)
+def test_settles_never_promises_what_the_impacts_do_not_keep(wanted):
+    pulse, slenderness, omega, eta, alpha, where, within, w, sign = wanted
+    flight = cell(pulse, slenderness, omega, alpha)
+    quiet = np.flatnonzero(flight["cut_level"][: int(flight["count"])] == 0.0)
+    interval = int(quiet[min(int(where * len(quiet)), len(quiet) - 1)])
+    flight["interval"] = interval
+    start, end = (float(x) for x in flight["cut_phase"][interval : interval + 2])
+    phase = start + within * (end - start)
+    assume(start < phase < end)
+    peak = 0.5 * w  # what a chattering block has reached before
+    if settles(flight, w, eta, phase, end, peak):
+        rest, highest = follow(flight, w, eta, phase, sign)
+        assert rest <= end
+        assert highest <= peak
+
+
+def test_settles_says_yes_where_chatter_is_far_from_everything():
+    flight = cell("sine", 0.9, 1.0)
+    end = float(flight["cut_phase"][1])
+    for eta in (0.0, 0.3, 0.9, 0.99):
+        assert settles(flight, 1e-7, eta, 0.1, end, 0.5)
+    assert not settles(flight, 1e-7, 1.0, 0.1, end, 0.5)  # nothing is lost: no rest
+    assert not settles(flight, 1e-7, 0.9, 0.1, end, 1e-15)  # a flight may pass the peak
+    assert not settles(flight, 0.5, 0.9, 0.1, end, 0.5)  # the window is too short
+    assert not settles(flight, 1e-3, 0.9, end - 1e-6, end, 0.5)
+
+
+@pytest.mark.parametrize("alpha", [None, 0.25])
+def test_a_block_at_rest_after_chatter_is_lifted_again(alpha):
+    # barely lifted by the first crest, at rest before the second, which lifts it to the other side
+    question = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.3, "alpha": alpha}
+    found = rocking.peak_response("sine", **question)
+    assert found.outcome == Outcome.SAFE
+    assert found.chatter
+    history = rocking.time_history("sine", **question, samples=4000)
+    tau, rotation = history.tau.values, history.rotation.values
+    lobes = [rotation[(tau > a) & (tau < b)] for a, b in ((0.0, math.pi / 8), (math.pi / 8, math.pi / 4))]
+    assert lobes[0].min() < 0  # positive ground acceleration: negative rotation first
+    assert lobes[1].max() > 0
+    rest = (rotation == 0) & (tau > found.uplift_time) & (tau < math.pi / 4 + 0.01)
+    assert rest.sum() > 10
+
+
+@pytest.mark.parametrize("alpha", [None, 0.25])
+def test_the_same_lift_twice_when_rest_lies_between(alpha):
+    question = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.0, "alpha": alpha}
+    one = rocking.peak_response("half_sine", **question)
+    two = rocking.peak_response("sine", **question)
+    assert two.peak_rotation >= one.peak_rotation
+    assert two.impacts >= 1
+
+
+@pytest.mark.parametrize("alpha", [None, 1e-6, 0.25])
+@pytest.mark.parametrize("name", SIGNED[::2])
+def test_no_rebound_means_rest_or_renewed_uplift(name, alpha):
+    rng = np.random.default_rng(6)
+    n = 300
+    found = rocking.peak_response(
+        name,
+        slenderness=rng.uniform(0.3, 0.999, n),
+        frequency_ratio=np.exp(rng.uniform(0, 3, n)),
+        restitution=0.0,
+        alpha=alpha,
+    )
+    # one impact a lobe, or two where the ground pushes on at once
+    assert found.impacts.max() <= 16
+    assert not (found.outcome == Outcome.NO_UPLIFT).any()
+    assert not found.chatter.any()  # a single impact is not chatter
+
+
+def test_impacts_grow_as_restitution_does_and_peaks_stay():
+    eta = np.linspace(0.0, 0.99, 34)
+    found = rocking.peak_response("half_sine", slenderness=0.999, frequency_ratio=6.0, restitution=eta)
+    assert (found.outcome == Outcome.SAFE).all()
+    single = ~found.chatter
+    assert (np.diff(found.impacts[single]) >= 0).all()
+
+
+@pytest.mark.parametrize("alpha", [None, 0.1])
+def test_nearly_elastic_blocks_under_slow_pulses_end(alpha):
+    found = rocking.peak_response(
+        "sine", slenderness=0.9999, frequency_ratio=0.02, restitution=[1 - 1e-12, 1.0], alpha=alpha
+    )
+    assert np.isin(found.outcome, [Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY, Outcome.OVERTURNED_AFTER_IMPACT]).all()

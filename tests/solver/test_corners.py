@@ -1,0 +1,43 @@
+"""Every corner of the admitted question is answered: no exception, no hang, no nan that is not an overturned block."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking.solver.peak_response import ALPHAS, FREQUENCY_RATIOS, SMALLEST_SLENDERNESS
+
+SLENDERNESS = (SMALLEST_SLENDERNESS, 1e-3, 0.5, 0.999, 1 - 1e-15)
+FREQUENCY_RATIO = (FREQUENCY_RATIOS[0], 1e-3, 1.0, 1e3, FREQUENCY_RATIOS[1])
+RESTITUTION = (0.0, 0.9, 1 - 1e-12, 1.0)
+ALPHA = (0.0, ALPHAS[0], 1e-3, 1.2, ALPHAS[1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pulse", ["sine", "cosine", "rectangular", "c2", "ricker", "ricker_antisymmetric"])
+def test_corners_of_the_question(pulse: str) -> None:
+    groups = np.array(list(itertools.product(SLENDERNESS, FREQUENCY_RATIO, RESTITUTION, ALPHA))).T
+    response = rocking.peak_response(
+        pulse, slenderness=groups[0], frequency_ratio=groups[1], restitution=groups[2], alpha=groups[3]
+    )
+    assert np.array_equal(np.isnan(response.peak_rotation), response.overturned)
+    standing = response.peak_rotation[~response.overturned]
+    assert ((standing >= 0) & np.isfinite(standing)).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("slenderness", 1e-13),
+        ("frequency_ratio", 1e-10),
+        ("frequency_ratio", 1e10),
+        ("alpha", 1e-13),
+        ("alpha", 1.5705),
+    ],
+)
+def test_beyond_the_corners_is_refused(name: str, value: float) -> None:
+    question = {"slenderness": 0.5, "frequency_ratio": 2.0, "restitution": 0.9, "alpha": 0.1, name: value}
+    with pytest.raises(rocking.InvalidArgumentError) as refusal:
+        rocking.peak_response("sine", **question)
+    assert refusal.value.parameter == name

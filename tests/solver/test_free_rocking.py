@@ -1,0 +1,135 @@
+"""Free rocking: energy decides, conserved between impacts and lost at them."""
+
+import math
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+import rocking
+from rocking.solver.kernels.free_rocking import free_fate, highest_rotation
+
+ALPHAS = st.one_of(st.just(0.0), st.floats(-8, 0.19).map(lambda x: 10**x))
+
+
+def left_to_climb(z, alpha):
+    """X(z): 1 - z, or (2/alpha) sin(alpha (1 - z)/2), in many digits."""
+    z, alpha = mpmath.mpf(z), mpmath.mpf(alpha)
+    return 1 - z if alpha == 0 else 2 / alpha * mpmath.sin(alpha * (1 - z) / 2)
+
+
+@given(z=st.floats(0, 0.999), w=st.floats(1e-6, 3), eta=st.floats(0, 1), alpha=ALPHAS)
+def test_a_rising_block_turns_where_its_energy_is_spent(z, w, eta, alpha):
+    assume(z < math.pi / 2 / alpha if alpha > 0 else True)
+    escapes, peak, after = free_fate(z, w, eta, alpha)
+    with mpmath.workprec(160):
+        energy = left_to_climb(z, alpha) ** 2 - mpmath.mpf(w) ** 2  # of X, conserved
+        assert (escapes == 1) == (energy <= 0)
+        if escapes == 0:
+            assert after == 0
+            spent = left_to_climb(peak, alpha) ** 2 - energy
+            # what one ulp of z or of the peak changes
+            assert abs(spent) <= 1e-14 * left_to_climb(0.0, alpha) ** 2
+            assert z <= peak * (1 + 1e-15)
+            assert peak < 1
+
+
+@given(z=st.floats(0, 1.5), w=st.floats(-3, 0), eta=st.floats(0, 1), alpha=ALPHAS)
+def test_a_falling_block_comes_through_at_most_one_impact(z, w, eta, alpha):
+    assume(z < math.pi / 2 / alpha if alpha > 0 else True)
+    escapes, peak, after = free_fate(z, w, eta, alpha)
+    with mpmath.workprec(160):
+        barrier = left_to_climb(0.0, alpha)
+        x = left_to_climb(z, alpha)
+        if w >= x:
+            assert escapes == 1
+            return
+        squared = mpmath.mpf(w) ** 2 + barrier**2 - x**2  # of the impact velocity
+        rebound = mpmath.mpf(eta) ** 2 * squared
+        assume(abs(rebound - barrier**2) > 1e-13)
+        assert escapes == (2 if rebound >= barrier**2 else 0)
+        if escapes == 0:
+            climbed = float(barrier**2 - left_to_climb(peak, alpha) ** 2)
+            if after == 1:
+                assert peak > z
+                assert climbed == pytest.approx(float(rebound), abs=3e-15 * float(barrier) ** 2)
+            else:
+                assert peak == z
+                assert rebound <= climbed + 3e-15
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1e-8, 1e-3, 0.3, 1.2])
+@pytest.mark.parametrize("velocity", [1e-12, 1e-7, 1e-3, 0.3])
+def test_small_rotations_keep_their_digits(alpha, velocity):
+    with mpmath.workprec(200):
+        barrier = left_to_climb(0.0, alpha)
+        left = mpmath.sqrt(barrier**2 - mpmath.mpf(velocity) ** 2)
+        if alpha == 0:
+            true = 1 - left
+        else:
+            half = mpmath.mpf(alpha) / 2
+            true = (half - mpmath.asin(half * left)) / half
+        found = highest_rotation(velocity**2, float(left), float(barrier), alpha)
+    assert found == pytest.approx(float(true), rel=4e-15)
+
+
+@given(z=st.floats(1e-6, 0.9), w=st.floats(-0.4, 0.05), alpha=ALPHAS)
+def test_no_restitution_no_rotation_after_the_impact(z, w, alpha):
+    assume(z + abs(w) < 0.95)
+    escapes, peak, after = free_fate(z, w, 0.0, alpha)
+    assert (escapes, after) == (0, 0)
+    assert peak >= z * (1 - 2e-16)
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1e-6, 0.4])
+def test_fate_is_monotone_in_restitution_and_continuous_in_alpha(alpha):
+    fates = [free_fate(1.2, -1.9, eta, alpha) for eta in np.linspace(0, 1, 101)]
+    escapes = [fate[0] for fate in fates]
+    assert escapes == sorted(escapes)
+    peaks = [fate[1] for fate in fates if fate[0] == 0]
+    assert peaks == sorted(peaks)
+    for z, w in ((0.4, 0.3), (0.4, -0.3), (1e-9, 0.6), (0.9, 0.05)):
+        slender, nearly = free_fate(z, w, 0.95, 0.0), free_fate(z, w, 0.95, 1e-8)
+        assert slender[0] == nearly[0]
+        assert slender[1] == pytest.approx(nearly[1], rel=1e-14)
+
+
+@pytest.mark.parametrize("alpha", [None, 0.3])
+def test_without_loss_the_peaks_of_free_rocking_are_equal(alpha):
+    history = rocking.time_history(
+        "half_sine", slenderness=0.7, frequency_ratio=5.0, restitution=1.0, alpha=alpha, duration=15.0, samples=20_001
+    )
+    landings = history.impact_time.values[history.impact_time.values > history.pulse_end]
+    assert len(landings) >= 3
+    rotation, tau = np.abs(history.rotation.values), history.tau.values
+    peaks = [rotation[(tau >= a) & (tau <= b)].max() for a, b in pairwise(landings)]
+    np.testing.assert_allclose(peaks, peaks[0], rtol=1e-5)  # between samples
+    assert peaks[0] == pytest.approx(history.peak_rotation, rel=1e-5)
+
+
+@pytest.mark.parametrize("alpha", [None, 1e-7, 0.3])
+@pytest.mark.parametrize("eta", [0.5, 0.9, 1.0])
+def test_energy_is_conserved_between_impacts_and_falls_by_eta_squared_at_them(alpha, eta):
+    history = rocking.time_history(
+        "sine", slenderness=0.7, frequency_ratio=6.0, restitution=eta, alpha=alpha, duration=8.0, samples=500
+    )
+    free = (history.tau.values > history.pulse_end) & (history.rotation.values != 0)
+    tau, z, w = history.tau.values[free], np.abs(history.rotation.values[free]), history.angular_velocity.values[free]
+    if alpha is None:
+        energy, top = w**2 - (1 - z) ** 2, 1.0
+    else:
+        top = (2 * math.sin(alpha / 2) / alpha) ** 2
+        energy = w**2 - (2 * np.sin(alpha * (1 - z) / 2) / alpha) ** 2
+    flights = np.searchsorted(history.impact_time.values, tau, side="right")
+    kinetic = []
+    for flight in np.unique(flights):
+        here = flights == flight
+        if here.sum() >= 3:
+            np.testing.assert_allclose(energy[here], energy[here][0], rtol=0, atol=1e-14)
+            kinetic.append(energy[here].mean() + top)
+    assert len(kinetic) >= 2
+    for before, after in pairwise(kinetic):
+        assert after == pytest.approx(eta**2 * before, rel=1e-9, abs=3e-14)

@@ -1,0 +1,80 @@
+"""Searches end: with an error where arithmetic has left the proof on which their bound rests, never with an answer."""
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking._numba.simd import LANES
+from rocking.errors import SearchError
+from rocking.solver.kernels.event_loop import IMPACT_LIMIT, land
+from rocking.solver.peak_response import Scratch
+from rocking.solver.state import prepared_steps
+from rocking.solver.taylor.events import first_crossing
+from rocking.solver.taylor.flight import fly_steps
+from tests.kernels import first_flight
+
+ALPHA = 0.3
+
+
+def test_search_for_a_zero_ends():
+    series = np.full((23, LANES), np.nan)
+    with pytest.raises(SearchError, match="zero of a Taylor step"):
+        first_crossing(series, 0, 22, 0.0, 1.0, True, 1.0)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
+def test_zeros_of_any_order_are_passed_or_found(order):
+    """Far fewer intervals than the bound."""
+    rng = np.random.default_rng(order)
+    for _ in range(20):
+        zero = rng.uniform(0.2, 0.8)
+        others = np.polynomial.Polynomial([1.0, 0.0, rng.uniform(0.0, 2.0)]) ** rng.integers(0, 8)  # none, and > 0
+        polynomial = -np.polynomial.Polynomial.fromroots([zero] * order) * others
+        series = np.zeros((23, LANES))
+        series[: polynomial.coef.size, 0] = polynomial.coef
+        bend = float(np.abs(polynomial.deriv(2).coef).sum()) if order > 1 or others.degree() else 0.0
+        found = first_crossing(series, 0, 22, 0.0, 1.0, True, bend)
+        if order > 1 and found == -1.0:  # rounding decides whether a multiple zero is crossed
+            continue
+        assert found == pytest.approx(zero, abs=1e-12 ** (1 / order))
+
+
+@pytest.mark.parametrize("beyond", [1e-6, 1e-3, 0.02, 0.1, 0.3, 0.7])
+def test_zeros_beyond_the_end_are_not_found(beyond):
+    """Also where intervals have become short on the way, and grow again."""
+    for place in np.linspace(0.05, 0.95, 37):
+        bowl = np.polynomial.Polynomial([place * place + 1e-4, -2 * place, 1.0])  # almost zero at `place`
+        polynomial = bowl * np.polynomial.Polynomial([1.0 + beyond, -1.0])
+        series = np.zeros((23, LANES))
+        series[: polynomial.coef.size, 0] = polynomial.coef
+        bend = float(np.abs(polynomial.deriv(2).coef).sum())
+        assert first_crossing(series, 0, 22, 0.0, 1.0, True, bend) == -1.0
+        assert first_crossing(series, 0, 22, 0.0, 1.0 + 2 * beyond, True, 4 * bend) == pytest.approx(1.0 + beyond)
+
+
+def test_a_flight_ends():
+    flight = first_flight("sine", 0.5, 3.0, ALPHA)
+    steps = prepared_steps(flight)
+    steps["log_precision"] = -3000.0  # steps of no length
+    with pytest.raises(SearchError, match="flight"):
+        fly_steps(flight, steps)
+
+
+def test_flights_side_by_side_end(monkeypatch):
+    def without_length(flight, precision):
+        steps = prepared_steps(flight, precision)
+        steps["log_precision"] = -3000.0
+        return steps
+
+    monkeypatch.setattr("rocking.solver.peak_response.prepared_steps", without_length)
+    monkeypatch.setattr("rocking.solver.peak_response.scratch", Scratch())
+    with pytest.raises(SearchError, match="flight"):
+        rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.9, alpha=ALPHA)
+
+
+def test_impacts_end():
+    flight = first_flight("sine", 0.5, 3.0)
+    flight["length"], flight["impacts"] = 0.1, IMPACT_LIMIT + 3 * flight["count"] - 1
+    land(flight, -0.1, 0.9)
+    with pytest.raises(SearchError, match="impacts"):
+        land(flight, -0.1, 0.9)

@@ -1,0 +1,241 @@
+"""Figures: drawn twice they are the same file, and their data say what the captions claim."""
+
+from __future__ import annotations
+
+import hashlib
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+
+from rocking.boundary.curves import join_curves
+from rocking.closed_form import overturning_amplitudes
+from rocking.datasets.cube import read_dataset, read_spectrum, write_dataset
+from rocking.model.block import Block
+from rocking.solver.peak_response import peak_response
+from tests.workflow_fixtures import PROJECT, SMOKE
+from workflow.figures import figure_09, figure_10, similar_histories
+from workflow.figures.boundary_lines import Lines, lines_of
+from workflow.scripts.figure import main
+from workflow.scripts.overturning import curves_of, described
+
+CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
+
+
+@pytest.mark.parametrize("name", ["figure-01", "table-1"])
+def test_the_same_figure_has_the_same_bytes(name: str, smoke_results: Path, tmp_path: Path) -> None:
+    paths = {kind: tmp_path / f"{name}.{kind}" for kind in ("svg", "png", "nc")}
+    written = read_dataset(smoke_results / f"figures/{name}.nc").attrs
+    provenance = {key: written[key] for key in ("code_sha256", "settings_sha256")}
+    main(figure=name.replace("-", "_"), **paths, **CONFIGURED[name], provenance=provenance)
+    for kind, path in paths.items():
+        there = smoke_results / f"figures/{name}.{kind}"
+        assert hashlib.sha256(path.read_bytes()).digest() == hashlib.sha256(there.read_bytes()).digest(), kind
+
+
+@pytest.mark.parametrize("name", CONFIGURED)
+def test_figure_says_which_values_are_ours_and_has_a_caption(name: str, smoke_results: Path) -> None:
+    attributes = read_dataset(smoke_results / f"figures/{name}.nc").attrs
+    assert attributes.get("values_chosen_here", "") == ", ".join(CONFIGURED[name].get("ours", {}))
+    assert f"[{name}](#" in (PROJECT / "docs/figures.md").read_text()
+
+
+def test_two_blocks_collapse_to_the_master_curve(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-06.nc")
+    for name in ("rotation", "angular_velocity"):
+        one, other = data[name].values
+        scale = np.abs(one).max()
+        np.testing.assert_allclose(one, other, atol=1e-9 * scale)
+    master = np.interp(data.tau[0], data.tau_master, data.master_rotation)
+    np.testing.assert_allclose(data.rotation[0], master, atol=1e-9)
+
+
+def test_dimensional_blocks_have_the_groups_they_were_given(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-05.nc")
+    gravity = 9.80665
+    np.testing.assert_allclose(gravity * data.alpha / data.peak_acceleration, data.attrs["slenderness"], rtol=1e-12)
+    omega = 2 * np.pi / data.pulse_period / data.frequency_parameter
+    np.testing.assert_allclose(omega, data.attrs["frequency_ratio"], rtol=1e-12)
+    assert np.ptp(data.half_diagonal.values) > 1
+    assert np.ptp(data.alpha.values) > 0.1
+
+
+def test_figure_2_shows_what_its_cases_are(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-02.nc")
+    for i, case in enumerate(data.attrs["case_names"].split()):
+        overturning, surviving = data.rotation[i]
+        last = overturning.values[np.isfinite(overturning)][-1]
+        assert abs(last) > 2
+        assert np.abs(surviving.values).max() < 2
+        impact, end = float(data.first_impact[i, 0]), float(data.pulse_end[i])
+        assert {"2": np.isnan(impact) and last < 0, "1.2": impact > end and last > 0, "1.1": impact < end and last > 0}[
+            case
+        ]
+
+
+def test_closed_form_of_figure_8_is_exact_on_its_main_branch(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-08.nc")
+    top = data.sel(slenderness=0.30, method="nearest").where(data.frequency_ratio > 6, drop=True)
+    spectrum, closed = top.spectrum[0].values, top.closed_form.values
+    known = np.isfinite(spectrum)
+    assert known.sum() > 40
+    np.testing.assert_allclose(closed[known], spectrum[known], rtol=1e-10)
+    # and is not where the first impact falls inside the pulse
+    below = data.sel(slenderness=0.60, method="nearest").where(data.frequency_ratio > 6, drop=True)
+    assert np.nanmin(np.abs(below.closed_form.values / below.spectrum[0].values - 1)) > 0.05
+
+
+def test_closed_form_of_figure_8_is_missing_where_the_block_overturns_without_impact(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-08.nc")
+    closed = data.closed_form.transpose("restitution", "slenderness", "frequency_ratio").values
+    direct = overturning_amplitudes(data.frequency_ratio.values, 0.9).direct
+    beyond = 1 / data.slenderness.values[:, None] > direct
+    assert beyond.any()
+    assert np.isnan(closed[:, beyond]).all()
+    assert np.nanmin(closed) > 0
+
+
+def test_integration_with_dimensions_falls_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-09.nc")
+    above = data.threshold_overturns_above.values
+    assert set(above) == {0, 1}
+    np.testing.assert_array_equal(data.threshold_falls_above, above)
+    np.testing.assert_array_equal(data.threshold_falls_below, 1 - above)
+    assert set(zip(data.threshold_pulse.values, data.threshold_block.values, strict=True)) == {
+        (i, j) for i in range(2) for j in range(2)
+    }
+
+
+@pytest.mark.parametrize("pulse", ["sine", "cosine"])
+def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
+    small, large = (Block.from_slenderness_angle(np.radians(20), R) for R in (0.5, 1.0))
+    period = 1.1
+    one = list(figure_09.thresholds(pulse, small, period, 0.85))
+    other = list(figure_09.thresholds(pulse, large, period * np.sqrt(2), 0.85))  # p goes with 1/sqrt(R)
+    assert len(one) == len(other) >= 3
+    for a, b in zip(one, other, strict=True):
+        assert a["frequency_ratio"] == pytest.approx(b["frequency_ratio"], rel=1e-14)
+        assert a["amplitude"] == pytest.approx(b["amplitude"], rel=1e-11)
+        assert a["acceleration"] == pytest.approx(a["amplitude"] * small.uplift_acceleration, rel=1e-14)
+    # and do not with dimensions: at one period the thresholds of the two blocks differ
+    same_period = next(iter(figure_09.thresholds(pulse, large, period, 0.85)))
+    assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
+
+
+def test_upper_safe_region_of_figure_9_lies_above_the_loop(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-09.nc")
+    for k in range(2):
+        found = data.isel(threshold=(data.threshold_pulse == k).values)
+        omega, a = found.threshold_frequency_ratio.values, found.threshold_amplitude.values
+        safe_again = found.threshold_overturns_above.values == 0
+        column = np.abs(data.frequency_ratio.values[:, None] - omega).argmin(axis=0)
+        # halfway between standing again and falling without impact, the next threshold
+        between = np.sqrt(a[:-1] * a[1:])[safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)]
+        at = column[:-1][safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)]
+        row = np.abs(1 / data.slenderness.values[:, None] - between).argmin(axis=0)
+        assert between.size > 0
+        assert np.all(data.brought_back.values[k, row, at] == 1)
+
+
+def along_frequency(lines: Lines, omega: np.ndarray) -> np.ndarray:
+    """Largest amplitude of the lines at each frequency ratio: the curve of overturning without impact."""
+    joined = [~np.isnan(lines.amplitude[:-1] + lines.amplitude[1:])]
+    x, y = (np.stack([v[:-1][*joined], v[1:][*joined]]) for v in (lines.frequency_ratio, lines.amplitude))
+    inside = (x.min(axis=0)[:, None] <= omega) & (omega <= x.max(axis=0)[:, None])
+    slope = (y[1] - y[0]) / np.where(x[1] == x[0], np.inf, x[1] - x[0])
+    return np.where(inside, y[0][:, None] + slope[:, None] * (omega - x[0][:, None]), -np.inf).max(axis=0)
+
+
+@pytest.fixture(scope="module")
+def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
+    """Figure 10 at more angles than the smallest configuration has."""
+    files = {}
+    for pulse in ("sine", "cosine"):
+        window = {"nodes": 61, "slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
+        parts = [*chain(*(curves_of(pulse, [0.85], angle, **window) for angle in (0, 5, 10, 20)))]
+        files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
+        write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
+    return figure_10.data(**files, restitution=0.85)
+
+
+@pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])
+def test_boundaries_of_figure_10_tend_to_the_slender_limit(overturning_at_angles: xr.Dataset, pulse: int) -> None:
+    data = overturning_at_angles
+    omega = np.linspace(1.5, 2.4, 10)
+    slender, *others = (
+        along_frequency(lines_of(data, pulse, alpha), omega) for alpha in np.radians([0.0, 5.0, 10.0, 20.0])
+    )
+    distance = [np.abs(other / slender - 1).max() for other in others]
+    assert distance[0] < distance[1] < distance[2] < 0.05
+    assert distance[0] < 0.2 * distance[2]  # as alpha squared, and so by 16
+
+
+def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-10.nc")
+    np.testing.assert_allclose(data.alpha, np.radians([0, 20]), rtol=1e-15)
+    lines = lines_of(data, 0, 0.0)
+    known = np.isfinite(lines.amplitude) & (lines.frequency_ratio > 1.5)
+    a, omega = lines.amplitude[known], lines.frequency_ratio[known]
+    closed = overturning_amplitudes(omega, 0.85)
+    nearest = np.nanmin(np.abs(np.stack([closed.falls_from, closed.safe_again, closed.direct]) / a - 1), axis=0)
+    assert nearest.size > 100
+    assert nearest.max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["figure-11", "figure-12"])
+def test_blocks_are_more_alike_in_the_groups_of_6_1(name: str, smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / f"figures/{name}.nc")
+    assert np.isfinite(data.rotation).all()
+    slender, rigid = (
+        np.ptp(data.rotation.values[:, k], axis=1).max(axis=-1) / np.abs(data.slender_rotation.values).max(axis=-1)
+        for k in range(2)
+    )
+    assert np.all(rigid < 0.06)
+    assert np.all(slender > 4 * rigid)
+    np.testing.assert_allclose(data.spread, np.stack([slender, rigid], axis=1))
+    # and in those groups they are like the slender block
+    of_slender = np.abs(data.rotation.values[:, 1] - data.slender_rotation.values[:, None])
+    assert np.all(of_slender.max(axis=(1, 2)) < 0.06 * np.abs(data.slender_rotation.values).max(axis=1))
+
+
+def test_blocks_of_figure_11_share_the_groups_that_they_should() -> None:
+    pulse, s, omega, eta, alpha = "cosine", 0.6, 4.0, 0.9, np.radians(20)
+    data = similar_histories.data(
+        pulses=[pulse], restitution=eta, alpha_deg=[20], slenderness=s, frequency_ratio=omega, duration=5.0
+    )
+    block = {"frequency_ratio": omega, "restitution": eta, "alpha": alpha}
+    by_alpha = peak_response(pulse, slenderness=s * np.tan(alpha) / alpha, **block).peak_rotation
+    by_tangent = peak_response(pulse, slenderness=s, **block).peak_rotation
+    # theta = alpha times the peak; a_g/g = alpha/s and tan(alpha)/s
+    expected = [by_alpha * s, by_tangent * alpha * s / np.sin(alpha)]
+    np.testing.assert_allclose(np.abs(data.rotation.values[0, :, 0]).max(axis=-1), expected, rtol=1e-4)
+
+
+def test_spectra_of_figure_13_are_rows_of_the_cubes_in_their_groups(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-13.nc")
+    for k, pulse in enumerate(("sine", "cosine")):
+        cube = read_spectrum(smoke_results / f"spectra/{pulse}/eta-0.85.nc")
+        row = cube.peak_rotation.sel(slenderness=0.6, method="nearest", tolerance=1e-9)
+        row = row.sel(frequency_ratio=data.frequency_ratio)
+        np.testing.assert_array_equal(data.alpha, cube.alpha)
+        for alpha in data.alpha.values:
+            theta = alpha * row.sel(alpha=alpha)
+            in_groups = theta * 0.6 / np.tan(alpha) / np.cos(alpha) if alpha else 0.6 * row.sel(alpha=alpha)
+            np.testing.assert_allclose(data.spectrum[k].sel(alpha=alpha, slenderness=0.6), in_groups, rtol=1e-12)
+        # the two angles agree away from overturning, and the first curve does end
+        slender, rigid = data.spectrum[k].sel(slenderness=0.6).values
+        small = slender < 0.3
+        assert small.sum() > 20
+        np.testing.assert_allclose(rigid[small], slender[small], rtol=0.05)
+        assert np.isnan(slender).any()
+
+
+def test_islands_of_figure_4_lie_where_expected(smoke_results: Path) -> None:
+    data = read_dataset(smoke_results / "figures/figure-04.nc")
+    assert data.sizes["point"] > 50
+    assert 1 / data.island_amplitude.max() > 0.89
+    assert data.island_frequency_ratio.max() < 1.1
+    assert set(np.unique(data.island_impacts)) >= {3, 5}

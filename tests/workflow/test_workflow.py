@@ -1,0 +1,119 @@
+"""The workflow as a whole, run by Snakemake itself on the smallest configuration."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from rocking.datasets.cube import read_spectrum
+from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
+
+
+def digests(folder: Path) -> dict[str, str]:
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+@pytest.fixture
+def copy_of_run(smoke_run: Path, tmp_path: Path) -> Path:
+    """A finished run that a test may spoil; times of files are kept, or Snakemake would build all of them again."""
+    return Path(shutil.copytree(smoke_run, tmp_path / "run"))
+
+
+def test_every_promised_product_is_made_and_listed(smoke_results: Path) -> None:
+    manifest = json.loads((smoke_results / "manifest.json").read_text())
+    figures = [
+        *(f"figure-0{k}" for k in range(1, 10)),
+        *(f"figure-{k}" for k in range(10, 14)),
+        "figure-S1",
+        "figure-scale-law",
+        "table-1",
+    ]
+    expected = {f"figures/{name}.{kind}" for name in figures for kind in ("svg", "png", "nc")}
+    expected |= {"claims.json", "claims.md"}
+    for pulse in ("sine", "cosine"):
+        for kind in ("spectra", "overturning"):
+            expected |= {f"{kind}/{pulse}/eta-{eta}.nc" for eta in ("0.85", "0.90")}
+    assert set(manifest["products"]) == expected
+    found = digests(smoke_results)
+    assert {name: entry["sha256"] for name, entry in manifest["products"].items()} == {
+        name: found[name] for name in expected
+    }
+    beside = {name for name in set(found) - expected if not name.startswith(".records/")}
+    assert beside == {"manifest.json", "checks.txt"}  # and nothing else lies about
+
+
+def test_products_carry_the_digests_of_the_manifest(smoke_results: Path) -> None:
+    entry = json.loads((smoke_results / "manifest.json").read_text())["products"]["spectra/sine/eta-0.85.nc"]
+    cube = read_spectrum(smoke_results / "spectra/sine/eta-0.85.nc")
+    assert cube.attrs["code_sha256"] == entry["code_sha256"]
+    assert cube.attrs["settings_sha256"] == entry["settings_sha256"]
+
+
+def test_the_products_were_tested(smoke_results: Path) -> None:
+    lines = (smoke_results / "checks.txt").read_text().splitlines()
+    assert len(lines) > 60
+    assert all(line.startswith(("passed ", "code ")) for line in lines)
+
+
+def test_second_run_does_nothing(smoke_run: Path) -> None:
+    again = reproduce(smoke_run)
+    assert again.returncode == 0
+    assert "Nothing to be done" in again.stdout
+
+
+def test_cubes_made_again_have_the_same_bytes(copy_of_run: Path) -> None:
+    before = digests(copy_of_run / "results/spectra")
+    shutil.rmtree(copy_of_run / "results/spectra/sine")
+    remade = snakemake(copy_of_run, "results/spectra/sine/eta-0.85.nc")
+    assert remade.returncode == 0, remade.stdout
+    assert digests(copy_of_run / "results/spectra") == before
+
+
+def test_a_changed_module_reruns_what_depends_on_it_and_nothing_else(smoke_run: Path, tmp_path: Path) -> None:
+    project = tmp_path / "project"
+    for folder in ("rocking", "workflow", "profiles"):
+        shutil.copytree(PROJECT / folder, project / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("Snakefile", "environment.lock"):
+        shutil.copy2(PROJECT / name, project / name)
+    report = {"all", "check_results"}  # its inputs, the tests, lie in the project, which has moved
+    unchanged = snakemake(smoke_run, "--dry-run", project=project)
+    assert rules_to_run(unchanged.stdout) <= report, unchanged.stdout
+
+    for module, rules in {
+        "rocking/orientation.py": {"table_1", "claims"},
+        "rocking/groups/scale_law.py": {"figure_scale_law", "claims"},
+        "workflow/figures/figure_07.py": {"figure_07"},
+        "workflow/scripts/spectra.py": {"spectra", "figure_08", "figure_13", "figure_scale_law", "claims"},
+    }.items():
+        before = (project / module).read_text()
+        (project / module).write_text(before + "\n# a change\n")
+        changed = snakemake(smoke_run, "--dry-run", project=project)
+        assert rules_to_run(changed.stdout) == rules | report | {"manifest"}, changed.stdout
+        (project / module).write_text(before)
+
+
+@pytest.mark.parametrize("name", ["paper", "atlas"])
+def test_other_configurations_are_valid(name: str, tmp_path: Path) -> None:
+    planned = snakemake(tmp_path, "--dry-run", "--quiet", configuration=PROJECT / f"workflow/config/{name}.yaml")
+    assert planned.returncode == 0, planned.stdout
+
+
+def test_each_rule_documents_itself() -> None:
+    linted = snakemake(PROJECT, "--lint")
+    remarks = set(re.findall(r"^ {4}\* (.*?):?$", linted.stdout, flags=re.MULTILINE))
+    assert {remark for remark in remarks if "PYTHONPATH" not in remark} == {
+        "Specify a conda environment or container for each rule."  # make builds the environment from the lock
+    }
+    for rules in (PROJECT / "workflow/rules").glob("*.smk"):
+        for rule in re.split(r"^ *rule ?\w*:$", rules.read_text(), flags=re.MULTILINE)[1:]:
+            for directive in ("message", "input" if "figure" in rule else "output", "log", "benchmark", "params"):
+                assert re.search(rf"^ +{directive}:$", rule, flags=re.MULTILINE), f"{rules.name}: {directive}"
