@@ -56,7 +56,7 @@ mutants: .venv/project ## change single operators and constants, and see whether
 
 lock: ## resolve pyproject.toml anew into environment.lock (UPGRADE=--upgrade for the newest versions)
 	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
-	$(UV) pip compile pyproject.toml --extra workflow --extra dev --python $(PYTHON) \
+	$(UV) pip compile pyproject.toml --all-extras --python $(PYTHON) \
 	    --generate-hashes --no-header --no-annotate --quiet $(UPGRADE) --output-file environment.lock
 
 environment: .venv/project ## the environment .venv alone

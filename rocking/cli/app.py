@@ -6,7 +6,7 @@ solver, the data sets and the unit registry.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -55,14 +55,14 @@ def response(
     csv: Csv = False,
 ) -> None:
     """Fate and peak rotation of one block, by the solver."""
-    from rocking import cli_answers, cli_question
+    from rocking.cli import arguments, output
 
-    with cli_question.refusals():
-        question = cli_question.read(
+    with arguments.refusals():
+        question = arguments.read(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        cli_answers.response(question, cli_answers.form(json=json, csv=csv))
+        output.response(question, output.form(json=json, csv=csv))
 
 
 @app.command()
@@ -85,14 +85,14 @@ def history(
     csv: Csv = False,
 ) -> None:
     """Rotation and angular velocity of one block against time."""
-    from rocking import cli_answers, cli_question
+    from rocking.cli import arguments, output
 
-    with cli_question.refusals():
-        question = cli_question.read(
+    with arguments.refusals():
+        question = arguments.read(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        cli_answers.history(question, duration, samples, contact, cli_answers.form(json=json, csv=csv))
+        output.history(question, duration, samples, contact, output.form(json=json, csv=csv))
 
 
 @app.command()
@@ -108,12 +108,12 @@ def spectrum(
     csv: Csv = False,
 ) -> None:
     """Peak rotation against the frequency ratio."""
-    from rocking import cli_answers, cli_question
+    from rocking.cli import arguments, output
 
-    with cli_question.refusals():
-        window = cli_question.window(frequency_ratio_min, frequency_ratio_max)
-        question = cli_question.read(pulse, str(restitution), slenderness, window[0], alpha)
-        cli_answers.spectrum(question, window, points, cli_answers.form(json=json, csv=csv))
+    with arguments.refusals():
+        window = arguments.window(frequency_ratio_min, frequency_ratio_max)
+        question = arguments.read(pulse, str(restitution), slenderness, window[0], alpha)
+        output.spectrum(question, window, points, output.form(json=json, csv=csv))
 
 
 @app.command()
@@ -127,12 +127,12 @@ def boundary(
     csv: Csv = False,
 ) -> None:
     """The curves that separate standing from falling, traced."""
-    from rocking import cli_answers, cli_question
+    from rocking.cli import arguments, output
 
-    with cli_question.refusals():
-        window = cli_question.window(frequency_ratio_min, frequency_ratio_max)
-        question = cli_question.read(pulse, str(restitution), 1.0, window[0], alpha)
-        cli_answers.boundary(question, window, cli_answers.form(json=json, csv=csv))
+    with arguments.refusals():
+        window = arguments.window(frequency_ratio_min, frequency_ratio_max)
+        question = arguments.read(pulse, str(restitution), 1.0, window[0], alpha)
+        output.boundary(question, window, output.form(json=json, csv=csv))
 
 
 @app.command()
@@ -145,22 +145,14 @@ def serve(
     ] = None,
 ) -> None:
     """Answer over HTTP until interrupted; the routes are described under /docs."""
-    from pydantic import ValidationError
-    from rocking_api.server import serve as listen
-    from rocking_api.settings import Settings
+    from importlib.metadata import entry_points
 
-    given: dict[str, Any] = {} if results is None else {"results": results}
+    (entry,) = entry_points(group="rocking.commands", name="serve")
     try:
-        settings = Settings(**given)
-    except ValidationError as error:
-        wrong = error.errors()[0]
-        (name,) = wrong["loc"]
-        name = f"--{name}" if name in given else f"ROCKING_{name}".upper()
-        allowed = wrong.get("ctx", {}).get("error", wrong["msg"])
-        typer.echo(f"Error: {name} = {wrong['input']!r} is not allowed; allowed: {allowed}", err=True)
-        raise typer.Exit(2) from None
-    listen(settings, host, port)
-
-
-if __name__ == "__main__":
-    app()
+        listen = entry.load()
+    except ModuleNotFoundError as error:
+        typer.echo(
+            f"no module {error.name}: rocking serve needs the extra `service`, pip install 'rocking[service]'", err=True
+        )
+        raise typer.Exit(1) from error
+    listen(results, host, port)

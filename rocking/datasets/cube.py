@@ -40,9 +40,6 @@ from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.model.response import Outcome
 
-SQUARED, OVERTURNS, NO_STENCIL = 9, 18, -1
-"""Values of `stencil`: from 9 on (1 - peak)^2 is interpolated; all overturn alike; not interpolated."""
-
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 """Dimensions of a spectrum cube, in order."""
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Vector, entry
-from rocking.datasets.cube import SQUARED
-from rocking.interpolation.stencils import SHIFTS, Mesh, in_cell
+from rocking.interpolation.stencils import SHIFTS, SQUARED, Mesh, in_cell
 
 _SHIFTS = len(SHIFTS)
 

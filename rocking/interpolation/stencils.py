@@ -22,6 +22,9 @@ STENCIL = 4
 SHIFTS = ((1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2))
 """Rows and columns by which a stencil may start before its cell, the best first."""
 
+SQUARED, OVERTURNS, NO_STENCIL = 9, 18, -1
+"""Values of `stencil`: from 9 on (1 - peak)^2 is interpolated; all overturn alike; not interpolated."""
+
 LEVELS = ((4, 1), (4, 2), (4, 0), (3, 1), (3, 0), (2, 0))
 """How many levels may serve the gap between two, and how many of them lie below the lower of these; the best first."""
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rocking._numba.compilation import Record, Vector, entry, kernel
-from rocking.datasets.cube import OVERTURNS, SQUARED
-from rocking.interpolation.stencils import LEVELS, STENCIL, Mesh, in_cell, level_weight
+from rocking.interpolation.stencils import LEVELS, OVERTURNS, SQUARED, STENCIL, Mesh, in_cell, level_weight
 from rocking.model.response import Outcome
 
 UNKNOWN = -1

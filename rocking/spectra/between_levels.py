@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.datasets.cube import NO_STENCIL, SQUARED
-from rocking.interpolation.stencils import LEVELS, STENCIL, level_weight
+from rocking.interpolation.stencils import LEVELS, NO_STENCIL, SQUARED, STENCIL, level_weight
 from rocking.spectra.layer import Cells, Layer, peak_of
 
 Array = NDArray[np.float64]

@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import plain
-from rocking.datasets.cube import NO_STENCIL, OVERTURNS, build_spectrum_dataset
+from rocking.datasets.cube import build_spectrum_dataset
 from rocking.errors import in_range
 from rocking.interpolation.selection import choose_stencils
-from rocking.interpolation.stencils import Mesh
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking.model.response import Response
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.between_levels import Gap, Place
@@ -81,7 +81,7 @@ def spectra(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Iterator[xr.Dataset]:
-    """The spectrum cubes of one pulse, one for each coefficient of restitution in turn (schema in `rocking.datasets.cube`).
+    """The spectrum cubes of one pulse, one for each coefficient of restitution in turn (`rocking.datasets.cube`).
 
     Parameters
     ----------

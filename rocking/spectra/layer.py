@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import plain
-from rocking.datasets.cube import NO_STENCIL, OVERTURNS, SQUARED
 from rocking.interpolation.selection import interpolate_cells
-from rocking.interpolation.stencils import Mesh, stencils
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, Mesh, stencils
 from rocking.model.response import Outcome, Response
 
 Array = NDArray[np.float64]

@@ -41,7 +41,7 @@ class Server:
 
 
 @contextmanager
-def serving(results, log, command=(sys.executable, "-m", "rocking.cli.app"), cwd=ROOT, **environment):
+def serving(results, log, command=(sys.executable, "-m", "rocking.cli"), cwd=ROOT, **environment):
     """`rocking serve` in a process of its own on a free port."""
     arguments = [*command, "serve", "--port", "0", "--results", str(results)]
     with (

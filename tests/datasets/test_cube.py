@@ -10,8 +10,9 @@ import xarray as xr
 from compliance_checker.runner import CheckSuite
 from netCDF4 import Dataset
 
-from rocking.datasets.cube import NO_STENCIL, OVERTURNS, SQUARED, VARIABLES, read_dataset, read_spectrum, write_dataset
+from rocking.datasets.cube import VARIABLES, read_dataset, read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
 from rocking.model.response import Outcome
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectrum

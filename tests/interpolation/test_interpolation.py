@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rocking.datasets.cube import SQUARED
 from rocking.errors import InvalidArgumentError
 from rocking.interpolation.selection import choose_stencils, interpolate_cells
 from rocking.interpolation.stencils import (
     LEVELS,
     SHIFTS,
+    SQUARED,
     STENCIL,
     Mesh,
     cell_of,

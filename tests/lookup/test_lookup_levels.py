@@ -5,9 +5,9 @@ import shutil
 import numpy as np
 import pytest
 
-from rocking.datasets.cube import NO_STENCIL, read_spectrum, write_dataset
+from rocking.datasets.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.interpolation.stencils import LEVELS
+from rocking.interpolation.stencils import LEVELS, NO_STENCIL
 from rocking.lookup.open import open_cube
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectra, spectrum

@@ -16,10 +16,11 @@ ROOT = Path(__file__).parents[2]
 LOCK = (ROOT / "environment.lock").read_text()
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PINS = {canonicalize_name(name): version for name, version in re.findall(r"^([\w.-]+)==(\S+)", LOCK, re.MULTILINE)}
+EXTRAS = PROJECT["project"]["optional-dependencies"]
 DIRECT = [
     *PROJECT["build-system"]["requires"],
     *PROJECT["project"]["dependencies"],
-    *(line for part in PROJECT["project"]["optional-dependencies"].values() for line in part),
+    *(line for part in EXTRAS.values() for line in part if not line.startswith("rocking[")),
 ]
 
 
@@ -43,14 +44,17 @@ def test_no_requirement_is_stated_twice() -> None:
     assert len(names) == len(set(names))
 
 
-def test_what_the_package_imports_is_required() -> None:
+@pytest.mark.parametrize(("folder", "extras"), [("rocking", ()), ("api", ("service",))])
+def test_what_the_package_imports_is_required(folder: str, extras: tuple[str, ...]) -> None:
     distributions = metadata.packages_distributions()
-    required = {canonicalize_name(Requirement(line).name) for line in PROJECT["project"]["dependencies"]}
-    required |= {"starlette", "anyio", "pydantic-core"}  # parts of FastAPI and pydantic, whose documentation names them
-    trees = [ast.parse(path.read_text()) for folder in ("rocking", "api") for path in (ROOT / folder).rglob("*.py")]
+    lines = [*PROJECT["project"]["dependencies"], *(line for extra in extras for line in EXTRAS[extra])]
+    required = {canonicalize_name(Requirement(line).name) for line in lines}
+    if "service" in extras:
+        required |= {"starlette", "anyio", "pydantic-core"}  # named by the documentation of FastAPI and pydantic
+    trees = [ast.parse(path.read_text()) for path in (ROOT / folder).rglob("*.py")]
     nodes = [node for tree in trees for node in ast.walk(tree)]
     names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
     names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
-    tops = {name.split(".")[0] for name in names} - sys.stdlib_module_names - {"rocking", "api"}
+    tops = {name.split(".")[0] for name in names} - sys.stdlib_module_names - {"rocking", "rocking_api"}
     for top in tops:
         assert required & {canonicalize_name(name) for name in distributions.get(top, [])}, f"{top} is not required"

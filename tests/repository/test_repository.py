@@ -38,7 +38,7 @@ PUBLIC_NAMES = {
     "time_history",
 }
 
-FOLDERS = (".ci", "api", "benchmarks", "docs", "profiles", "rocking", "stress", "tests", "workflow")
+FOLDERS = (".ci", "api", "benchmarks", "docs", "profiles", "reference", "rocking", "stress", "tests", "workflow")
 
 
 def texts() -> dict[str, str]:

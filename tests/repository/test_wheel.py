@@ -14,7 +14,7 @@ import pytest
 from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("rocking", "api")
+PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +23,8 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     source = tmp_path_factory.mktemp("source")
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source)
-    for name in PACKAGES:
-        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in PACKAGES.values():
+        shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
     return source
 
 
@@ -40,8 +40,13 @@ def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.slow
 def test_wheel_holds_the_packages(source: Path, wheel: Path) -> None:
     held = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
-    files = {path.relative_to(source).as_posix() for name in PACKAGES for path in (source / name).rglob("*")}
-    assert held == {name for name in files if (source / name).is_file()}
+    files = {
+        f"{package}/{path.relative_to(source / folder).as_posix()}"
+        for package, folder in PACKAGES.items()
+        for path in (source / folder).rglob("*")
+        if path.is_file()
+    }
+    assert held == files
 
 
 @pytest.mark.slow

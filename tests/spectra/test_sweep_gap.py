@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from rocking.datasets.cube import NO_STENCIL, OVERTURNS, SQUARED
-from rocking.interpolation.stencils import LEVELS, Mesh
+from rocking.interpolation.stencils import LEVELS, NO_STENCIL, OVERTURNS, SQUARED, Mesh
 from rocking.model.response import Outcome
 from rocking.spectra.between_levels import Gap
 from rocking.spectra.layer import CENTRE, Layer, fate_codes
