@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 
 from benchmarks.skip import Skip, alternately
 from benchmarks.skip_motion import RESTITUTION, RESTITUTIONS, plane
-from rocking import boundary_points, solve, sweep
+from rocking.boundary import search as boundary_points
 from rocking.boundary.cells import crossed_cells
 from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
 from rocking.model.response import Outcome
+from rocking.solver import peak_response as solve
 from rocking.solver.peak_response import peak_response
+from rocking.spectra import cubes as sweep
 
 PULSE = "sine"
 ANGLES = (0.0, math.radians(20.0))

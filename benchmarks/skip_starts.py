@@ -28,10 +28,11 @@ STARTS = {
     },
 }
 EVERYTHING = """
-import importlib, pkgutil, api, rocking
-for package in (rocking, api):
+import importlib, pkgutil, rocking, rocking_api
+for package in (rocking, rocking_api):
     for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
-        importlib.import_module(module.name)
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
 """
 """All modules of the package and the service, as a package that lists its contents by plain imports would load them."""
 

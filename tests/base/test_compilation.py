@@ -12,14 +12,20 @@ import pytest
 
 import rocking
 import rocking._numba.compilation
-from rocking import interpolation, lookup_kernel, precompile, rock_many, sampling, solve, stencil_choice
+from rocking import precompile
 from rocking._numba.compilation import entry, kernel, plain
 from rocking.datasets.cube import write_dataset
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.excitation.shapes import MAX_SINUSOIDS
+from rocking.history import sampling
+from rocking.interpolation import selection as stencil_choice
+from rocking.interpolation import stencils as interpolation
+from rocking.lookup import kernel as lookup_kernel
 from rocking.lookup.open import open_cube
+from rocking.solver import peak_response as solve
 from rocking.solver.arcs.arc import hyperbolic
+from rocking.solver.kernels import batch as rock_many
 from rocking.solver.state import FLIGHT, LANES, SINGLE, prepared, prepared_steps
 from rocking.spectra.cubes import spectra
 

@@ -7,8 +7,8 @@ import pytest
 
 from benchmarks import skip_grids, skip_motion, skips
 from benchmarks.skip import Skip
-from rocking import solve
 from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
+from rocking.solver import peak_response as solve
 from rocking.solver.peak_response import peak_response
 
 NO_ROUNDS = 0
