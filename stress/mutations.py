@@ -73,7 +73,7 @@ class Area:
 
 def tests(*names: str) -> tuple[str, ...]:
     """Paths of test files."""
-    return tuple(f"tests/test_{name}.py" for name in names)
+    return tuple(f"tests/*/test_{name}.py" for name in names)
 
 
 AREAS = (
@@ -81,10 +81,7 @@ AREAS = (
         "kernels",
         tuple(
             f"rocking/{name}.py"
-            for name in (
-                *("rock", "rock_many", "slender_arcs", "slender_events", "slender_flight", "cuts", "chatter"),
-                *("taylor_events", "taylor_flight", "taylor_step", "free_rocking", "sampling"),
-            )
+            for name in ("solver/kernels/*", "solver/arcs/*", "solver/taylor/*", "history/sampling")
         ),
         tests("cuts", "free_rocking", "golden_thresholds", "slender_arcs", "taylor", "against_truth", "chatter"),
         tests(
@@ -104,9 +101,8 @@ AREAS = (
         tuple(
             f"rocking/{name}.py"
             for name in (
-                *("fate_margin", "bounded_response", "boundary_points", "boundary_amplitude", "boundary_frequency"),
-                *("boundary_cells", "boundary_curves", "history", "history_contact", "history_motion", "contact"),
-                *("block", "orientation", "pulses", "solve", "scale_law", "errors"),
+                *("model/*", "solver/*", "boundary/*", "history/*", "excitation/*"),
+                *("orientation", "groups/scale_law", "errors"),
             )
         ),
         tests(
@@ -130,18 +126,13 @@ AREAS = (
     Area(
         "lookup",
         (
-            *(
-                "rocking/lookup*.py",
-                "rocking/sweep*.py",
-                "rocking/interpolation/stencils.py",
-                "rocking/interpolation/selection.py",
-            ),
+            *("rocking/lookup/*.py", "rocking/spectra/*.py", "rocking/interpolation/*.py"),
             "rocking/datasets/cube.py",
         ),
         tests("interpolation", "sweep_gap", "lookup", "lookup_levels", "boundary_curves"),
         (*tests("cube", "skips"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
     ),
-    Area("service", ("api/*.py",), ("tests/api/test_*.py",), ()),
+    Area("service", ("api/rocking_api/**/*.py",), ("tests/api/test_*.py",), ()),
 )
 
 

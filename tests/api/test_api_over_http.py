@@ -21,7 +21,9 @@ def address(results, tmp_path_factory):
 def test_xarray_opens_a_data_set_over_http(address, results, suffix, engine):
     stored = xr.load_dataset(results / f"{NAME}.nc", engine="netcdf4")
     with xr.open_dataset(f"{address}/v1/datasets/{NAME}{suffix}", engine=engine) as remote:
-        assert remote.attrs == stored.attrs or set(remote.attrs) == set(stored.attrs)
+        # JSON, in which zarr keeps attributes, has no nan
+        without = {name for name, value in stored.attrs.items() if engine == "zarr" and value != value}
+        assert set(remote.attrs) == set(stored.attrs) - without
         part = remote.isel(CORNER).load()
         for name in stored.variables:
             ours = stored.isel(CORNER)[name].values
