@@ -59,7 +59,7 @@ def content(folder: Path) -> dict[str, str]:
     return {
         name: "" if name.startswith(PASSING) else hashlib.sha256(path.read_bytes()).hexdigest()
         for name, path in sorted(names.items())
-        if not name.startswith((".snakemake/log", ".snakemake/run.lock"))
+        if not name.startswith((".snakemake/log", ".snakemake/run.lock", ".snakemake/iocache"))
     }
 
 
