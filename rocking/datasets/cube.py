@@ -10,7 +10,7 @@ exceeded_alpha        i1   1 where |theta| passed alpha at some time
 peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
 stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
 interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
-restitution_levels    i1   which files serve in that cell before the next restitution, see `interpolation.LEVELS`
+restitution_levels    i1   which files serve in that cell before the next restitution, see `SLICE_STENCILS`
 restitution_error     f4   largest error of that, measured in the same cells
 alpha_levels          i1   which angles serve in that cell before the next angle
 alpha_error           f4   largest error of that, measured in the same cells
@@ -35,7 +35,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from xarray.backends import NetCDF4DataStore
 
-from rocking.datasets.checksum import PARTIAL, flaw, seal
+from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.model.response import Outcome
@@ -199,8 +199,8 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Its values are written with a digest (`content_sha256`), and the file with another at its end (`seal`), by which
-        `read_dataset` sees damage.
+        The file holds a digest of its values (`content_sha256`) and a checksum at its end (`append_checksum`), by which
+        `read_dataset` detects damage.
     path : path
         Parent folders are made; an existing file is replaced.
     """
@@ -212,7 +212,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     temporary = Path(name)
     try:
         signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed))
-        seal(temporary)
+        append_checksum(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
         temporary.chmod(0o644)  # mkstemp makes it readable by its owner only
@@ -257,7 +257,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
     DatasetError
         If they are not those of one of our files, or not what was written.
     """
-    damage = flaw(content)
+    damage = find_damage(content)
     if damage is not None:  # some broken files make the netCDF library run for ever
         raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
     try:
