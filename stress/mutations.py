@@ -83,13 +83,13 @@ AREAS = (
             f"rocking/{name}.py"
             for name in ("solver/kernels/*", "solver/arcs/*", "solver/taylor/*", "history/sampling")
         ),
-        tests("cuts", "free_rocking", "golden_thresholds", "slender_arcs", "taylor", "against_truth", "chatter"),
+        tests("intervals", "free_rocking", "golden_thresholds", "slender_arcs", "taylor", "against_tables", "chatter"),
         tests(
-            "rigid_against_truth",
+            "rigid_against_tables",
             "equations_of_motion",
             "limits",
             "symmetries",
-            "solve",
+            "peak_response",
             "history",
             "corners",
             "searches_end",
@@ -107,11 +107,11 @@ AREAS = (
         ),
         tests(
             *("block", "pulses", "contact", "orientation", "groups", "boundary", "boundary_frequency", "history"),
-            *("boundary_curves", "free_rocking", "solve", "closed_form_peak"),
+            *("boundary_curves", "free_rocking", "peak_response", "closed_form_peak"),
         ),
         tests(
             *("limits", "symmetries", "golden_thresholds", "equations_of_motion", "lookup", "history_contact"),
-            *("rigid_against_truth", "skips", "cli", "arguments", "fate_margin", "boundary_cells"),
+            *("rigid_against_tables", "skips", "cli", "arguments", "outcome_margin", "boundary_cells"),
         ),
     ),
     Area(

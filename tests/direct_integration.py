@@ -1,4 +1,4 @@
-"""The linearised equation of motion (3.2) with (2.3), integrated step by step by scipy: knows none of our formulas."""
+"""The linearised equation of motion (3.2) with (2.3), integrated by scipy without formulas of the package."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 @dataclass
 class Motion:
-    """State at the end of the pulse and what happened before, times since uplift."""
+    """State at the end of the pulse and the events before; times since uplift."""
 
     rotation: float
     velocity: float
@@ -50,7 +50,7 @@ def integrate(
         def motion_law(t, y, side=side):
             return [y[1], y[0] - side - amplitude * shape(frequency_ratio * t + phase)]  # (3.2), scaled by (3.6)
 
-        # a first short step gets clear of theta = 0, where the event function starts
+        # a first short step leaves theta = 0, where the event function is zero
         clear = min(tau + 1e-3 * (stop - tau), stop)
         armed = False
         first = solve_ivp(motion_law, (tau, clear), state, method="DOP853", rtol=1e-13, atol=1e-16)
@@ -74,7 +74,7 @@ def integrate(
 
 
 def peak_of_free_rocking(velocity: float) -> float:
-    """Largest rotation after an impact that leaves `velocity` (< 1) behind, no ground motion, by integration."""
+    """Largest rotation in free rocking after an impact with the velocity `velocity` (< 1) after it, by integration."""
 
     def turns(_, y):
         return y[1]

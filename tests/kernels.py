@@ -1,4 +1,4 @@
-"""A flight set up for tests that call the compiled kernels one by one."""
+"""Solver states for tests that call single kernels."""
 
 from rocking._numba.compilation import Record
 from rocking.excitation.pulses import AbstractPulse, get_pulse
@@ -15,7 +15,7 @@ def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: fl
 
 
 def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
-    """The record of a block that has just been lifted."""
+    """The record of a block at the start of its first flight."""
     flight = cell(pulse, slenderness, omega, alpha)
     assert start_flight(flight)
     return flight

@@ -56,7 +56,7 @@ def test_files_store_the_declared_fields():
         assert attributes["equation"] == field.equation
 
 
-def test_the_page_of_the_notation_has_the_table():
+def test_notation_page_contains_the_table():
     assert fields.markdown_table() in NOTATION.read_text()
 
 
@@ -72,7 +72,7 @@ def test_description_tells_what_a_missing_number_looks_like():
     assert "null" not in fields.IMPACTS.description()
 
 
-def test_codes_of_overturning_are_decoded_again():
+def test_overturning_codes_round_trip():
     outcome = np.array([0, 1, 2, 3, 3, 3], dtype=np.int8)
     impacts = np.array([0, 7, 0, 1, 2, 200_003], dtype=np.int32)
     codes = outcome_codes(outcome, impacts)
@@ -132,7 +132,7 @@ def test_labelled_arguments_keep_their_dimensions():
         ({"slenderness": []}, "of 0 blocks"),
     ],
 )
-def test_repr_says_what_happened(groups, words):
+def test_repr_describes_the_outcome(groups, words):
     shown = repr(peak_response("sine", **GROUPS | groups))
     assert words in shown
     assert len(shown) < 200

@@ -1,4 +1,4 @@
-"""The cuts of a pulse: every change of sign of 1 +- a f and of f' is one, and what is said between them holds."""
+"""Intervals of a pulse: their ends are all sign changes of 1 +- a f and of f', and the signs between them are right."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def check_cuts(pulse: AbstractPulse, slenderness: float) -> None:
     assert phase[-1] == pulse.end
     assert (np.diff(phase) >= 0).all()
     assert set(pulse.stationary) <= set(phase.tolist())
-    # the other cuts are where |a f| = 1; f is as accurate as rounded angles let it be
+    # the other ends are where |a f| = 1; the accuracy of f is limited by the rounding of the angles
     own = set(pulse.stationary) | {pulse.start, pulse.end}
     for phi in phase:
         if phi not in own:
@@ -52,7 +52,7 @@ def check_cuts(pulse: AbstractPulse, slenderness: float) -> None:
 
 
 @pytest.mark.parametrize("name", SIGNED)
-def test_cuts_of_every_pulse(name):
+def test_intervals_of_every_pulse(name):
     @given(slenderness=SLENDERNESS)
     @settings(max_examples=40)
     def check(slenderness):
@@ -62,21 +62,21 @@ def test_cuts_of_every_pulse(name):
 
 
 @pytest.mark.parametrize("pulse", OTHERS)
-def test_cuts_of_sums_of_sinusoids(pulse):
+def test_intervals_of_sums_of_sinusoids(pulse):
     for slenderness in (1e-3, 0.05, 0.3, 0.7, 0.99, 1 - 1e-9):
         check_cuts(pulse, slenderness)
         check_cuts(pulse.mirrored(), slenderness)
 
 
-def test_number_of_cuts_of_a_sine():
+def test_intervals_of_a_sine():
     flight = cell("sine", 0.5, 1.0)
-    assert int(flight["interval_count"]) == 7  # two crests with a cap each: start, 4 crossings, 2 crests, end
+    assert int(flight["interval_count"]) == 7  # start, 4 crossings of |a f| = 1, 2 crests, end
     np.testing.assert_allclose(
         flight["interval_phase"][:8] / np.pi, [0, 1 / 6, 1 / 2, 5 / 6, 7 / 6, 3 / 2, 11 / 6, 2], rtol=1e-15, atol=1e-15
     )
 
 
-def test_cap_near_onset_keeps_its_digits():
+def test_interval_near_onset_keeps_its_digits():
     for gap in 10.0 ** np.arange(-1.0, -15.0, -1.0):
         slenderness = 1 - gap
         exact_gap = 1 - slenderness  # as rounded

@@ -1,6 +1,6 @@
 """The slender solver against multi-precision tables: the reference of 419 random cases, and 1000 cells of our own.
 
-Only numpy and csv stand between the tables and the front door, so the whole file takes about a second once compiled.
+The tables are read with csv and compared with `peak_response`; the file takes about a second with compiled kernels.
 The worst figures are recorded in the test report (`pytest --junit-xml`).
 """
 
@@ -19,7 +19,7 @@ Record = Callable[[str, object], None]
 DATA = Path(__file__).parents[1] / "data"
 EPS = float(np.finfo(float).eps)
 BEYOND_ONE_ULP = 200.0
-"""Bound on an error over the change that one ulp of the input makes: some 50 operations round, 53 is the most seen."""
+"""Bound on an error over the change that one ulp of the input makes: about 50 roundings; the largest value is 53."""
 
 
 class Table:
@@ -67,7 +67,7 @@ def _relative(found: NDArray[np.float64], true: NDArray[np.float64]) -> NDArray[
     return np.where(np.isnan(found) != np.isnan(true), np.inf, error)
 
 
-def test_reference_fates(reference: tuple[Table, rocking.Response]) -> None:
+def test_reference_outcomes(reference: tuple[Table, rocking.Response]) -> None:
     table, found = reference
     assert np.array_equal(found.overturned, table["overturned"] == 1)
 
@@ -89,7 +89,7 @@ def test_reference_impacts_where_there_is_no_chatter(reference: tuple[Table, roc
     assert np.array_equal(found.impacts[counted], table["impacts"][counted])
 
 
-def test_truth_fates_unless_the_last_bit_decides(truth: tuple[Table, rocking.Response]) -> None:
+def test_table_outcomes_unless_the_last_bit_decides(truth: tuple[Table, rocking.Response]) -> None:
     table, found = truth
     decided = np.isnan(table["margin"]) | (np.abs(table["margin"]) > BEYOND_ONE_ULP * table["margin_per_ulp"])
     assert decided.mean() > 0.99
@@ -97,12 +97,12 @@ def test_truth_fates_unless_the_last_bit_decides(truth: tuple[Table, rocking.Res
     assert np.array_equal(found.exceeded_alpha[decided], table["exceeded_alpha"][decided] == 1)
 
 
-def test_truth_has_a_number_for_each_block_that_stands(truth: tuple[Table, rocking.Response]) -> None:
+def test_table_has_a_peak_for_each_surviving_block(truth: tuple[Table, rocking.Response]) -> None:
     _, found = truth
     assert np.array_equal(np.isnan(found.peak_rotation), found.overturned)
 
 
-def test_truth_impacts_and_chatter(truth: tuple[Table, rocking.Response]) -> None:
+def test_table_impacts_and_chatter(truth: tuple[Table, rocking.Response]) -> None:
     table, found = truth
     chatter = table["chatter"] == 1
     assert chatter.sum() > 100
@@ -110,13 +110,15 @@ def test_truth_impacts_and_chatter(truth: tuple[Table, rocking.Response]) -> Non
 
 
 @pytest.mark.parametrize("column", ["peak_rotation", "uplift_time", "first_impact_time"])
-def test_truth_errors_are_what_the_last_bit_of_the_input_explains(
+def test_table_errors_are_within_the_effect_of_the_last_bit(
     truth: tuple[Table, rocking.Response], column: str, record_testsuite_property: Record
 ) -> None:
     table, found = truth
     error = _relative(getattr(found, column), table[column])
     ulps = EPS + table[f"{column}_per_ulp"]
-    if column == "uplift_time":  # found as a phase, a double counted from a crest (sines) or from the pulse's middle
+    if (
+        column == "uplift_time"
+    ):  # computed as a phase, a double relative to a crest (sines) or to the middle of the pulse
         start = np.array([max(abs(rocking.get_pulse(name).start), np.pi / 2) for name in table.pulse])
         tiny = float(np.finfo(float).tiny)
         ulps += EPS * start / (table["frequency_ratio"] * np.maximum(table["uplift_time"], tiny))

@@ -1,4 +1,4 @@
-"""How near another fate is: against free rocking integrated step by step, and the barrier energy by quadrature."""
+"""Outcome margin against free rocking by integration and the barrier energy by quadrature."""
 
 import math
 
@@ -16,17 +16,17 @@ EXACT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
 
 
 def pull(z, alpha):
-    """-z'' of a block left to itself, (2.2) and (3.1) without ground motion [-]."""
+    """-z'' in free rocking, (2.2) and (3.1) without ground motion [-]."""
     return math.sin(alpha * (1 - z)) / alpha if alpha > 0 else 1 - z
 
 
 def barrier_energy(z, alpha):
-    """Work that the pull does against the block from z to the point of balance, z = 1, times two [-]."""
+    """Twice the work of the restoring moment from z to the unstable equilibrium z = 1 [-]."""
     return 2 * quad(pull, z, 1.0, args=(alpha,), epsabs=1e-14, epsrel=1e-13)[0]
 
 
 def next_impact(z, w, alpha):
-    """Velocity with which a block left to itself strikes the ground; None if it never does."""
+    """Impact velocity in free rocking; None without an impact."""
 
     def falls(_, state):
         return state[0]
@@ -52,7 +52,7 @@ def test_margin_is_the_energy_beyond_the_barrier(z, w, eta, alpha):
     barrier = barrier_energy(0.0, alpha)
     left = math.copysign(math.sqrt(abs(barrier_energy(z, alpha))), 1 - z)
     escape = (w - left) / math.sqrt(barrier)
-    assume(abs(escape) > 1e-6)  # on the barrier the block takes for ever
+    assume(abs(escape) > 1e-6)  # on the barrier the duration is infinite
     velocity = next_impact(z, w, alpha)
     found = margin(z, w, eta, alpha)
     if velocity is None:
@@ -76,8 +76,8 @@ def test_positive_margin_means_overturning(z, w, eta, alpha):
 @pytest.mark.parametrize("alpha", [0.0, 0.3])
 @pytest.mark.parametrize("pulse", ["sine", "ricker"])
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
-def test_tolerance_is_kept_beside_another_fate(pulse, alpha, tolerance):
-    """Beside a threshold the peak changes the faster the nearer it is; there the tolerance must not count."""
+def test_tolerance_is_kept_near_an_outcome_boundary(pulse, alpha, tolerance):
+    """Near a threshold the peak is sensitive, and cells are solved at full precision whatever the tolerance."""
     for omega in (2.0, 4.0, 7.0):
         threshold = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
         distance = 10.0 ** np.arange(-9, -1)

@@ -1,4 +1,4 @@
-"""The front door: shapes, order, threads, wrong questions, and what holds for every right one."""
+"""`peak_response`: shapes, order, threads, invalid arguments, and properties of every valid response."""
 
 import math
 
@@ -39,7 +39,7 @@ def test_scalars_give_arrays_without_axes():
     assert found.outcome == Outcome.SAFE
 
 
-def test_nothing_asked_nothing_answered():
+def test_empty_arguments_give_an_empty_response():
     found = peak_response("sine", slenderness=np.empty((0, 3)), frequency_ratio=2.0, restitution=0.9)
     assert found.shape == (0, 3)
     assert found.overturned.shape == (0, 3)
@@ -80,7 +80,7 @@ def test_threads_and_order_change_nothing(alpha):
 
 
 @pytest.mark.parametrize("pulse", PULSE_NAMES)
-def test_an_element_of_an_array_is_the_scalar_answer(pulse):
+def test_an_element_of_an_array_equals_the_scalar_response(pulse):
     question = cells(12, seed=3)
     for alpha in (None, 0.2):
         many = peak_response(pulse, **question, alpha=alpha)
@@ -103,7 +103,7 @@ def test_alpha_may_mix_slender_and_rigid():
 
 @pytest.mark.parametrize("pulse", SIGNED)
 @pytest.mark.parametrize("alpha", [None, 0.2])
-def test_a_block_that_the_ground_cannot_lift_stays(pulse, alpha):
+def test_a_block_without_uplift_has_no_peak(pulse, alpha):
     found = peak_response(
         pulse, slenderness=[1.0, 1.0 + 1e-15, 2.0, 1e6, 1e300], frequency_ratio=2.0, restitution=0.9, alpha=alpha
     )
@@ -128,19 +128,19 @@ GOOD = {"slenderness": 0.5, "frequency_ratio": 3.0, "restitution": 0.9}
         ("alpha", [math.nan, -1e-9, math.pi / 2, 2.0, math.inf]),
     ],
 )
-def test_wrong_questions_name_argument_value_and_range(argument, values):
+def test_errors_give_argument_value_and_range(argument, values):
     for value in values:
         with pytest.raises(rocking.InvalidArgumentError) as caught:
             peak_response("sine", **{**GOOD, argument: value})
         assert caught.value.parameter == argument
         assert str(caught.value).startswith(f"`{argument}` = ")
         assert "allowed: " in str(caught.value)
-        with pytest.raises(rocking.InvalidArgumentError, match=argument):  # one bad entry among good ones
+        with pytest.raises(rocking.InvalidArgumentError, match=argument):  # one invalid entry among valid ones
             peak_response("sine", **{**GOOD, argument: [0.5, value]})
 
 
 @pytest.mark.parametrize("value", ["many", [1.0, "x"], None, object()])
-def test_what_is_no_number_is_refused(value):
+def test_values_that_are_no_number_are_rejected(value):
     with pytest.raises(rocking.InvalidArgumentError, match="slenderness"):
         peak_response("sine", **{**GOOD, "slenderness": value})
 
@@ -151,7 +151,7 @@ def test_shapes_that_do_not_broadcast_are_named():
 
 
 @pytest.mark.parametrize("name", ["", "-", "--sine", "Sine", "sin", "ricker2"])
-def test_unknown_pulses_are_refused_with_the_list(name):
+def test_unknown_pulses_are_rejected_with_the_list(name):
     with pytest.raises(rocking.InvalidArgumentError, match="mavroeidis_papageorgiou"):
         peak_response(name, **GOOD)
 
@@ -174,7 +174,7 @@ def test_parameters_of_pulses_are_checked():
     alpha=st.one_of(st.none(), st.floats(-8, 0.17).map(lambda x: 10**x)),
 )
 @settings(max_examples=400)
-def test_every_right_question_has_a_consistent_answer(pulse, log_omega, log_slenderness, eta, alpha):
+def test_every_valid_cell_has_a_consistent_response(pulse, log_omega, log_slenderness, eta, alpha):
     found = peak_response(
         pulse, slenderness=10**log_slenderness, frequency_ratio=10**log_omega, restitution=eta, alpha=alpha
     )
@@ -193,14 +193,14 @@ def test_every_right_question_has_a_consistent_answer(pulse, log_omega, log_slen
         assert impacts >= 1
         assert 0 < found.first_impact_time <= (duration - found.uplift_time) * (1 + 1e-12) + 1e-300
         assert found.first_impact_velocity != 0
-    elif impacts > 0:  # the only impact is the one of free rocking upon which it overturns
+    elif impacts > 0:  # the only impact is that of free rocking which is followed by overturning
         assert (outcome, impacts) == (Outcome.OVERTURNED_AFTER_IMPACT, 1)
     assert not (found.chatter and impacts == 0)
 
 
 @pytest.mark.parametrize("alpha", [None, 0.35])
-def test_answers_do_not_depend_on_what_was_asked_before(alpha):
-    """The kernels' memory is kept from call to call, lanes with the blocks that were in them last."""
+def test_responses_do_not_depend_on_earlier_calls(alpha):
+    """The solver state is kept between calls, and its lanes hold the blocks of the last call."""
     random = np.random.default_rng(9)
     cells = {
         "slenderness": random.uniform(0.05, 0.99, 60),

@@ -1,4 +1,4 @@
-"""The rigid block (2.2) against multi-precision tables: the reference's rows with an angle, 300 cells of our own."""
+"""The rigid block (2.2) against multi-precision tables: reference rows with an angle, and 300 further cells."""
 
 import csv
 from pathlib import Path
@@ -15,7 +15,7 @@ INPUTS = ("slenderness", "frequency_ratio", "restitution", "alpha")
 
 
 class Table:
-    """Rows of a table with an angle alpha [rad], and the solver's answers to them."""
+    """Rows of a table with an angle alpha [rad], and the responses of the solver."""
 
     def __init__(self, path: Path) -> None:
         rows = [row for row in csv.DictReader(path.read_text().splitlines()) if row.get("alpha_deg") != ""]
@@ -51,7 +51,7 @@ def truth() -> Table:
     return Table(DATA / "truth" / "rigid.csv")
 
 
-def test_reference_fates(reference):
+def test_reference_outcomes(reference):
     assert len(reference.pulse) == 129
     np.testing.assert_array_equal(reference.found["overturned"], reference.true["overturned"] == 1)
 
@@ -69,7 +69,7 @@ def test_reference_impacts_where_there_is_no_chatter(reference):
     np.testing.assert_array_equal(reference.found["impacts"][counted], reference.true["impacts"][counted])
 
 
-def test_truth_fates_unless_the_last_bit_decides(truth):
+def test_table_outcomes_unless_the_last_bit_decides(truth):
     decided = np.isnan(truth.true["margin"]) | (np.abs(truth.true["margin"]) > 1000 * truth.true["margin_per_ulp"])
     assert decided.mean() > 0.98
     for name in ("outcome", "exceeded_alpha"):
@@ -78,10 +78,10 @@ def test_truth_fates_unless_the_last_bit_decides(truth):
 
 
 @pytest.mark.parametrize("name", ["peak_rotation", "uplift_time", "first_impact_time"])
-def test_truth_errors_are_bounded_by_the_conditioning(truth, name, record_testsuite_property):
-    # some hundred Taylor steps, each of which rounds
+def test_table_errors_are_bounded_by_the_conditioning(truth, name, record_testsuite_property):
+    # some hundred Taylor steps with rounding errors
     ulps = EPS + truth.true[f"{name}_per_ulp"]
-    if name == "uplift_time":  # found as a phase, counted from a crest or from the pulse's middle
+    if name == "uplift_time":  # computed as a phase relative to a crest or to the middle of the pulse
         start = np.array([max(abs(rocking.get_pulse(pulse).start), np.pi / 2) for pulse in truth.pulse])
         tiny = float(np.finfo(float).tiny)
         ulps = ulps + EPS * start / (truth.true["frequency_ratio"] * np.maximum(truth.true["uplift_time"], tiny))
