@@ -7,6 +7,7 @@ from typing import get_type_hints
 import numpy as np
 import pytest
 import xarray as xr
+from rocking_api.models.responses import Columns, ResponseAnswer
 
 import rocking
 from rocking.datasets.cube import VARIABLES
@@ -54,6 +55,12 @@ def test_files_store_the_declared_fields():
         assert dtype == field.file_dtype
         assert attributes["long_name"] == field.meaning
         assert attributes["equation"] == field.equation
+
+
+def test_http_responses_have_the_declared_columns():
+    for model in (ResponseAnswer, Columns):
+        assert {field.name for field in COLUMN_FIELDS} <= set(model.model_fields)
+        assert model.model_fields["peak_rotation"].description == fields.PEAK_ROTATION.description()
 
 
 def test_notation_page_contains_the_table():

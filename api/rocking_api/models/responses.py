@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, Field
 
+from rocking.model import fields
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.http.formats import Column
@@ -18,15 +19,14 @@ from rocking_api.models.point import Point
 VERSION = version("rocking")
 OUTCOMES = [outcome.name for outcome in Outcome]
 
-_OUTCOME = Field(description=f"final fate, one of {', '.join(OUTCOMES)}")
-_BOUND = Field(description="bound of the absolute error of peak_rotation [-]; null if there is no peak or no bound")
-_SOURCE = Field(description="cube (interpolated data set) or solver")
-_PEAK = Field(description="max |theta|/alpha over the whole response [-]; null if overturned")
+_OUTCOME = Field(description=f"{fields.OUTCOME.meaning}, one of {', '.join(OUTCOMES)}")
+_BOUND = Field(description=f"{fields.ERROR_BOUND.meaning} [-]; null if there is no peak or no bound")
+_SOURCE = Field(description=fields.SOURCE.description())
+_PEAK = Field(description=fields.PEAK_ROTATION.description())
 _IMPACTS = Field(
-    description="impacts before the pulse ends, and the one after it upon which the block overturns; -1 if a data set "
-    "answers whose nodes there differ"
+    description=f"{fields.IMPACTS.description()}; -1 if a data set was interpolated whose nodes there differ"
 )
-_EXCEEDED = Field(description="|theta| passed alpha at some time; the ground can bring a block back from there")
+_EXCEEDED = Field(description=fields.EXCEEDED_ALPHA.description())
 _DATA = Field(
     description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
     "solver did"
