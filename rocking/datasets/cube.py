@@ -1,13 +1,13 @@
-"""Schema of the data sets: what a spectrum cube holds, and how any data set is written and read without surprises.
+"""Schema of the spectrum cubes, and functions that write and read data set files.
 
 A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio) and
 
 ====================  ===  =====================================================================================
 peak_rotation         f8   max |theta|/alpha over the whole response [-], nan where the block overturns
 outcome               i1   code of `rocking.model.response.Outcome`
-impacts               i4   impacts before the pulse ends, and the one after it upon which the block overturns
+impacts               i4   impacts before the pulse ends, and the one after it that is followed by overturning
 exceeded_alpha        i1   1 where |theta| passed alpha at some time
-peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
+peak_mode             i4   arc on which the peak is reached; the peak is smooth within one mode
 stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
 interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
 restitution_levels    i1   which files serve in that cell before the next restitution, see `interpolation.LEVELS`
@@ -17,7 +17,7 @@ alpha_error           f4   largest error of that, measured in the same cells
 ====================  ===  =====================================================================================
 
 with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
-ACDD-1.3, hold no clock time, so that equal content gives equal bytes, and carry a digest of their own values.
+ACDD-1.3. They contain no time of creation, so equal content gives equal bytes, and a digest of their values.
 """
 
 from __future__ import annotations
@@ -70,15 +70,15 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
         "f8",
         {"long_name": "peak rotation, max |theta|/alpha over the whole response", "equation": "3.2",
          "ancillary_variables": "outcome peak_mode stencil interpolation_error",
-         "comment": "missing where it overturns"},
+         "comment": "missing where the block overturns"},
     ),
-    "outcome": ("i1", {"long_name": "final fate of the block", "equation": "3.8", **_OUTCOMES}),
+    "outcome": ("i1", {"long_name": "final outcome of the block", "equation": "3.8", **_OUTCOMES}),
     "impacts": ("i4", {"long_name": "number of impacts before the pulse ends", "equation": "2.3",
-                       "comment": "and the one after it upon which the block overturns"}),
+                       "comment": "and the one after it that is followed by overturning"}),
     "exceeded_alpha": ("i1", {"long_name": "whether |theta| passed alpha at some time", "equation": "3.2", **_NO_YES}),
     "peak_mode": (
         "i4",
-        {"long_name": "lobe that holds the peak", "equation": "3.4",
+        {"long_name": "arc on which the peak is reached", "equation": "3.4",
          "comment": "twice the impacts before it, plus one if reached in free rocking; -1 where there is no peak"},
     ),
     "stencil": (
@@ -162,7 +162,7 @@ def build_spectrum_dataset(
     return describe(
         cube.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Rocking spectrum of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
-        summary="Peak rotation and fate of a free-standing rigid block over dimensionless slenderness and frequency "
+        summary="Peak rotation and outcome of a free-standing rigid block over dimensionless slenderness and frequency "
         "ratio, solved event by event, with the measured error of interpolating between the nodes.",
         history="rocking.spectra.cubes.spectrum",
         id=f"spectra/{pulse}/eta-{restitution:.2f}",
@@ -186,23 +186,23 @@ def scalar_coordinates(pulse: str, restitution: float) -> dict[str, xr.Variable]
 
 
 def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
-    """The data set with the global attributes that all our files share, and the given ones (title, summary, id, ...).
+    """The data set with the global attributes of all data sets and the given ones (title, summary, id, ...).
 
-    No clock time is among them: the same content gives the same bytes on any day.
+    They contain no time of creation: equal content gives equal bytes.
     """
     return dataset.assign_attrs({**_GLOBAL, **dataset.attrs, **attributes})
 
 
 def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
-    """Write a netCDF-4 file that appears whole or not at all, the same bytes for the same content.
+    """Write a netCDF-4 file atomically; equal content gives equal bytes.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Its values are written with a digest (`content_sha256`), and the file with another at its end (`seal`), by which
-        `read_dataset` sees damage.
+        Written with a digest of its values (`content_sha256`); the file has another digest at its end (`seal`).
+        `read_dataset` detects damage by them.
     path : path
-        Parent folders are made; an existing file is replaced.
+        Parent folders are created; an existing file is replaced.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -215,19 +215,19 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
         seal(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
-        temporary.chmod(0o644)  # mkstemp makes it readable by its owner only
+        temporary.chmod(0o644)  # mkstemp makes the file readable by its owner only
         temporary.replace(path)  # atomic: os.replace
     finally:
         temporary.unlink(missing_ok=True)
 
 
 def read_dataset(path: Path | str) -> xr.Dataset:
-    """Read a file of `write_dataset` into memory and check that it is whole.
+    """Read a file written by `write_dataset` into memory and check its digests.
 
     Raises
     ------
     DatasetError
-        If the file is missing, cannot be read, is not one of ours, or does not hold what was written.
+        If the file is missing, cannot be read, was not written by this package, or is damaged.
     """
     return decode_dataset(read_content(path), path)
 
@@ -250,15 +250,15 @@ def read_content(path: Path | str) -> bytes:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of such a file; messages name `path`.
+    """The same from the bytes of a file; messages name `path`.
 
     Raises
     ------
     DatasetError
-        If they are not those of one of our files, or not what was written.
+        If the bytes were not written by this package or are damaged.
     """
     damage = flaw(content)
-    if damage is not None:  # some broken files make the netCDF library run for ever
+    if damage is not None:  # the netCDF library does not return for some damaged files
         raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
     try:
         store = NetCDF4DataStore(netCDF4.Dataset("in memory", memory=content))  # type: ignore[no-untyped-call]
@@ -281,13 +281,13 @@ def read_spectrum(path: Path | str) -> xr.Dataset:
     Raises
     ------
     DatasetError
-        As `read_dataset`; also if a variable is missing, of another type or shape, or an axis does not ascend.
+        As `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
     """
     return decode_spectrum(read_content(path), path)
 
 
 def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of such a file; messages name `path`.
+    """The same from the bytes of a file; messages name `path`.
 
     Raises
     ------
