@@ -15,13 +15,13 @@ _MARK = b"\nsha256 "
 _LENGTH = len(_MARK) + 64 + 1
 
 
-def seal(path: Path) -> None:
+def append_checksum(path: Path) -> None:
     """Append the sha256 digest of the content of a file."""
     with path.open("ab") as file:
         file.write(_MARK + hashlib.sha256(path.read_bytes()).hexdigest().encode() + b"\n")
 
 
-def flaw(content: bytes) -> str | None:
+def find_damage(content: bytes) -> str | None:
     """Description of the damage of a file with a digest at its end, a missing or wrong digest; None if it is intact."""
     body, end = content[:-_LENGTH], content[-_LENGTH:]
     if not end.startswith(_MARK):

@@ -35,7 +35,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from xarray.backends import NetCDF4DataStore
 
-from rocking.datasets.checksum import PARTIAL, flaw, seal
+from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.model.response import Outcome
@@ -199,7 +199,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Written with a digest of its values (`content_sha256`); the file has another digest at its end (`seal`).
+        Written with a digest of its values (`content_sha256`); the file has another digest at its end (`append_checksum`).
         `read_dataset` detects damage by them.
     path : path
         Parent folders are created; an existing file is replaced.
@@ -212,7 +212,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     temporary = Path(name)
     try:
         signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed))
-        seal(temporary)
+        append_checksum(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
         temporary.chmod(0o644)  # mkstemp makes the file readable by its owner only
@@ -257,7 +257,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
     DatasetError
         If the bytes were not written by this package or are damaged.
     """
-    damage = flaw(content)
+    damage = find_damage(content)
     if damage is not None:  # the netCDF library does not return for some damaged files
         raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
     try:
