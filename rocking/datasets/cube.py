@@ -199,8 +199,8 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Written with a digest of its values (`content_sha256`); the file has another digest at its end (`append_checksum`).
-        `read_dataset` detects damage by them.
+        Written with a digest of its values (`content_sha256`); the file has another digest at its end
+        (`append_checksum`). `read_dataset` detects damage by them.
     path : path
         Parent folders are created; an existing file is replaced.
     """
