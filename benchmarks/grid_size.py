@@ -117,7 +117,7 @@ def quantiles(error: NDArray[np.float64]) -> dict[str, float]:
 def judged(path: Path, points: Points, true: NDArray[np.float64]) -> dict[str, Any]:
     """Both schemes on one cube, held against the solver."""
     cube = open_cube(path)
-    known, answer = cube.promised(points, math.inf)
+    known, answer = cube.interpolate(points, math.inf)
     ours = np.full(true.size, np.nan)
     ours[known] = answer.peak_rotation
     bound = np.where(np.isnan(answer.peak_rotation), 0.0, answer.error_bound)

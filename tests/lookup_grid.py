@@ -1,4 +1,4 @@
-"""A small grid for the tests of lookup: its nodes, the cells that boundaries cross, random questions over it."""
+"""A small grid for the tests of lookup: its nodes, the cells that boundaries cross, random points of it."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ def crossed(eta, alpha):
     return crossed_cells(curves, alpha, *GRID.values())
 
 
-def questions(count, seed=5):
+def random_points(count, seed=5):
     rng = np.random.default_rng(seed)
     frequency_ratio = np.exp(rng.uniform(np.log(0.5), np.log(12.0), count))
     return {"slenderness": rng.uniform(0.05, 0.95, count), "frequency_ratio": frequency_ratio}

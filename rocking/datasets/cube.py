@@ -8,12 +8,10 @@ outcome               i1   code of `rocking.model.response.Outcome`
 impacts               i4   impacts before the pulse ends, and the one after it that is followed by overturning
 exceeded_alpha        i1   1 where |theta| passed alpha at some time
 peak_mode             i4   arc on which the peak is reached; the peak is smooth within one mode
-stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
-interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
-restitution_levels    i1   which files serve in that cell before the next restitution, see `SLICE_STENCILS`
-restitution_error     f4   largest error of that, measured in the same cells
-alpha_levels          i1   which angles serve in that cell before the next angle
-alpha_error           f4   largest error of that, measured in the same cells
+stencil               i1   what is interpolated in the cell whose lower corner is the node
+interpolation_error   f4   largest error of that, measured at points of the cell and of the eight cells around it
+restitution_error     f4   largest error halfway to the next restitution, measured in the same cells
+alpha_error           f4   largest error halfway to the next angle, measured in the same cells
 ====================  ===  =====================================================================================
 
 with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
@@ -38,6 +36,7 @@ from xarray.backends import NetCDF4DataStore
 from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking.model.response import Outcome
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
@@ -59,8 +58,6 @@ _OUTCOMES = {
     "flag_meanings": " ".join(outcome.name.lower() for outcome in Outcome),
 }
 _NO_YES = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"}
-
-_LEVELS = "0 to 5: Lagrange over 4, 4, 4, 3, 3, 2, the first of them 1, 2, 0, 1, 0, 0 below the node's; -1: not at all"
 
 MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
 """Attributes of every dimensionless variable that a model computed."""
@@ -84,38 +81,28 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     "stencil": (
         "i1",
         {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
-         "comment": "0 to 8: four-point Lagrange in slenderness and log(frequency_ratio), the 16 nodes starting below "
-                    "the cell by (1,1), (1,0), (1,2), (0,1), (2,1), (0,0), (0,2), (2,0), (2,2) rows and columns; "
-                    "9 to 17: the same for (1 - peak_rotation)^2; 18: all overturn alike; -1: not at all"},
+         "comment": "four-point Lagrange in slenderness and log(frequency_ratio) over the 16 nodes around the cell",
+         "flag_values": np.array([NO_STENCIL, PEAK, SQUARED, OVERTURNS], dtype=np.int8),
+         "flag_meanings": "not_interpolated peak_rotation square_of_1_minus_peak_rotation all_overturn_alike"},
     ),
     "interpolation_error": (
         "f4",
         {"long_name": "largest measured error of interpolated peak_rotation around the cell above the node",
          "equation": "3.2",
-         "comment": "against the solver, in the cell and those around it, at two points of each and at five where "
-                    "they differ; 0 where all overturn alike, missing where no bound is known"},
-    ),
-    "restitution_levels": (
-        "i1",
-        {"long_name": "files that serve the cell above the node before the next restitution", "equation": "3.2",
-         "comment": _LEVELS},
+         "comment": "against the solver, in the cell and those around it, at two points of each and at five where the "
+                    "error exceeds 1e-6; 0 where all overturn in the same way, missing where no bound is known"},
     ),
     "restitution_error": (
         "f4",
         {"long_name": "largest measured error of peak_rotation interpolated before the next restitution",
          "equation": "3.2",
-         "comment": "over restitution_levels, in the cell above the node and in those around it, halfway at their "
-                    "centres and, where that differs, at two points more; missing where they differ in fate"},
-    ),
-    "alpha_levels": (
-        "i1",
-        {"long_name": "angles that serve the cell above the node before the next angle", "equation": "3.2",
-         "comment": f"in the square of alpha; {_LEVELS}"},
+         "comment": "four-point Lagrange over the nearest restitution_slices, measured halfway at the centres of the "
+                    "cell above the node and of those around it; missing where no bound is known"},
     ),
     "alpha_error": (
         "f4",
         {"long_name": "largest measured error of peak_rotation interpolated before the next alpha", "equation": "3.2",
-         "comment": "over alpha_levels, as restitution_error"},
+         "comment": "four-point Lagrange in the square of alpha, measured as restitution_error"},
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube."""

@@ -175,7 +175,7 @@ def test_interpolation_gains_four_orders_where_linear_gains_two(tmp_path: Path) 
     true = peak_response(grid_size.PULSE, **vars(points)).peak_rotation
     errors = []
     for path, _ in grid_size.made(tmp_path, config, (0.125, 0.5)):
-        known, found = open_cube(path).promised(points, math.inf)
+        known, found = open_cube(path).interpolate(points, math.inf)
         errors.append(np.full(true.size, np.nan))
         errors[-1][known] = np.abs(found.peak_rotation - true[known])
     both = ~np.isnan(errors).any(axis=0)

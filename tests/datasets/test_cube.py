@@ -191,20 +191,18 @@ def test_interpolation_error_marks_smooth_cells_only(cube: xr.Dataset) -> None:
     u, v = rng.random((2, i.size))
     s = SLENDERNESS[i] + u * (SLENDERNESS[1] - SLENDERNESS[0])
     omega = FREQUENCY_RATIO[j] * (FREQUENCY_RATIO[1] / FREQUENCY_RATIO[0]) ** v
-    central = np.isin(cube.stencil.values[0][i, j], (0, SQUARED))  # the 16 nodes around the cell
     squared = cube.stencil.values[0][i, j] == SQUARED
-    assert central.mean() > 0.25
     assert squared.any()
     solved = peak_response("sine", slenderness=s, frequency_ratio=omega, restitution=0.85)
     weights = [lagrange(u), lagrange(v)]
     peak = cube.peak_rotation.values[0]
-    nodes = {(m, n): peak[np.clip(i - 1 + m, 0, 28), np.clip(j - 1 + n, 0, 40)] for m in range(4) for n in range(4)}
+    nodes = {(m, n): peak[i - 1 + m, j - 1 + n] for m in range(4) for n in range(4)}
     plain, square = (
         sum(weights[0][m] * weights[1][n] * form(z) for (m, n), z in nodes.items())
         for form in (lambda z: z, lambda z: (1 - z) ** 2)
     )
     interpolated = np.where(squared, 1 - np.sqrt(np.maximum(square, 0)), plain)
-    ratio = np.abs(interpolated - solved.peak_rotation)[central] / error[i, j][central]
+    ratio = np.abs(interpolated - solved.peak_rotation) / error[i, j]
     assert np.quantile(ratio, 0.99) < 2.5
 
 
