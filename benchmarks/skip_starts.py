@@ -50,8 +50,8 @@ before, start = memory(), time.process_time()
 atlas = CubeCollection(results)
 if everything:
     for folder in (results / "spectra").iterdir():
-        for eta in atlas.levels(folder.name):
-            atlas.level(folder.name, eta)
+        for eta in atlas.restitutions(folder.name):
+            atlas.slice_at(folder.name, eta)
 answer, used = atlas.response("sine", **question)
 print(json.dumps({"seconds": time.process_time() - start, "MB": memory() - before, "cubes": len(atlas._cubes)}))
 """

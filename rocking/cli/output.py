@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv as csv_writer
 import json as json_writer
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
@@ -13,6 +11,7 @@ import numpy as np
 import typer
 
 from rocking.cli.arguments import Params
+from rocking.datasets.csv_text import csv_text
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
@@ -176,10 +175,7 @@ def _print_json(answer: Mapping[str, Any]) -> None:
 
 
 def _print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
-    writer = csv_writer.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(columns)
-    cells = ([str(v).lower() if isinstance(v, bool) else v for v in column] for column in columns.values())
-    writer.writerows(zip(*cells, strict=True))
+    typer.echo(csv_text(columns), nl=False)
 
 
 def _print_text(answer: Mapping[str, Any]) -> None:

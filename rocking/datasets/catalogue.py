@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import errno
-import hashlib
 import os
 import re
 import stat
 import threading
 import time
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Generic, NamedTuple, Self, TypeVar
 
 import xarray as xr
 
+from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import decode_dataset
 from rocking.errors import DatasetError
 
@@ -161,6 +162,35 @@ class DataFile:
         return FileVersion.of(os.fstat(self.fileno()))
 
 
+K = TypeVar("K", bound=Hashable)
+V = TypeVar("V")
+
+
+class VersionCache(Generic[K, V]):
+    """Values computed from files, each valid for one version of its file. Callers hold a lock where they need one."""
+
+    def __init__(self) -> None:
+        self._entries: dict[K, tuple[Path, FileVersion, V]] = {}
+
+    def current(self, key: K) -> V | None:
+        """The value of a key if the file at its path has not changed since; None otherwise."""
+        entry = self._entries.get(key)
+        return entry[2] if entry is not None and entry[1] == version_of(entry[0]) else None
+
+    def store(self, key: K, path: Path, version: FileVersion, value: V) -> V:
+        """Keep a value that was computed from this version of a file; returns it."""
+        self._entries[key] = path, version, value
+        return value
+
+    def value(self, key: K, file: DataFile, compute: Callable[[DataFile], V]) -> V:
+        """The value of a key for an open file, computed once per version of the file."""
+        entry = self._entries.get(key)
+        if entry is not None and entry[1] == file.version:
+            return entry[2]
+        value = compute(file)  # which may read the file, and set its version to the one that was read
+        return self.store(key, file.path, file.version, value)
+
+
 class Catalogue:
     """The data sets below a results folder.
 
@@ -174,7 +204,7 @@ class Catalogue:
         self.results = Path(results)
         self.lock = threading.RLock()
         """To be held while a file is read: the netCDF library is not thread-safe."""
-        self._products: dict[str, tuple[FileVersion, DatasetFile]] = {}
+        self._products = VersionCache[str, DatasetFile]()
 
     def names(self) -> list[str]:
         """Names of all data sets, such as `spectra/sine/eta-0.85`, sorted."""
@@ -232,11 +262,7 @@ class Catalogue:
             As `DataFile.content`.
         """
         with self.lock:
-            known = self._products.get(file.name)
-            if known is None or known[0] != file.version:
-                digest = hashlib.sha256(file.content()).hexdigest()
-                known = self._products[file.name] = file.version, DatasetFile(file.name, file.version.size, digest)
-            return known[1]
+            return self._products.value(file.name, file, _dataset_file)
 
     def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
         """A data set, read into memory and checked, and its version.
@@ -251,6 +277,11 @@ class Catalogue:
         with self.open(name) as file, self.lock:
             content = file.content()
             return self.product_of(file), decode_dataset(content, name)
+
+
+def _dataset_file(file: DataFile) -> DatasetFile:
+    digest = sha256_of(file.content())
+    return DatasetFile(file.name, file.version.size, digest)
 
 
 def _scan(

@@ -8,6 +8,18 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
+
+def sha256_of(content: bytes) -> str:
+    """sha256 (hex) of bytes, the version of a data set whose file holds them."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def sha256_of_file(path: Path) -> str:
+    """The same for a file, which may be larger than the memory."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
 PARTIAL = ".partial"
 """Suffix of a file that is being written; a killed process leaves it behind."""
 
@@ -18,7 +30,7 @@ _LENGTH = len(_MARK) + 64 + 1
 def append_checksum(path: Path) -> None:
     """Append the sha256 digest of the content of a file."""
     with path.open("ab") as file:
-        file.write(_MARK + hashlib.sha256(path.read_bytes()).hexdigest().encode() + b"\n")
+        file.write(_MARK + sha256_of_file(path).encode() + b"\n")
 
 
 def find_damage(content: bytes) -> str | None:
@@ -26,6 +38,6 @@ def find_damage(content: bytes) -> str | None:
     body, end = content[:-_LENGTH], content[-_LENGTH:]
     if not end.startswith(_MARK):
         return "damaged, or not written by this package: no digest at its end"
-    if end != _MARK + hashlib.sha256(body).hexdigest().encode() + b"\n":
+    if end != _MARK + sha256_of(body).encode() + b"\n":
         return "damaged, its bytes do not match its own digest"
     return None

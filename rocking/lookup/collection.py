@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._numba.cancellation import StopFlag
-from rocking.datasets.catalogue import Catalogue, DataFile, FileVersion, UnknownDatasetError, version_of
+from rocking.datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
 from rocking.datasets.cube import decode_dataset
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import get_pulse
@@ -21,9 +21,6 @@ from rocking.lookup.cube import Cube
 from rocking.lookup.cube_slice import CubeSlice, decode_slice
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse
-
-LoadedCube = tuple[Path, FileVersion, CubeSlice | DatasetError]
-"""The file of a cube, the version that was read, and the cube or the error."""
 
 
 class CubeCollection:
@@ -42,26 +39,26 @@ class CubeCollection:
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
-        self._cubes: dict[tuple[str, float], LoadedCube] = {}
-        self._levels: dict[str, tuple[Path, FileVersion, list[float]]] = {}
-        self._checked: dict[str, tuple[FileVersion, str | None]] = {}
+        self._slices = VersionCache[tuple[str, float], CubeSlice | DatasetError]()
+        self._restitutions = VersionCache[str, list[float]]()
+        self._problems = VersionCache[str, str | None]()
 
-    def levels(self, pulse: str) -> list[float]:
+    def restitutions(self, pulse: str) -> list[float]:
         """Restitutions for which the folder has a cube of the pulse, ascending."""
         key = pulse.removeprefix("-")
-        known = self._levels.get(key)
-        folder = known[0] if known else self.catalogue.results / "spectra" / key
+        known = self._restitutions.current(key)
+        if known is not None:
+            return known
+        folder = self.catalogue.results / "spectra" / key
         version = version_of(folder)
         if version is None:
             return []
-        if known is not None and known[1] == version:
-            return known[2]
         found = sorted(_restitution_of(path.stem) for path in folder.glob("eta-?.??.nc"))
         if version.is_settled:
-            self._levels[key] = folder, version, found
+            self._restitutions.store(key, folder, version, found)
         return found
 
-    def level(self, pulse: str, restitution: float) -> CubeSlice | None:
+    def slice_at(self, pulse: str, restitution: float) -> CubeSlice | None:
         """The cube of a pulse and a restitution, None if there is none.
 
         A mirrored pulse has the same peaks and outcomes, hence the same cube.
@@ -72,29 +69,17 @@ class CubeCollection:
             If the file is damaged, cannot be read, or does not contain the cube that its name states.
         """
         key = pulse.removeprefix("-"), restitution
-        known = self._current(key)
+        known = self._slices.current(key)
         if known is None:
             try:
-                known = self._read(key)
+                # under the lock: another thread may read the same file, which is then read once
+                with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
+                    known = self._slices.value(key, file, lambda file: _open(file, *key))
             except UnknownDatasetError:
                 return None
-        if isinstance(known[2], DatasetError):
-            raise known[2]
-        return known[2]
-
-    def _current(self, key: tuple[str, float]) -> LoadedCube | None:
-        """The cube of a pulse and a restitution, if it was read and its file has not changed."""
-        known = self._cubes.get(key)
-        return known if known is not None and known[1] == version_of(known[0]) else None
-
-    def _read(self, key: tuple[str, float]) -> LoadedCube:
-        """Read the cube of a pulse and a restitution, unless another thread has read it in the meantime."""
-        with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
-            known = self._cubes.get(key)
-            if known is None or known[1] != file.version:
-                cube = _open(file, *key)
-                known = self._cubes[key] = file.path, file.version, cube
-            return known
+        if isinstance(known, DatasetError):
+            raise known
+        return known
 
     def cube(self, pulse: str, method: str = "auto") -> Cube:
         """The cubes of a pulse; each is read when first needed.
@@ -102,26 +87,26 @@ class CubeCollection:
         A damaged cube then raises `DatasetError` with `method="cube"`; otherwise it is treated as missing and reported
         by `problems`.
         """
-        restitutions = np.array(self.levels(pulse))
+        restitutions = np.array(self.restitutions(pulse))
 
         @cache  # one response uses one version of each file
-        def level(k: int) -> CubeSlice | None:
+        def slice_at(k: int) -> CubeSlice | None:
             try:
-                return self.level(pulse, float(restitutions[k]))
+                return self.slice_at(pulse, float(restitutions[k]))
             except DatasetError:
                 if method == "cube":
                     raise
                 return None
 
-        return Cube(pulse, restitutions, level)
+        return Cube(pulse, restitutions, slice_at)
 
     def is_open(self, pulse: str, restitution: float) -> bool:
         """True if no file has to be read for a response with this restitution."""
-        levels = self.levels(pulse)
-        if not levels or not levels[0] <= restitution <= levels[-1]:
+        restitutions = self.restitutions(pulse)
+        if not restitutions or not restitutions[0] <= restitution <= restitutions[-1]:
             return True
-        used = Cube(pulse, np.array(levels), lambda _: None).used(np.array([restitution]))
-        return all(self._current((pulse.removeprefix("-"), levels[k])) for k in used)
+        used = Cube(pulse, np.array(restitutions), lambda _: None).used(np.array([restitution]))
+        return all(self._slices.current((pulse.removeprefix("-"), restitutions[k])) for k in used)
 
     def problems(self) -> dict[str, str]:
         """Read and check every data set once per version of its file; descriptions of the problems by name.
@@ -212,11 +197,7 @@ class CubeCollection:
     def problem_of(self, file: DataFile) -> str | None:
         """The same for an open data set, which is read and checked once per version of its file."""
         with self.catalogue.lock:
-            known = self._checked.get(file.name)
-            if known is None or known[0] != file.version:
-                problem = _check(file)
-                known = self._checked[file.name] = file.version, problem
-            return known[1]
+            return self._problems.value(file.name, file, _check)
 
 
 def _cube_name(pulse: str, restitution: float) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 import urllib.request
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import contiguous_array
+from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.interpolation.kernel import SliceArrays
@@ -84,7 +84,7 @@ def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
     """
     cube = decode_spectrum(content, path)
     try:
-        return slice_of(cube, hashlib.sha256(content).hexdigest())
+        return slice_of(cube, sha256_of(content))
     except InvalidArgumentError as error:
         raise DatasetError(f"{path}: {error}; build it again") from error
 
