@@ -37,7 +37,7 @@ from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
-from rocking.model.response import Outcome
+from rocking.model.fields import CUBE_FIELDS
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 """Dimensions of a spectrum cube, in order."""
@@ -53,31 +53,11 @@ AXES: dict[str, dict[str, Any]] = {
 }
 """Attributes of the axes of a spectrum cube."""
 
-_OUTCOMES = {
-    "flag_values": np.array([int(outcome) for outcome in Outcome], dtype=np.int8),
-    "flag_meanings": " ".join(outcome.name.lower() for outcome in Outcome),
-}
-_NO_YES = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"}
-
 MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
 """Attributes of every dimensionless variable that a model computed."""
 
 VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
-    "peak_rotation": (
-        "f8",
-        {"long_name": "peak rotation, max |theta|/alpha over the whole response", "equation": "3.2",
-         "ancillary_variables": "outcome peak_mode stencil interpolation_error",
-         "comment": "missing where the block overturns"},
-    ),
-    "outcome": ("i1", {"long_name": "final outcome of the block", "equation": "3.8", **_OUTCOMES}),
-    "impacts": ("i4", {"long_name": "number of impacts before the pulse ends", "equation": "2.3",
-                       "comment": "and the one after it that is followed by overturning"}),
-    "exceeded_alpha": ("i1", {"long_name": "whether |theta| passed alpha at some time", "equation": "3.2", **_NO_YES}),
-    "peak_mode": (
-        "i4",
-        {"long_name": "arc on which the peak is reached", "equation": "3.4",
-         "comment": "twice the impacts before it, plus one if reached in free rocking; -1 where there is no peak"},
-    ),
+    **{field.name: (field.file_dtype, field.attributes) for field in CUBE_FIELDS},
     "stencil": (
         "i1",
         {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
@@ -105,7 +85,9 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
          "comment": "four-point Lagrange in the square of alpha, measured as restitution_error"},
     ),
 }  # fmt: skip
-"""Type and attributes of each variable of a spectrum cube."""
+"""Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking.model.fields`."""
+
+VARIABLES["peak_rotation"][1]["ancillary_variables"] = "outcome peak_mode stencil interpolation_error"
 
 _GLOBAL = {
     "Conventions": "CF-1.11, ACDD-1.3",

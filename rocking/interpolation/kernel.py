@@ -21,7 +21,7 @@ from rocking.interpolation.stencils import (
     lagrange_weight,
     slice_window,
 )
-from rocking.model.response import Outcome
+from rocking.model.outcome_code import SURVIVES, outcome_of_code, overturning_code
 
 UNKNOWN_IMPACTS = -1
 """Value of `impacts` where the nodes around a point have different numbers."""
@@ -42,7 +42,8 @@ FOUND_RECORD = np.dtype(
 Slices = tuple[NDArray[np.generic], ...]
 """One array (angles, n, m) for each restitution of a window."""
 
-_OVERTURNED = int(Outcome.OVERTURNED_DIRECTLY)
+UNKNOWN = -1
+"""Code of the outcome before the first slice."""
 
 
 class SliceArrays(NamedTuple):
@@ -116,7 +117,7 @@ def interpolate_many(
         i, j, layer = row[point], column[point], angle_slice[point]
         if i < 0 or j < 0 or layer < 0:
             continue
-        kind, impacts = 0, -2
+        kind, impacts = UNKNOWN, -2
         peak, value, squared_all = 0.0, 0.0, True
         error = 0.0
         first_angle, count_angles = layer, 1
@@ -135,16 +136,16 @@ def interpolate_many(
             if count > 1:
                 error += abs(by_angle) * cubes.restitution_error[lower][layer, i, j]
             for e in range(count):
-                code, kind_here = cubes.stencil[e][layer, i, j], 1
+                code, kind_here = cubes.stencil[e][layer, i, j], SURVIVES
                 if code == OVERTURNS:
-                    kind_here = -(4 * cubes.impacts[e][layer, i, j] + cubes.outcome[e][layer, i, j])
-                agree = code != NO_STENCIL and (kind == 0 or kind == kind_here)
+                    kind_here = overturning_code(cubes.outcome[e][layer, i, j], cubes.impacts[e][layer, i, j])
+                agree = code != NO_STENCIL and kind in (UNKNOWN, kind_here)
                 if not agree:
                     break
                 kind, weight = kind_here, lagrange_weight(etas, 0, count, e, eta[point])
                 error += abs(by_angle * weight) * cubes.interpolation_error[e][layer, i, j]
                 impacts = common_impacts(cubes, layer, e, i, j, impacts)
-                if kind > 0:
+                if kind == SURVIVES:
                     squared = code == SQUARED
                     here = interpolate_in_cell(cubes.peak_rotation[e][layer], i, j, squared, x[point], y[point], mesh)
                     layer_value += weight * here
@@ -160,6 +161,6 @@ def interpolate_many(
         found.known = True
         found.error = error
         found.impacts = impacts
-        found.overturned = kind < 0
-        found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1
+        found.overturned = kind != SURVIVES
+        found.outcome = outcome_of_code(kind)
         found.peak = 1.0 - np.sqrt(max(value, 0.0)) if squared_all else peak

@@ -17,15 +17,16 @@ from rocking._numba.cancellation import StopFlag
 from rocking.datasets.cube import build_spectrum_dataset
 from rocking.errors import in_range
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
+from rocking.model.outcome_code import SURVIVES, outcome_codes
 from rocking.model.response import Response
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.layer import (
     CELL_CENTRE,
     DIRECT,
+    UNKNOWN,
     Cells,
     GridLayer,
     largest_in_neighbourhood,
-    outcome_codes,
 )
 from rocking.spectra.level_interval import LevelInterval
 
@@ -193,18 +194,18 @@ class _Grid:
         list of float arrays (n - 1, m - 1)
             0 where all blocks overturn in the same way, nan where the layers or the block in the middle differ in kind.
         """
-        wanted = [(interval.kind != 0) & (interval.kind != known) for interval in intervals]
+        wanted = [(interval.kind != UNKNOWN) & (interval.kind != known) for interval in intervals]
         errors = [np.where(interval.kind == known, 0.0, np.nan) for interval in intervals]
         cells = np.nonzero(np.any(wanted, axis=0)) if intervals else ()
         if not intervals or not cells[0].size:
             return errors
         x, y = self.mesh.within(cells, CELL_CENTRE)
         found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
-        ways = outcome_codes(found.outcome, found.impacts)
+        codes = outcome_codes(found.outcome, found.impacts)
         for k, interval in enumerate(intervals):
-            same = wanted[k][cells] & (interval.kind[cells] == ways[:, k])
+            same = wanted[k][cells] & (interval.kind[cells] == codes[:, k])
             errors[k][cells[0][same], cells[1][same]] = 0.0
-            survive = same & (ways[:, k] > 0)
+            survive = same & (codes[:, k] == SURVIVES)
             own = cells[0][survive], cells[1][survive]
             errors[k][own] = interval.errors(own, CELL_CENTRE, found.peak_rotation[survive, k])
         return errors

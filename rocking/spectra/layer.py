@@ -21,6 +21,7 @@ from rocking.interpolation.stencils import (
     interpolate_cells,
     interpolated_cells,
 )
+from rocking.model.outcome_code import SURVIVES, outcome_codes
 from rocking.model.response import Outcome, Response
 
 Array = NDArray[np.float64]
@@ -29,7 +30,10 @@ Cells = tuple[NDArray[np.intp], ...]
 
 CELL_CENTRE = (0.5, 0.5)
 
-DIRECT = -int(Outcome.OVERTURNED_DIRECTLY)
+UNKNOWN = -1
+"""Kind of a cell that is not interpolated."""
+
+DIRECT = int(Outcome.OVERTURNED_DIRECTLY)
 """Kind of a cell in which all blocks overturn without impact: they do so for every restitution."""
 
 FEW_IMPACTS = 1
@@ -84,14 +88,9 @@ class GridLayer:
         return peak_of(self.at(cells, place), self.stencil[cells] == SQUARED)
 
     def kinds(self) -> NDArray[np.int64]:
-        """Kind of each cell: 0 unknown, 1 interpolated peak, negative the way in which all its blocks overturn."""
-        ways = outcome_codes(self.outcome, self.impacts)[:-1, :-1]
-        return np.where(self.stencil == OVERTURNS, ways, self.smooth.astype(np.int64))
-
-
-def outcome_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDArray[np.int64]:
-    """1 where the block survives, else a negative number for the way in which it overturns."""
-    return np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, -(4 * impacts.astype(np.int64) + outcome), 1)
+        """Kind of each cell: the code of its outcome (`rocking.model.outcome_code`), or `UNKNOWN`."""
+        codes = outcome_codes(self.outcome, self.impacts)[:-1, :-1]
+        return np.where(self.stencil == OVERTURNS, codes, np.where(self.smooth, SURVIVES, UNKNOWN))
 
 
 def peak_of(value: Array, squared: Flags) -> Array:
@@ -123,7 +122,7 @@ def _same_overturning(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Fl
     n, m = ways.shape
     around = np.pad(ways, 1, mode="edge")
     most = np.zeros((n - 1, m - 1), dtype=np.int32)
-    alike, uniform = ways[:-1, :-1] < 0, np.ones((n - 1, m - 1), dtype=np.bool_)
+    alike, uniform = ways[:-1, :-1] != SURVIVES, np.ones((n - 1, m - 1), dtype=np.bool_)
     padded = np.pad(impacts, 1, mode="edge")
     for i in range(4):
         for j in range(4):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.interpolation.stencils import SQUARED, lagrange_weight, slice_window
-from rocking.spectra.layer import Cells, GridLayer, peak_of
+from rocking.spectra.layer import UNKNOWN, Cells, GridLayer, peak_of
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class LevelInterval:
     bounds : tuple of float
         Ends of the interval [-] or [rad].
     kind : int array (n - 1, m - 1)
-        `GridLayer.kinds` of the cells, 0 where the layers differ in it.
+        `GridLayer.kinds` of the cells, `UNKNOWN` where the layers differ in it.
     """
 
     layers: Sequence[GridLayer]
@@ -52,7 +52,7 @@ class LevelInterval:
         """The interval above slice `lower` of all layers, of which `kinds` and `levels` are given."""
         first, size = slice_window(len(layers), lower)
         window = slice(first, first + size)
-        kind = np.where(np.all([one == kinds[lower] for one in kinds[window]], axis=0), kinds[lower], 0)
+        kind = np.where(np.all([one == kinds[lower] for one in kinds[window]], axis=0), kinds[lower], UNKNOWN)
         bounds = float(levels[lower]), float(levels[lower + 1])
         return cls(layers[window], levels[window], power, lower, bounds, kind)
 

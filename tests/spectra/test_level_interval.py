@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.interpolation.stencils import OVERTURNS, SQUARED, Mesh
+from rocking.model.outcome_code import SURVIVES, overturning_code
 from rocking.model.response import Outcome
-from rocking.spectra.layer import CELL_CENTRE, GridLayer, largest_in_neighbourhood, outcome_codes
+from rocking.spectra.layer import CELL_CENTRE, UNKNOWN, GridLayer, largest_in_neighbourhood
 from rocking.spectra.level_interval import LevelInterval
 
 MESH = Mesh.of(np.linspace(0.3, 0.4, 6), np.geomspace(5.0, 6.0, 6))
@@ -59,16 +60,16 @@ def test_cells_whose_slices_differ_in_kind_are_not_interpolated():
     overturned = (Outcome.OVERTURNED_AFTER_IMPACT, 1)
     layers = [layer(0.3)] * 4 + [layer(np.nan, overturned)] * 2
     kinds = [interval_of(layers, lower).kind for lower in range(5)]
-    assert all((kind == 1).all() for kind in kinds[:2])  # from the first four slices
-    assert all((kind == 0).all() for kind in kinds[2:])
+    assert all((kind == SURVIVES).all() for kind in kinds[:2])  # from the first four slices
+    assert all((kind == UNKNOWN).all() for kind in kinds[2:])
 
 
 def test_ways_of_overturning_are_different_kinds():
     ways = [(Outcome.OVERTURNED_DIRECTLY, 0), (Outcome.OVERTURNED_AFTER_IMPACT, 1)]
     interval = interval_of([layer(np.nan, ways[0])] * 3 + [layer(np.nan, ways[1])] * 3, 2)
-    assert (interval.kind == 0).all()
+    assert (interval.kind == UNKNOWN).all()
     same = interval_of([layer(np.nan, ways[1])] * 6, 2)
-    assert (same.kind == outcome_codes(np.int8(ways[1][0]), np.int32(1))).all()
+    assert (same.kind == overturning_code(*ways[1])).all()
 
 
 def test_angles_are_interpolated_in_their_squares():
