@@ -1,6 +1,7 @@
-"""Makes what is missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
+"""Makes products that are missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
 
-The command is safe to repeat after any interruption, `kill -9` included, and refuses to work beside another live run.
+The command may be repeated after any interruption, including `kill -9`. It refuses to start while another run is
+active.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from workflow.run_lock import RUN_ID, RunningError, acquire, end_with
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Hold the folder, forget what is recorded wrongly, and hand over to Snakemake."""
+    """Lock the folder, delete wrong records, and start Snakemake."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--directory", "-d", type=Path, default=Path())
     parser.add_argument("--configfile", "--configfiles", type=Path, nargs="+", default=[])

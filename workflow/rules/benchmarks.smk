@@ -1,6 +1,5 @@
 # Run time against error, cost against size, error against bytes: `snakemake bench`, or `make bench`. A job is one command
-# of `benchmarks`, and one runs at a time, with the machine to itself: what it prints stays in its log, its progress on
-# the screen.
+# of `benchmarks`; only one runs at a time. Its output is written to its log, its progress to the screen.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
 TIMED = ["tolerance", "growth", "grid-size", "first-answer", "service", "skips", "stages"]
 
@@ -59,7 +58,7 @@ rule tolerance:
     params:
         code=benchmark_code("tolerance"),
     message:
-        "Error against the tolerance asked for"
+        "Error against the requested tolerance"
     shell:
         "python -m benchmarks.tolerance --out {output.record} >{log}"
 
@@ -111,7 +110,7 @@ rule first_answer:
     params:
         code=benchmark_code("first_answer"),
     message:
-        "The first answer of a new process"
+        "First response of a new process"
     shell:
         "python -m benchmarks.first_answer --out {output.record} >{log}"
 
@@ -147,7 +146,7 @@ rule skips:
     params:
         code=benchmark_code("skips"),
     message:
-        "Work that is not done"
+        "Work that is avoided"
     shell:
         "python -m benchmarks.skips --out {output.record} >{log}"
 
@@ -164,7 +163,7 @@ rule stages:
     params:
         code=benchmark_code("stages"),
     message:
-        "Where the time of the reproduction goes"
+        "Run time of the stages of the reproduction"
     shell:
         "python -m benchmarks.stages --out {output.record} >{log}"
 
