@@ -1,4 +1,4 @@
-"""Cells with exact answers, read from benchmarks/data; `benchmarks.truth` made the tables."""
+"""Cells with exact answers, read from benchmarks/data; `benchmarks.reference_tables` made the tables."""
 
 from __future__ import annotations
 

@@ -13,8 +13,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks import grid_size, growth, service, skips, stages, tolerance, work_precision
+from benchmarks.ablations import suite as ablations
+from benchmarks.accuracy import grid_size, tolerance
 from benchmarks.cells import DIAGRAMS
+from benchmarks.cost import growth, stages, work_precision
+from benchmarks.service import performance
 
 GOALS = {"slender": 1000.0, "rigid": 10.0}
 """Time of the best peer over ours that we would like to see at every error."""
@@ -23,8 +26,8 @@ TABLES = {
     "growth": ("Cost as the work grows", growth.table),
     "grid-size": ("Interpolation", grid_size.table),
     "tolerance": ("Tolerance", tolerance.table),
-    "service": ("Service", service.table),
-    "skips": ("Work not done", skips.table),
+    "service": ("Service", performance.table),
+    "ablations": ("Ablations", ablations.table),
     "stages": ("Stages of the reproduction", lambda record: stages.table(record["stages"])),
 }
 CLASSES = {"any": "", "scipy": "scipy"}
@@ -88,9 +91,9 @@ def page(folder: Path) -> Iterator[str]:
     for name, (title, table) in TABLES.items():
         if name in read:
             yield f"\n## {title}\n\n```\n{table(read[name])}\n```"
-    if "first-answer" in read:
+    if "first-call" in read:
         yield "\n## First answer of a new process [s]\n"
-        for state, times in read["first-answer"]["seconds"].items():
+        for state, times in read["first-call"]["seconds"].items():
             yield f"- kernels {state}: " + ", ".join(f"{name} {value:.3g}" for name, value in times.items())
 
 

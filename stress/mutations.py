@@ -111,7 +111,7 @@ AREAS = (
         ),
         tests(
             *("limits", "symmetries", "golden_thresholds", "equations_of_motion", "lookup", "history_contact"),
-            *("rigid_against_truth", "skips", "cli", "arguments", "fate_margin", "boundary_cells"),
+            *("rigid_against_truth", "ablations", "cli", "arguments", "fate_margin", "boundary_cells"),
         ),
     ),
     Area(
@@ -130,7 +130,7 @@ AREAS = (
             "rocking/datasets/cube.py",
         ),
         tests("interpolation", "sweep_gap", "lookup", "lookup_levels", "boundary_curves"),
-        (*tests("cube", "skips"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
+        (*tests("cube", "ablations"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
     ),
     Area("service", ("api/rocking_api/**/*.py",), ("tests/api/test_*.py",), ()),
 )

@@ -18,7 +18,7 @@ RIGID: dict[str, Any] = {"marker": "s", "markersize": 6, "markerfacecolor": "non
 
 
 def draw(record: dict[str, Any], paths: list[Path]) -> None:
-    """Write the figure of a record of `benchmarks.grid_size`; the grid of paper.yaml is marked."""
+    """Write the figure of a record of `benchmarks.accuracy.grid_size`; the grid of paper.yaml is marked."""
     grids = record["grids"]
     nodes = np.array([row["nodes"][0] * row["nodes"][1] for row in grids])
     size = np.array([row["bytes"] for row in grids])

@@ -17,7 +17,7 @@ MARKERS = "osD^"
 
 
 def draw(record: dict[str, Any], paths: list[Path]) -> None:
-    """Write the figure of a record of `benchmarks.growth`: medians, bars from the fastest to the slowest."""
+    """Write the figure of a record of `benchmarks.cost.growth`: medians, bars from the fastest to the slowest."""
     figure, (total, each, memory) = plt.subplots(1, 3, figsize=(WIDTH, 0.45 * WIDTH))
     threads = sorted({one["threads"] for one in record["sizes"]})
     for kind, (name, color) in KINDS.items():

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.service` runs and tells what it is to tell; no time is asserted."""
+"""`python -m benchmarks.service.performance` runs and tells what it is to tell; no time is asserted."""
 
 import asyncio
 import json
@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from benchmarks.load import _ask
+from benchmarks.service.load import _ask
 from tests.api.servers import ROOT, serving
 
 
@@ -15,7 +15,16 @@ from tests.api.servers import ROOT, serving
 def test_the_benchmark_measures_a_worker(results, tmp_path):
     out = tmp_path / "service.json"
     few = ["--seconds", "1", "--connections", "4", "--points", "2000", "--json-points", "500", "--rounds", "1"]
-    command = [sys.executable, "-m", "benchmarks.service", "--results", str(results), *few, "--out", str(out)]
+    command = [
+        sys.executable,
+        "-m",
+        "benchmarks.service.performance",
+        "--results",
+        str(results),
+        *few,
+        "--out",
+        str(out),
+    ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     record = json.loads(out.read_text())

@@ -13,14 +13,17 @@ import pytest
 import yaml
 
 import rocking
-from benchmarks import cells, fixed_step_peer, grid_size, stages, truth, work_precision
-from benchmarks.equal_error import time_for
+from benchmarks import cells, reference_tables
+from benchmarks.accuracy import grid_size
+from benchmarks.accuracy.tolerance import peaks, summary
+from benchmarks.baselines import runge_kutta
+from benchmarks.baselines.event_loop import SINE, rock
+from benchmarks.baselines.methods import compiled, ours, plain
+from benchmarks.baselines.scipy_ivp import flight
+from benchmarks.cost import stages, work_precision
+from benchmarks.cost.equal_error import time_for
 from benchmarks.measure import accuracy
-from benchmarks.methods import compiled, ours, plain
-from benchmarks.one_pulse import SINE, rock
-from benchmarks.scipy_peer import flight
 from benchmarks.summary import page
-from benchmarks.tolerance import peaks, summary
 from rocking.lookup.open import open_cube
 from rocking.solver.peak_response import peak_response
 from tests.workflow_fixtures import snakemake
@@ -39,15 +42,15 @@ def standing(diagram) -> cells.Cells:
     return diagram.chosen(np.flatnonzero(diagram.peak_rotation > 0.0)[::45][:10])
 
 
-@pytest.mark.parametrize("name", truth.TABLES)
+@pytest.mark.parametrize("name", reference_tables.TABLES)
 def test_the_tables_are_what_their_generator_writes(name: str) -> None:
-    generated, solve = truth.TABLES[name]
+    generated, solve = reference_tables.TABLES[name]
     table = cells.read(name)
     assert len(table) == sum(1 for _ in generated())
     for k, cell in islice(enumerate(generated()), 3, None, len(table) // 3):
         row = solve(cell)
         assert row["pulse"] == table.pulse[k]
-        for column in truth.columns(name):
+        for column in reference_tables.columns(name):
             if column != "pulse":
                 np.testing.assert_allclose(float(row[column] or "nan"), getattr(table, column)[k], rtol=1e-14)
 
@@ -72,26 +75,26 @@ def test_the_script_with_scipy_finds_the_truth(standing, method: str, rtol: floa
 
 def test_fixed_steps_converge_to_the_truth_with_the_fourth_order(diagram: cells.Cells) -> None:
     steps = np.array([64, 128, 256]) * (1 if diagram.pulse[0] == "sine" else 8)
-    found = [accuracy(compiled(fixed_step_peer.flight)(n, diagram), diagram.peak_rotation) for n in steps]
+    found = [accuracy(compiled(runge_kutta.flight)(n, diagram), diagram.peak_rotation) for n in steps]
     assert found[2]["wrong_fates"] == 0
     order = np.log2(found[0]["median_error"] / found[2]["median_error"]) / 2
     assert 3.5 < order < 4.5
 
 
 def test_heyoka_finds_the_truth(standing: cells.Cells) -> None:
-    peer = pytest.importorskip("benchmarks.heyoka_peer", exc_type=ModuleNotFoundError)
+    peer = pytest.importorskip("benchmarks.baselines.heyoka_taylor", exc_type=ModuleNotFoundError)
     np.testing.assert_allclose(plain(peer.flight)(1e-13, standing), standing.peak_rotation, rtol=1e-10)
 
 
 @pytest.mark.parametrize(("name", "error"), [("dop853_flight", 1e-8), ("lsoda_flight", 1e-6)])
 def test_numbalsoda_finds_the_truth(standing: cells.Cells, name: str, error: float) -> None:
-    peer = pytest.importorskip("benchmarks.numbalsoda_peer", exc_type=ModuleNotFoundError)
+    peer = pytest.importorskip("benchmarks.baselines.numbalsoda_ivp", exc_type=ModuleNotFoundError)
     found = compiled(getattr(peer, name))(1e-11, standing)
     np.testing.assert_allclose(found, standing.peak_rotation, rtol=error)
 
 
 def test_diffrax_finds_the_truth(standing: cells.Cells) -> None:
-    peer = pytest.importorskip("benchmarks.diffrax_peer", exc_type=ModuleNotFoundError)
+    peer = pytest.importorskip("benchmarks.baselines.diffrax_dopri8", exc_type=ModuleNotFoundError)
     np.testing.assert_allclose(peer.peaks(1e-11, standing), standing.peak_rotation, rtol=1e-6)
 
 
@@ -134,7 +137,7 @@ def run(module: str, out: Path, *options: str) -> tuple[dict, str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["slender-sine", "rigid-ricker"])
 def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path, name: str) -> None:
-    record, text = run("work_precision", tmp_path / "a.json", name, "--rounds", "1", "--coarse", "4")
+    record, text = run("cost.work_precision", tmp_path / "a.json", name, "--rounds", "1", "--coarse", "4")
     assert record["cells"]["all"] == 64
     assert all(rows[-1]["wrong_fates"] == 0 for rows in record["methods"].values())
     assert record["methods"]["rocking"][-1]["largest_error"] < 1e-12
@@ -145,7 +148,7 @@ def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path
 
 @pytest.mark.slow
 def test_growth_finds_the_same_fates_however_many_threads(tmp_path: Path) -> None:
-    record, _ = run("growth", tmp_path / "a.json", "--largest", "10000")
+    record, _ = run("cost.growth", tmp_path / "a.json", "--largest", "10000")
     counts = {(one["kind"], one["cells"]): set() for one in record["sizes"]}
     for one in record["sizes"]:
         counts[one["kind"], one["cells"]].add(one["overturned"])
@@ -160,7 +163,9 @@ def test_growth_finds_the_same_fates_however_many_threads(tmp_path: Path) -> Non
 
 @pytest.mark.slow
 def test_interpolation_gains_four_orders_where_linear_gains_two(tmp_path: Path) -> None:
-    record, text = run("grid_size", tmp_path / "a.json", "--count", "20000", "--scales", "0.125", "0.25", "0.5")
+    record, text = run(
+        "accuracy.grid_size", tmp_path / "a.json", "--count", "20000", "--scales", "0.125", "0.25", "0.5"
+    )
     for angle in ("0", "20"):
         ours, linear = ([row["alpha_deg"][angle][name] for row in record["grids"]] for name in ("ours", "linear"))
         assert all(one["wrong_fates"] == 0 for one in ours)
@@ -223,7 +228,7 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
     planned = snakemake(tmp_path, "--dry-run", "--quiet", "host", "--", "bench")
     assert planned.returncode == 0, planned.stdout
     jobs = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout, flags=re.MULTILINE))
-    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_answer", "service", "stages")
+    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_call", "service", "stages")
     assert jobs["work_precision"] == str(len(cells.DIAGRAMS))
     assert {jobs[name] for name in (*one_each, "bench")} == {"1"}
 
@@ -239,7 +244,7 @@ def test_the_summary_tells_what_was_measured_and_leaves_out_the_rest(tmp_path: P
 
 @pytest.mark.slow
 def test_the_tolerance_benchmark_runs_and_draws(tmp_path: Path) -> None:
-    record, _ = run("tolerance", tmp_path / "a.json")
+    record, _ = run("accuracy.tolerance", tmp_path / "a.json")
     assert record["cells"] == 1000
     assert len(record["tolerances"]) == 11
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

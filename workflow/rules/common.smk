@@ -68,6 +68,6 @@ def benchmark_code(*names):
 def installed_peers(wildcards):
     """Versions of the optional integrators: another one is another measurement."""
     from benchmarks.measure import versions
-    from benchmarks.methods import OPTIONAL
+    from benchmarks.baselines.methods import OPTIONAL
 
     return versions(*OPTIONAL)

@@ -1,4 +1,4 @@
-"""The service on one core, asked from another: `python -m benchmarks.service [--results FOLDER]`.
+"""The service on one core, asked from another: `python -m benchmarks.service.performance [--results FOLDER]`.
 
 One worker is bound to the first core, the load to the second. Measured are the start, questions about one block over
 1, 16 and 64 connections, batches of a thousand to a million blocks in binary and to a hundred thousand in JSON, and the
@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from benchmarks.load import load
 from benchmarks.measure import progress, save, spread, versions
+from benchmarks.service.load import load
 
 NETCDF = "application/x-netcdf"
 SERVER = "import os; os.sched_setaffinity(0, {%d}); from rocking.cli.app import app; app()"

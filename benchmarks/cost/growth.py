@@ -1,4 +1,4 @@
-"""Cost as the work grows: time and memory of 10^3 to 10^8 cells, on one thread and two: `python -m benchmarks.growth`.
+"""Time and memory of 10^3 to 10^8 cells, on one and two threads: `python -m benchmarks.cost.growth`.
 
 The cells are square grids under one sine, restitution 0.85: omega 0.5 to 12 in the logarithm by 1/a 0.02 to 0.85,
 slender blocks and blocks of 20 degrees. Each size is a process of its own, for its peak memory; grids of more than 10^6
@@ -86,7 +86,7 @@ def memory() -> int:
 
 def in_new_process(kind: str, side: int, threads: int) -> dict[str, Any]:
     """`solved` there."""
-    command = [sys.executable, "-m", "benchmarks.growth", "--one", kind, str(side), str(threads)]
+    command = [sys.executable, "-m", "benchmarks.cost.growth", "--one", kind, str(side), str(threads)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     found: dict[str, Any] = json.loads(done.stdout)
     return found

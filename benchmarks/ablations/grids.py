@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from benchmarks.skip import Skip, alternately
-from benchmarks.skip_motion import RESTITUTION, RESTITUTIONS, plane
+from benchmarks.ablations.ablation import Ablation, alternately
+from benchmarks.ablations.motion import RESTITUTION, RESTITUTIONS, plane
 from rocking.boundary import search as boundary_points
 from rocking.boundary.cells import crossed_cells
 from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
@@ -58,7 +58,7 @@ def with_settings(module: Any, call: Callable[[], Any], **settings: Any) -> Any:
         return call()
 
 
-def tracing(nodes: int, rounds: int) -> Iterator[Skip]:
+def tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
     """Boundaries traced beside a full grid, and by the margin in energy beside the fate alone."""
 
     def trace() -> xr.Dataset:
@@ -75,15 +75,15 @@ def tracing(nodes: int, rounds: int) -> Iterator[Skip]:
         f"extrapolated: a grid that shows the curves to {FINE:g}; one of as many cells shows them to "
         f"{math.sqrt(window / done):.1g}, traced they are good to {boundary_points.RESOLUTION:g}"
     )
-    yield Skip("cells far from a boundary: slender", "cells", done, round(window / FINE**2), note=note)
+    yield Ablation("cells far from a boundary: slender", "cells", done, round(window / FINE**2), note=note)
     grid = nodes * nodes
-    yield Skip(
+    yield Ablation(
         "points on the way to a boundary: slender", "cells", done - grid, without - grid, *times,
         note=f"{vertices} vertices, by the margin in energy and by the fate alone",
     )  # fmt: skip
 
 
-def shared_tracing(nodes: int, rounds: int) -> Iterator[Skip]:
+def shared_tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
     """The boundaries of several restitutions, each traced by itself and all together."""
     for angle in ANGLES:
         window = {"alpha": angle or None, "nodes": nodes}
@@ -99,11 +99,11 @@ def shared_tracing(nodes: int, rounds: int) -> Iterator[Skip]:
         direct = [int(one.row_size[one.outcome == Outcome.OVERTURNED_DIRECTLY].sum()) for one in together()]
         total = sum(one.sizes["point"] for one in together())
         times = alternately(f"boundaries by restitution, {kind}", together, apart, rounds)
-        yield Skip(
+        yield Ablation(
             f"first flights on the grids of boundaries: {kind}", "first flights", nodes**2,
             nodes**2 * len(RESTITUTIONS), *times, changed, "time of the whole tracing",
         )  # fmt: skip
-        yield Skip(
+        yield Ablation(
             f"boundaries without an impact: {kind}", "vertices", direct[0], sum(direct),
             note=f"of {total:,d} vertices in all, for {len(RESTITUTIONS)} restitutions",
         )  # fmt: skip
@@ -121,7 +121,7 @@ def barred_cells() -> NDArray[np.bool_]:
     return np.array([[crossed(eta, angle) for angle in ANGLES] for eta in ETAS])
 
 
-def probes(rounds: int) -> Iterator[Skip]:
+def probes(rounds: int) -> Iterator[Ablation]:
     """The cubes of a small grid: nodes, probes in cells and between levels."""
     barred = barred_cells()
 
@@ -138,13 +138,13 @@ def probes(rounds: int) -> Iterator[Skip]:
     kept = int(np.sum(np.isfinite([cube.interpolation_error.values for cube in fill()])))
     times = alternately("probes", fill, everywhere, rounds)
     layers = len(ETAS) * len(ANGLES)
-    yield Skip(
+    yield Ablation(
         "probes in the cells of a cube", "cells", done, more, *times,
         note=f"{layers} layers of {cells} cells, {kept} of them with a bound; time of all of it",
     )  # fmt: skip
     gaps = (len(ETAS) - 1) * len(ANGLES) + (len(ANGLES) - 1) * len(ETAS)
     everything = gaps * cells * (1 + len(sweep.ELSEWHERE))
-    yield Skip("between the levels of a cube", "cells", between, everything, note=f"{gaps} gaps, three points")
+    yield Ablation("between the levels of a cube", "cells", between, everything, note=f"{gaps} gaps, three points")
 
 
 def cells_between(fill: Callable[[], Any]) -> int:
@@ -163,7 +163,7 @@ def cells_between(fill: Callable[[], Any]) -> int:
     return count
 
 
-def precision(side: int, rounds: int) -> Skip:
+def precision(side: int, rounds: int) -> Ablation:
     """Blocks solved a second time, to all digits, as another fate is near."""
     slenderness, omega = plane(side)
     groups = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": RESTITUTION, "alpha": ANGLES[1]}
@@ -178,4 +178,6 @@ def precision(side: int, rounds: int) -> Skip:
     done, without = (cells_solved(call) - omega.size for call in (ask, all_again))
     times = alternately("precision", ask, all_again, rounds)
     note = "tolerance 1e-3; changes of fate are counted"
-    return Skip("all digits far from another fate: rigid", "cells solved again", done, without, *times, changed, note)
+    return Ablation(
+        "all digits far from another fate: rigid", "cells solved again", done, without, *times, changed, note
+    )

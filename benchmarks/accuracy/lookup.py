@@ -1,4 +1,4 @@
-"""Do the cubes keep what they promise? `python -m benchmarks.lookup` after `make reproduce`.
+"""Do the cubes keep what they promise? `python -m benchmarks.accuracy.lookup` after `make reproduce`.
 
 Random questions over all that the cubes of a pulse span, answered by interpolation and by the solver: the share that
 the cubes answer, wrong fates, errors above the bound that comes with the answer, time of a question.

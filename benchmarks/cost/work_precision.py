@@ -1,4 +1,4 @@
-"""Run time of one cell on one core against its error, one diagram: `python -m benchmarks.work_precision rigid-sine`.
+"""Run time of a cell on one core against its error, one diagram: `python -m benchmarks.cost.work_precision NAME`.
 
 Diagrams are slender-sine, slender-ricker, rigid-sine (20 degrees) and rigid-ricker: restitution 0.85, 32 frequency
 ratios, log-spaced from 0.5 to 10, by 32 slendernesses, 0.05 to 0.95. Every method runs at several settings; SciPy is
@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.baselines.methods import OPTIONAL, Method, methods
 from benchmarks.cells import DIAGRAMS, Cells, read
-from benchmarks.equal_error import time_for
+from benchmarks.cost.equal_error import time_for
 from benchmarks.measure import Task, accuracy, in_rounds, progress, save, spread, versions
-from benchmarks.methods import OPTIONAL, Method, methods
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 """Errors at which the methods are compared."""

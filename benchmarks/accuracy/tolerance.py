@@ -1,4 +1,4 @@
-"""Error of the peak found against the tolerance asked for: `python -m benchmarks.tolerance`.
+"""Error of the peak found against the tolerance asked for: `python -m benchmarks.accuracy.tolerance`.
 
 A thousand random cells of benchmarks/data, all pulses: rigid blocks of 0.01 to 1.2 rad, slender ones under wavelets;
 omega 0.1 to 15, 1/a 0.02 to 0.98, eta 0.3 to 1. The error is |peak - exact|/exact where both stand. The condition of a

@@ -16,7 +16,16 @@ import numba
 import numpy as np
 from numbalsoda import lsoda, lsoda_sig, solve_ivp
 
-from benchmarks.one_pulse import Block, Vector, acceleration, beyond_return, compiled, duration, first_step, ground
+from benchmarks.baselines.event_loop import (
+    Block,
+    Vector,
+    acceleration,
+    beyond_return,
+    compiled,
+    duration,
+    first_step,
+    ground,
+)
 
 WINDOW, TIMES = math.pi, 48
 """For LSODA, phase of a window [rad] and times to a window: the fastest of those tried with events still sharp."""

@@ -6,7 +6,7 @@ false position (Illinois), since plain bisection would take most of the time whe
 
 from __future__ import annotations
 
-from benchmarks.one_pulse import Block, acceleration, beyond_return, compiled, duration, ground
+from benchmarks.baselines.event_loop import Block, acceleration, beyond_return, compiled, duration, ground
 
 
 @compiled

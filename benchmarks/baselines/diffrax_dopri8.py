@@ -23,8 +23,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from benchmarks.cells import Cells
-from benchmarks.one_pulse import (
+from benchmarks.baselines.event_loop import (
     HALF_WINDOW,
     RICKER,
     SINE,
@@ -35,6 +34,7 @@ from benchmarks.one_pulse import (
     ground,
     uplift,
 )
+from benchmarks.cells import Cells
 
 jax.config.update("jax_enable_x64", True)
 

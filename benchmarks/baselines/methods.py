@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks import fixed_step_peer, scipy_peer
+from benchmarks.baselines import runge_kutta, scipy_ivp
+from benchmarks.baselines.event_loop import RICKER, SINE, rock, rock_many
 from benchmarks.cells import Cells
-from benchmarks.one_pulse import RICKER, SINE, rock, rock_many
 from rocking.solver.peak_response import peak_response
 
 OPTIONAL = ("heyoka", "numbalsoda", "diffrax")
@@ -70,7 +70,7 @@ def plain(fly: Callable[..., Any], wrapped: Callable[[float], Any] = float) -> C
 
 def by_scipy(method: str, settings: tuple[float, ...]) -> Method:
     """scipy's `solve_ivp` with that method."""
-    return Method(f"scipy {method}", plain(scipy_peer.flight, lambda rtol: (method, rtol)), settings, slow=True)
+    return Method(f"scipy {method}", plain(scipy_ivp.flight, lambda rtol: (method, rtol)), settings, slow=True)
 
 
 def methods(pulse: str) -> Iterator[Method]:
@@ -78,20 +78,20 @@ def methods(pulse: str) -> Iterator[Method]:
     rtols = tuple(10.0**-k for k in (3, 4, 6, 8, 10, 12, 13))
     yield Method("rocking", ours, (1e-3, *rtols[1:-1], None))
     if find_spec("heyoka"):
-        from benchmarks import heyoka_peer  # noqa: PLC0415  # optional
+        from benchmarks.baselines import heyoka_taylor  # noqa: PLC0415  # optional
 
-        yield Method("heyoka", plain(heyoka_peer.flight), (*rtols, 1e-15))
+        yield Method("heyoka", plain(heyoka_taylor.flight), (*rtols, 1e-15))
     if find_spec("numbalsoda"):
-        from benchmarks import numbalsoda_peer  # noqa: PLC0415  # optional
+        from benchmarks.baselines import numbalsoda_ivp  # noqa: PLC0415  # optional
 
-        yield Method("numbalsoda DOP853", compiled(numbalsoda_peer.dop853_flight), rtols)
-        yield Method("numbalsoda LSODA", compiled(numbalsoda_peer.lsoda_flight), rtols)
+        yield Method("numbalsoda DOP853", compiled(numbalsoda_ivp.dop853_flight), rtols)
+        yield Method("numbalsoda LSODA", compiled(numbalsoda_ivp.lsoda_flight), rtols)
     if find_spec("diffrax"):
-        from benchmarks import diffrax_peer  # noqa: PLC0415  # optional
+        from benchmarks.baselines import diffrax_dopri8  # noqa: PLC0415  # optional
 
-        yield Method("diffrax Dopri8", diffrax_peer.peaks, rtols[2:6])
+        yield Method("diffrax Dopri8", diffrax_dopri8.peaks, rtols[2:6])
     steps = tuple(2**k * (1 if pulse == "sine" else 4) for k in (5, 6, 8, 10, 12))  # the wavelet lasts longer
-    yield Method("RK4, fixed steps", compiled(fixed_step_peer.flight), steps)
+    yield Method("RK4, fixed steps", compiled(runge_kutta.flight), steps)
     yield by_scipy("RK45", rtols[:5])
     yield by_scipy("DOP853", rtols)
     yield by_scipy("LSODA", rtols)

@@ -12,7 +12,7 @@ from typing import Any
 
 from scipy.integrate import solve_ivp
 
-from benchmarks.one_pulse import HALF_WINDOW, SINE, Block, beyond_return, duration, first_step
+from benchmarks.baselines.event_loop import HALF_WINDOW, SINE, Block, beyond_return, duration, first_step
 
 
 def flight(

@@ -13,7 +13,7 @@ from typing import Any
 
 import heyoka
 
-from benchmarks.one_pulse import HALF_WINDOW, SINE, Block, acceleration, duration, ground
+from benchmarks.baselines.event_loop import HALF_WINDOW, SINE, Block, acceleration, duration, ground
 
 FALLEN = heyoka.taylor_outcome(-2)
 """The second of the events that stop the integrator; the first is the impact."""

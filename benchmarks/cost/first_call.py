@@ -1,4 +1,4 @@
-"""How long a new process waits for its first answer: `python -m benchmarks.first_answer`.
+"""How long a new process waits for its first answer: `python -m benchmarks.cost.first_call`.
 
 A fresh copy of the package, whose kernels have to be compiled, and then the same copy with the kernels on disk.
 """
@@ -45,7 +45,7 @@ def seconds() -> dict[str, dict[str, float]]:
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/first-answer.json"))
+    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/first-call.json"))
     out = parser.parse_args().out
     found = seconds()
     save({"seconds": found, "versions": versions("numpy", "numba")}, out)

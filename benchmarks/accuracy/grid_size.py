@@ -1,4 +1,4 @@
-"""Error of interpolation against the size of the grid: `python -m benchmarks.grid_size`.
+"""Error of interpolation against the size of the grid: `python -m benchmarks.accuracy.grid_size`.
 
 Cubes of one pulse and restitution, slender blocks and blocks of 20 degrees, are made as the workflow makes them, on the
 grid of paper.yaml and on coarser and finer ones, in a temporary folder. Random questions, uniform in 1/a and log omega,
@@ -34,7 +34,7 @@ from workflow.scripts.axes import stepped
 
 Vector = NDArray[np.float64]
 
-CONFIG = Path(__file__).parents[1] / "workflow/config/paper.yaml"
+CONFIG = Path(__file__).parents[2] / "workflow/config/paper.yaml"
 PULSE, RESTITUTION, ANGLES = "sine", 0.85, (0.0, 20.0)
 SCALES = (0.125, 0.25, 0.5, 1.0, 2.0)
 """Nodes along each axis over those of paper.yaml."""

@@ -1,9 +1,10 @@
 """Cells of the benchmarks with their answers in 192-bit arithmetic, kept in benchmarks/data.
 
 The tables are made by
-    python -m benchmarks.truth slender-sine     32 x 32 blocks of one diagram, likewise slender-ricker, rigid-sine and
-                                                rigid-ricker; two seconds to a minute
-    python -m benchmarks.truth random           1,000 cells of all pulses, with their conditioning; four minutes
+    python -m benchmarks.reference_tables slender-sine   32 x 32 blocks of one diagram, likewise slender-ricker,
+                                                         rigid-sine and rigid-ricker; two seconds to a minute
+    python -m benchmarks.reference_tables random         1,000 cells of all pulses, with their conditioning; four
+                                                         minutes
 A second run gives the same bytes. Inputs are exact doubles and stand in the tables to their last bit.
 """
 

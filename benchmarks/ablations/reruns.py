@@ -14,10 +14,10 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from benchmarks.ablations.ablation import Ablation
 from benchmarks.measure import progress
-from benchmarks.skip import Skip
 
-PROJECT = Path(__file__).parents[1]
+PROJECT = Path(__file__).parents[2]
 COPIED = ("Snakefile", "environment.lock", "README.md", "rocking", "workflow", "profiles", "docs")
 SMOKE = "workflow/config/smoke.yaml"
 
@@ -101,7 +101,7 @@ def copied(folder: Path) -> Path:
     return project
 
 
-def reruns(changes: dict[str, Callable[[Path], None]], rounds: int) -> Iterator[Skip]:
+def reruns(changes: dict[str, Callable[[Path], None]], rounds: int) -> Iterator[Ablation]:
     """Jobs that run again after each change, of all; the time of a run in which nothing is to be done."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -122,7 +122,7 @@ def reruns(changes: dict[str, Callable[[Path], None]], rounds: int) -> Iterator[
             change(project)
             again = jobs(snakemake(project, directory, "--dry-run"))
             times = (idle, [whole]) if not again else ([], [])
-            yield Skip(
+            yield Ablation(
                 f"jobs after a change of {what}", "jobs", sum(again.values()), sum(total.values()), *times,
                 note=", ".join(f"{rule} {count}" if count > 1 else rule for rule, count in again.items()),
             )  # fmt: skip

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from benchmarks.ablations.ablation import Ablation
 from benchmarks.measure import progress
-from benchmarks.skip import Skip
 
 GROUPS = "--pulse sine --slenderness 0.4 --frequency-ratio 5 --restitution 0.85"
 STARTS = {
@@ -65,7 +65,7 @@ def started(code: str, *arguments: str) -> tuple[subprocess.CompletedProcess[str
     return done, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def imports(rounds: int) -> Iterator[Skip]:
+def imports(rounds: int) -> Iterator[Ablation]:
     """Commands as they are, and after an import of everything: modules at the end, and time."""
     for name, code in STARTS.items():
         times: tuple[list[float], list[float]] = ([], [])
@@ -75,10 +75,10 @@ def imports(rounds: int) -> Iterator[Skip]:
             times[1].append(more)
             progress(f"{name}: round {k + 1} of {rounds}")
         once, without = (int(done.stderr.split()[-1]) for done in (one, every))
-        yield Skip(f"imports: {name}", "modules", once, without, *times)
+        yield Ablation(f"imports: {name}", "modules", once, without, *times)
 
 
-def cubes(results: Path, rounds: int) -> Skip | None:
+def cubes(results: Path, rounds: int) -> Ablation | None:
     """The first answer of a service from its cubes, one opened or all; None if there are no cubes."""
     if not any(results.glob("spectra/sine/eta-0.85.nc")):
         return None
@@ -90,4 +90,4 @@ def cubes(results: Path, rounds: int) -> Skip | None:
     one, every = (rows[0] for rows in found.values())
     times = ([row["seconds"] for row in rows] for rows in found.values())
     note = f"memory {one['MB']:.0f} MB and {every['MB']:.0f} MB, on top of the solver's"
-    return Skip("cubes that nobody asks for", "cubes opened", one["cubes"], every["cubes"], *times, note=note)
+    return Ablation("cubes that nobody asks for", "cubes opened", one["cubes"], every["cubes"], *times, note=note)

@@ -1,4 +1,4 @@
-"""Where the time of `make reproduce` goes: `python -m benchmarks.stages`, from what Snakemake noted of each job.
+"""Where the time of `make reproduce` goes: `python -m benchmarks.cost.stages`, from what Snakemake noted of each job.
 
 One row for each kind of job: jobs, wall-clock and processor time, and the largest memory of one job. Jobs run side by
 side, and each starts Python and loads the kernels, which is part of its time.

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.skip import Skip, alternately
+from benchmarks.ablations.ablation import Ablation, alternately
 from rocking._numba.cancellation import NEVER
 from rocking._numba.compilation import Record, Vector, entry, kernel
 from rocking.excitation.pulses import get_pulse
@@ -152,7 +152,7 @@ def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], N
     return counts, peaks
 
 
-def motions(side: int, rounds: int) -> Iterator[Skip]:
+def motions(side: int, rounds: int) -> Iterator[Ablation]:
     """Free rocking, chatter and motion beyond return, followed and not."""
     kinds = {
         FREE: ("free rocking after the pulse", "impacts after the pulse", IMPACTS),
@@ -170,10 +170,12 @@ def motions(side: int, rounds: int) -> Iterator[Skip]:
                 lambda alpha=alpha, what=what: followed(alpha, side, what),
                 rounds,
             )
-            yield Skip(f"{name}: {kind}", unit, int(done[key]), int(more[key]), *times, changed, f"{side**2:,d} blocks")
+            yield Ablation(
+                f"{name}: {kind}", unit, int(done[key]), int(more[key]), *times, changed, f"{side**2:,d} blocks"
+            )
 
 
-def no_uplift(side: int, rounds: int) -> Skip:
+def no_uplift(side: int, rounds: int) -> Ablation:
     """Blocks that the ground cannot lift beside blocks that it lifts."""
     quiet, lifted = plane(side, lowest=1.0, highest=2.0), plane(side)
 
@@ -183,10 +185,10 @@ def no_uplift(side: int, rounds: int) -> Skip:
     count = [int(np.sum(np.isfinite(ask(cells).uplift_time))) for cells in (quiet, lifted)]
     times = alternately("no uplift", lambda: ask(quiet), lambda: ask(lifted), rounds)
     note = "blocks with 1/a in [1, 2] beside as many with 1/a in [0.02, 0.98]"
-    return Skip("blocks that never uplift: slender", "flights, at least", *count, *times, note=note)
+    return Ablation("blocks that never uplift: slender", "flights, at least", *count, *times, note=note)
 
 
-def first_flights(side: int, rounds: int) -> Iterator[Skip]:
+def first_flights(side: int, rounds: int) -> Iterator[Ablation]:
     """Restitutions side by side, along the last axis and along the first."""
     slenderness, omega = plane(side)
     eta = np.array(RESTITUTIONS)
@@ -206,4 +208,6 @@ def first_flights(side: int, rounds: int) -> Iterator[Skip]:
             rounds,
         )
         note = f"{eta.size} restitutions along the last axis or the first"
-        yield Skip(f"first flights: {kind}", "first flights", omega.size, omega.size * eta.size, *times, changed, note)
+        yield Ablation(
+            f"first flights: {kind}", "first flights", omega.size, omega.size * eta.size, *times, changed, note
+        )

@@ -1,4 +1,4 @@
-"""What a skip is in the tables of `benchmarks.skips`: how much was done, how much would have been, and both times."""
+"""One row of `benchmarks.ablations.suite`: work done with and without one optimisation, and the times of both."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from benchmarks.measure import progress
 
 
 @dataclass(frozen=True)
-class Skip:
+class Ablation:
     """One thing that is not done.
 
     Attributes

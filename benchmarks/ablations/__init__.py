@@ -1,0 +1,1 @@
+"""Cost and results with one optimisation of the package turned off at a time."""

@@ -1,0 +1,1 @@
+"""Load and batches on the HTTP service."""
