@@ -1,11 +1,10 @@
-"""Cells of the benchmarks with their answers in 192-bit arithmetic, kept in benchmarks/data.
+"""Tables of cells with responses computed in 192-bit arithmetic, stored in benchmarks/data.
 
-The tables are made by
+Commands:
     python -m benchmarks.reference_tables slender-sine   32 x 32 blocks of one diagram, likewise slender-ricker,
                                                          rigid-sine and rigid-ricker; two seconds to a minute
-    python -m benchmarks.reference_tables random         1,000 cells of all pulses, with their conditioning; four
-                                                         minutes
-A second run gives the same bytes. Inputs are exact doubles and stand in the tables to their last bit.
+    python -m benchmarks.reference_tables random         1,000 cells of all pulses with conditioning; four minutes
+A second run writes the same bytes. Inputs are doubles, written with all their digits.
 """
 
 from __future__ import annotations
@@ -27,16 +26,16 @@ from reference.multiprecision import integrate
 
 RESTITUTION = 0.85
 FREQUENCY_RATIO, SLENDERNESS = (0.5, 10.0), (0.05, 0.95)
-"""Ends of the grids of these tables, log-spaced and uniform [-]."""
+"""Ranges of the grids of these tables, log-spaced and uniform [-]."""
 
 COLUMNS = ("pulse", "slenderness", "frequency_ratio", "restitution", "alpha", "peak_rotation")
 WITH_CONDITIONING = (*COLUMNS, "peak_rotation_per_ulp")
 WAVELETS = ("ricker", "ricker_antisymmetric")
-"""The pulses under which the slender block, too, is expanded in Taylor series."""
+"""Pulses for which the solver uses Taylor series also for the slender block."""
 
 
 def diagram_cells(name: str, count: int = 32) -> Iterator[dict[str, Any]]:
-    """Blocks of one diagram on a grid of `FREQUENCY_RATIO` and `SLENDERNESS` [alpha in rad]."""
+    """Yield the blocks of one diagram on a grid over `FREQUENCY_RATIO` and `SLENDERNESS` [alpha in rad]."""
     pulse, alpha = DIAGRAMS[name]
     for frequency_ratio in np.geomspace(*FREQUENCY_RATIO, count):
         for slenderness in np.linspace(*SLENDERNESS, count):
@@ -50,7 +49,7 @@ def diagram_cells(name: str, count: int = 32) -> Iterator[dict[str, Any]]:
 
 
 def random_cells(rigid: int = 880, slender: int = 120, seed: int = 5) -> Iterator[dict[str, Any]]:
-    """Rigid blocks under each pulse in turn, then slender blocks under wavelets [alpha in rad]."""
+    """Yield rigid blocks under each pulse in turn, then slender blocks under wavelets [alpha in rad]."""
     random = np.random.default_rng(seed)
     for k in range(rigid + slender):
         cell = {
@@ -62,8 +61,8 @@ def random_cells(rigid: int = 880, slender: int = 120, seed: int = 5) -> Iterato
         yield cell | {"alpha": float(random.uniform(0.01, 1.2))} if k < rigid else cell
 
 
-def with_peak(cell: dict[str, Any]) -> dict[str, str]:
-    """A row of a table: inputs to their last bit, the peak to 20 digits, empty where overturned."""
+def row_with_peak(cell: dict[str, Any]) -> dict[str, str]:
+    """Return a table row: inputs with all digits, the peak with 20 digits, empty where the block overturns."""
     with working_precision(192):
         peak = integrate(**cell | {"alpha": cell["alpha"] or None}).peak_rotation
     return {name: str(value) for name, value in cell.items()} | {
@@ -71,25 +70,25 @@ def with_peak(cell: dict[str, Any]) -> dict[str, str]:
     }
 
 
-def with_conditioning(cell: dict[str, Any]) -> dict[str, str]:
-    """The same with what the last bit of the inputs explains, which takes five integrations."""
+def row_with_conditioning(cell: dict[str, Any]) -> dict[str, str]:
+    """Return the same row with the conditioning of the peak, which takes five integrations."""
     return {"alpha": "0.0"} | solved_row(cell)
 
 
 TABLES: dict[str, tuple[Callable[[], Iterator[dict[str, Any]]], Callable[[dict[str, Any]], dict[str, str]]]] = {
-    **{name: (partial(diagram_cells, name), with_peak) for name in DIAGRAMS},
-    "random": (random_cells, with_conditioning),
+    **{name: (partial(diagram_cells, name), row_with_peak) for name in DIAGRAMS},
+    "random": (random_cells, row_with_conditioning),
 }
 
 
 def columns(name: str) -> tuple[str, ...]:
-    """Of the table of that name."""
+    """Return the column names of a table."""
     return COLUMNS if name in DIAGRAMS else WITH_CONDITIONING
 
 
 def write(name: str) -> None:
-    """Make the table of that name; the file appears when it is complete."""
-    cells, solve = TABLES[name]
+    """Write a table; the file appears only when it is complete."""
+    cells, make_row = TABLES[name]
     path = DATA / f"{name}.csv"
     unfinished = path.with_suffix(".tmp")
     with unfinished.open("w", newline="") as stream:
@@ -98,7 +97,7 @@ def write(name: str) -> None:
         for k, cell in enumerate(cells()):
             if k % 100 == 0:
                 print(f"{k} cells", file=sys.stderr)
-            writer.writerow(solve(cell))
+            writer.writerow(make_row(cell))
     unfinished.replace(path)
 
 

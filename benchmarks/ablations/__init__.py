@@ -1,1 +1,1 @@
-"""Cost and results with one optimisation of the package turned off at a time."""
+"""Work and results of the package with one optimisation disabled at a time."""

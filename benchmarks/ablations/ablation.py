@@ -1,4 +1,4 @@
-"""One row of `benchmarks.ablations.suite`: work done with and without one optimisation, and the times of both."""
+"""One row of `benchmarks.ablations.suite`: work with and without one optimisation, and the times of both."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from benchmarks.measure import progress
 
 @dataclass(frozen=True)
 class Ablation:
-    """One thing that is not done.
+    """Work and time with and without one optimisation.
 
     Attributes
     ----------
     name : str
-        What is skipped, and where.
+        Which work the optimisation avoids, and where.
     unit : str
         What is counted.
     done, without : int
-        How many of them with the skip and without it, exactly.
+        Exact counts with the optimisation and without it.
     seconds, seconds_without : list of float
-        Time of each round [s], the rounds of both alternating; none where it follows from the counts.
+        Time of each round [s], the rounds of both alternating; empty where it follows from the counts.
     changed : int
-        Answers that the skip changes, by as much as a bit.
+        Number of results that the optimisation changes by one bit or more.
     note : str
-        What else was seen.
+        Remarks.
     """
 
     name: str
@@ -40,21 +40,21 @@ class Ablation:
     note: str = ""
 
     def record(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the row for JSON."""
         return asdict(self)
 
 
-def alternately(
+def measure_both(
     title: str,
-    once: Callable[[], Any],
+    with_optimisation: Callable[[], Any],
     without: Callable[[], Any],
     rounds: int,
     clock: Callable[[], float] = time.process_time,
 ) -> tuple[list[float], list[float]]:
-    """Seconds of each round of two ways to the same answer."""
+    """Return the times of the rounds of two ways to the same result [s]."""
     times: tuple[list[float], list[float]] = ([], [])
     for k in range(rounds):
-        for taken, call in zip(times, (once, without), strict=True):
+        for taken, call in zip(times, (with_optimisation, without), strict=True):
             start = clock()
             call()
             taken.append(clock() - start)

@@ -1,6 +1,6 @@
-"""Blocks that need not be solved: far from boundaries, between nodes that agree, far from another fate.
+"""Blocks that need not be solved: far from boundaries, between nodes that agree, far from another outcome.
 
-Every cell that the solver follows is counted at the one place through which all of them go.
+Every cell that the solver integrates is counted in the one function through which all cells pass.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from benchmarks.ablations.ablation import Ablation, alternately
-from benchmarks.ablations.motion import RESTITUTION, RESTITUTIONS, plane
+from benchmarks.ablations.ablation import Ablation, measure_both
+from benchmarks.ablations.motion import RESTITUTION, RESTITUTIONS, control_plane
 from rocking.boundary import search as boundary_points
 from rocking.boundary.cells import crossed_cells
 from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
@@ -28,15 +28,15 @@ from rocking.spectra import cubes as sweep
 PULSE = "sine"
 ANGLES = (0.0, math.radians(20.0))
 GRID = {"slenderness": np.linspace(0.05, 0.95, 73), "frequency_ratio": np.geomspace(0.3, 12.0, 161)}
-"""That of the smallest configuration."""
+"""The grid of the smallest configuration."""
 
 ETAS = (0.85, 0.90)
 FINE = 1e-6
-"""Accuracy of a curve for which the full grid is extrapolated [-]: beyond it the number of cells says nothing."""
+"""Accuracy of a curve for which the full grid is extrapolated [-]; the number of cells alone has no meaning."""
 
 
 def cells_solved(call: Callable[[], Any]) -> int:
-    """Cells that the solver follows during a call."""
+    """Return the number of cells that the solver integrates during a call."""
     count = 0
     follow = solve._rock
 
@@ -51,7 +51,7 @@ def cells_solved(call: Callable[[], Any]) -> int:
 
 
 def with_settings(module: Any, call: Callable[[], Any], **settings: Any) -> Any:
-    """A call while constants of a module are others."""
+    """Call a function while constants of a module have other values."""
     with ExitStack() as stack:
         for name, value in settings.items():
             stack.enter_context(patch.object(module, name, value))
@@ -59,16 +59,16 @@ def with_settings(module: Any, call: Callable[[], Any], **settings: Any) -> Any:
 
 
 def tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
-    """Boundaries traced beside a full grid, and by the margin in energy beside the fate alone."""
+    """Yield boundaries traced against a full grid, and with the energy margin against the outcome alone."""
 
     def trace() -> xr.Dataset:
         return overturning_boundary(PULSE, restitution=RESTITUTION, nodes=nodes)
 
-    def by_fate_alone() -> xr.Dataset:
+    def by_outcome_alone() -> xr.Dataset:
         return with_settings(boundary_points, trace, fate_margin=lambda z, *_: np.ones_like(z))
 
-    done, without = cells_solved(trace), cells_solved(by_fate_alone)
-    times = alternately("boundary", trace, by_fate_alone, rounds)
+    done, without = cells_solved(trace), cells_solved(by_outcome_alone)
+    times = measure_both("boundary", trace, by_outcome_alone, rounds)
     vertices = trace().sizes["point"]
     window = 0.98 * math.log(75.0)  # 1/a from 0.02 to 1, omega from 0.2 to 15 in the logarithm
     note = (
@@ -79,12 +79,12 @@ def tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
     grid = nodes * nodes
     yield Ablation(
         "points on the way to a boundary: slender", "cells", done - grid, without - grid, *times,
-        note=f"{vertices} vertices, by the margin in energy and by the fate alone",
+        note=f"{vertices} vertices, by the energy margin and by the outcome alone",
     )  # fmt: skip
 
 
 def shared_tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
-    """The boundaries of several restitutions, each traced by itself and all together."""
+    """Yield the boundaries of several restitutions, traced one by one and together."""
     for angle in ANGLES:
         window = {"alpha": angle or None, "nodes": nodes}
 
@@ -98,7 +98,7 @@ def shared_tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
         changed = sum(not one.identical(other) for one, other in zip(together(), apart(), strict=True))
         direct = [int(one.row_size[one.outcome == Outcome.OVERTURNED_DIRECTLY].sum()) for one in together()]
         total = sum(one.sizes["point"] for one in together())
-        times = alternately(f"boundaries by restitution, {kind}", together, apart, rounds)
+        times = measure_both(f"boundaries by restitution, {kind}", together, apart, rounds)
         yield Ablation(
             f"first flights on the grids of boundaries: {kind}", "first flights", nodes**2,
             nodes**2 * len(RESTITUTIONS), *times, changed, "time of the whole tracing",
@@ -110,7 +110,7 @@ def shared_tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
 
 
 def barred_cells() -> NDArray[np.bool_]:
-    """Cells of the grid that boundaries cross, by restitution and angle."""
+    """Return the cells of the grid that boundaries cross, by restitution and angle."""
     plane_axes = GRID["slenderness"], GRID["frequency_ratio"]
 
     def crossed(eta: float, angle: float) -> NDArray[np.bool_]:
@@ -122,7 +122,7 @@ def barred_cells() -> NDArray[np.bool_]:
 
 
 def probes(rounds: int) -> Iterator[Ablation]:
-    """The cubes of a small grid: nodes, probes in cells and between levels."""
+    """Yield the cubes of a small grid: nodes, probes in cells and between slices."""
     barred = barred_cells()
 
     def fill() -> list[xr.Dataset]:
@@ -136,19 +136,21 @@ def probes(rounds: int) -> Iterator[Ablation]:
     between, more_between = (cells_between(call) for call in (fill, everywhere))
     done, more = cells_solved(fill) - nodes - between, cells_solved(everywhere) - nodes - more_between
     kept = int(np.sum(np.isfinite([cube.interpolation_error.values for cube in fill()])))
-    times = alternately("probes", fill, everywhere, rounds)
+    times = measure_both("probes", fill, everywhere, rounds)
     layers = len(ETAS) * len(ANGLES)
     yield Ablation(
         "probes in the cells of a cube", "cells", done, more, *times,
-        note=f"{layers} layers of {cells} cells, {kept} of them with a bound; time of all of it",
+        note=f"{layers} layers of {cells} cells, {kept} of them with a bound; time of the whole cubes",
     )  # fmt: skip
     gaps = (len(ETAS) - 1) * len(ANGLES) + (len(ANGLES) - 1) * len(ETAS)
     everything = gaps * cells * (1 + len(sweep.ELSEWHERE))
-    yield Ablation("between the levels of a cube", "cells", between, everything, note=f"{gaps} gaps, three points")
+    yield Ablation(
+        "between the slices of a cube", "cells", between, everything, note=f"{gaps} intervals, three points each"
+    )
 
 
 def cells_between(fill: Callable[[], Any]) -> int:
-    """Cells solved between the levels of restitution and of angle while cubes are filled."""
+    """Return the cells solved between slices of restitution and of angle while cubes are filled."""
     count = 0
     measure = sweep._Grid.errors_between
 
@@ -164,8 +166,8 @@ def cells_between(fill: Callable[[], Any]) -> int:
 
 
 def precision(side: int, rounds: int) -> Ablation:
-    """Blocks solved a second time, to all digits, as another fate is near."""
-    slenderness, omega = plane(side)
+    """Compare the blocks that are solved again with all digits because another outcome is near."""
+    slenderness, omega = control_plane(side)
     groups = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": RESTITUTION, "alpha": ANGLES[1]}
 
     def ask(tolerance: float | None = 1e-3) -> NDArray[np.float64]:
@@ -176,8 +178,8 @@ def precision(side: int, rounds: int) -> Ablation:
 
     changed = int(np.sum(np.isnan(ask()) != np.isnan(ask(None))))
     done, without = (cells_solved(call) - omega.size for call in (ask, all_again))
-    times = alternately("precision", ask, all_again, rounds)
-    note = "tolerance 1e-3; changes of fate are counted"
+    times = measure_both("precision", ask, all_again, rounds)
+    note = "tolerance 1e-3; changes of the outcome are counted"
     return Ablation(
-        "all digits far from another fate: rigid", "cells solved again", done, without, *times, changed, note
+        "all digits far from another outcome: rigid", "cells solved again", done, without, *times, changed, note
     )

@@ -1,6 +1,7 @@
-"""Motion that is not followed: after the pulse, in chatter, beyond return, and where the first flight is known.
+"""Motion that is not integrated: after the pulse, in chatter, beyond return, and a first flight that is already known.
 
-The block is driven by the package's own flights, one after another, and goes on by request where the solver stops.
+The block is integrated with the flights of the package, one after another, and on request beyond the point where the
+solver stops.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.ablations.ablation import Ablation, alternately
+from benchmarks.ablations.ablation import Ablation, measure_both
 from rocking._numba.cancellation import NEVER
 from rocking._numba.compilation import Record, Vector, entry, kernel
 from rocking.excitation.pulses import get_pulse
@@ -30,19 +31,19 @@ RESTITUTIONS = (0.80, 0.82, 0.84, 0.85, 0.86, 0.88, 0.90, 0.92, 0.94, 0.96, 1.00
 """Those of the reproduction."""
 
 CHATTER, BEYOND, FREE = 1, 2, 4
-"""What can be followed, to be added."""
+"""Flags: what is integrated in addition; they can be added."""
 
-FLIGHTS, FARTHER, IMPACTS, OTHER_FATES = 0, 1, 2, 3
-"""What is counted: flights during the pulse; cuts or Taylor steps beyond return; impacts after the pulse; fates of
-motion followed after the pulse that differ from the one by energy."""
+FLIGHTS, FARTHER, IMPACTS, WRONG_OUTCOMES = 0, 1, 2, 3
+"""Indices of the counts: flights during the pulse; intervals or Taylor steps beyond return; impacts after the pulse;
+outcomes of the motion integrated after the pulse that differ from the outcome by energy."""
 
-FOR_EVER = 1e6
-"""Time after the pulse that no block needs [tau]."""
+LONG_DURATION = 1e6
+"""Time after the pulse that no block exceeds [tau]."""
 
 
 @kernel
-def go_beyond(flight: Record, steps: Record, phase: float) -> int:
-    """Go on from a fall at `phase` to the end of the pulse; the cuts met, or Taylor steps taken."""
+def continue_beyond_return(flight: Record, steps: Record, phase: float) -> int:
+    """Continue from an overturning at `phase` to the end of the pulse; return the number of intervals or steps."""
     found = 0
     if flight.by_arcs == 1:
         for k in range(flight.count + 1):
@@ -64,7 +65,7 @@ def go_beyond(flight: Record, steps: Record, phase: float) -> int:
 
 
 @kernel
-def rock_on(
+def follow_block(
     slenderness: float,
     omega: float,
     eta: float,
@@ -72,11 +73,11 @@ def rock_on(
     flight: Record,
     steps: Record,
     followed: int,
-    landings: Vector,
+    impact_times: Vector,
     stop: Vector,
     counts: Vector,
 ) -> None:
-    """One block as the solver follows it, and farther where `followed` says so."""
+    """Solve one block as the solver does, and integrate farther where `followed` says so."""
     begin(slenderness, omega, alpha, flight)
     going, phase = flight.count > 0, math.inf
     while going:
@@ -92,9 +93,9 @@ def rock_on(
         return
     before_end = phase < flight.end_phase[flight.pieces] * (1.0 - 1e-12)
     if before_end and followed & BEYOND:
-        counts[FARTHER] += go_beyond(flight, steps, phase)
+        counts[FARTHER] += continue_beyond_return(flight, steps, phase)
     if not before_end and followed & FREE:
-        nothing = landings[:0]
+        nothing = impact_times[:0]
         farthest = min(FALLEN, 0.5 * math.pi / alpha) if alpha > 0.0 else FALLEN
         counts[IMPACTS] += rock_freely(
             flight.end_z,
@@ -104,19 +105,19 @@ def rock_on(
             steps,
             eta,
             0.0,
-            FOR_EVER,
+            LONG_DURATION,
             farthest,
             nothing,
             nothing,
             nothing,
-            landings,
+            impact_times,
             stop,
         )
-        counts[OTHER_FATES] += (steps.z0[0] >= farthest) != (flight.outcome > SAFE)
+        counts[WRONG_OUTCOMES] += (steps.z0[0] >= farthest) != (flight.outcome > SAFE)
 
 
 @entry
-def rock_all(
+def follow_blocks(
     slenderness: Vector,
     omega: Vector,
     eta: float,
@@ -124,47 +125,47 @@ def rock_all(
     flight: Record,
     steps: Record,
     followed: int,
-    landings: Vector,
+    impact_times: Vector,
     stop: Vector,
     counts: Vector,
     peaks: Vector,
 ) -> None:
-    """Blocks one after another; `peaks` (cells,) is filled."""
+    """Solve blocks one after another; fills `peaks` (cells,)."""
     for i in range(len(slenderness)):
-        rock_on(slenderness[i], omega[i], eta, alpha, flight, steps, followed, landings, stop, counts)
+        follow_block(slenderness[i], omega[i], eta, alpha, flight, steps, followed, impact_times, stop, counts)
         peaks[i] = flight.peak
 
 
-def plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> tuple[NDArray[np.float64], ...]:
-    """1/a and omega of side x side blocks, ravelled."""
+def control_plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> tuple[NDArray[np.float64], ...]:
+    """Return 1/a and omega of side x side blocks, ravelled."""
     axes = np.meshgrid(np.linspace(lowest, highest, side), np.geomspace(0.5, 12.0, side), indexing="ij")
     return axes[0].ravel(), axes[1].ravel()
 
 
 def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Counts and peaks of blocks of which so much is followed."""
+    """Return counts and peaks of the blocks with the additional motion `what`."""
     flight = prepared(get_pulse(PULSE)).copy()
-    cells, counts = plane(side), np.zeros(4)
+    cells, counts = control_plane(side), np.zeros(4)
     peaks = np.empty(side * side)
-    rock_all(
+    follow_blocks(
         *cells, RESTITUTION, alpha, flight, prepared_steps(flight), what, np.empty(FREE_IMPACTS), NEVER, counts, peaks
     )
     return counts, peaks
 
 
 def motions(side: int, rounds: int) -> Iterator[Ablation]:
-    """Free rocking, chatter and motion beyond return, followed and not."""
+    """Yield free rocking, chatter and motion beyond return, integrated and not."""
     kinds = {
         FREE: ("free rocking after the pulse", "impacts after the pulse", IMPACTS),
         CHATTER: ("chatter", "flights", FLIGHTS),
-        BEYOND: ("motion beyond return", "cuts or Taylor steps", FARTHER),
+        BEYOND: ("motion beyond return", "intervals or Taylor steps", FARTHER),
     }
     for what, (name, unit, key) in kinds.items():
         for kind, alpha in ALPHA.items():
             (done, peaks), (more, peaks_without) = followed(alpha, side, 0), followed(alpha, side, what)
             other = np.sum(~((peaks == peaks_without) | np.isnan(peaks) & np.isnan(peaks_without)))
-            changed = int(other + more[OTHER_FATES])
-            times = alternately(
+            changed = int(other + more[WRONG_OUTCOMES])
+            times = measure_both(
                 f"{name}, {kind}",
                 lambda alpha=alpha: followed(alpha, side, 0),
                 lambda alpha=alpha, what=what: followed(alpha, side, what),
@@ -176,21 +177,21 @@ def motions(side: int, rounds: int) -> Iterator[Ablation]:
 
 
 def no_uplift(side: int, rounds: int) -> Ablation:
-    """Blocks that the ground cannot lift beside blocks that it lifts."""
-    quiet, lifted = plane(side, lowest=1.0, highest=2.0), plane(side)
+    """Compare blocks that the ground cannot uplift with blocks that it uplifts."""
+    quiet, lifted = control_plane(side, lowest=1.0, highest=2.0), control_plane(side)
 
     def ask(cells: tuple[NDArray[np.float64], ...]) -> Any:
         return peak_response(PULSE, slenderness=cells[0], frequency_ratio=cells[1], restitution=RESTITUTION, threads=1)
 
     count = [int(np.sum(np.isfinite(ask(cells).uplift_time))) for cells in (quiet, lifted)]
-    times = alternately("no uplift", lambda: ask(quiet), lambda: ask(lifted), rounds)
-    note = "blocks with 1/a in [1, 2] beside as many with 1/a in [0.02, 0.98]"
+    times = measure_both("no uplift", lambda: ask(quiet), lambda: ask(lifted), rounds)
+    note = "blocks with 1/a in [1, 2], compared with as many with 1/a in [0.02, 0.98]"
     return Ablation("blocks that never uplift: slender", "flights, at least", *count, *times, note=note)
 
 
 def first_flights(side: int, rounds: int) -> Iterator[Ablation]:
-    """Restitutions side by side, along the last axis and along the first."""
-    slenderness, omega = plane(side)
+    """Yield restitutions solved along the last axis, which share first flights, and along the first axis."""
+    slenderness, omega = control_plane(side)
     eta = np.array(RESTITUTIONS)
 
     def ask(alpha: float, *, last: bool) -> Any:
@@ -201,7 +202,7 @@ def first_flights(side: int, rounds: int) -> Iterator[Ablation]:
     for kind, alpha in ALPHA.items():
         first, last = ask(alpha, last=False).peak_rotation.T, ask(alpha, last=True).peak_rotation
         changed = int(np.sum(~((first == last) | np.isnan(first) & np.isnan(last))))
-        times = alternately(
+        times = measure_both(
             f"first flights, {kind}",
             lambda alpha=alpha: ask(alpha, last=True),
             lambda alpha=alpha: ask(alpha, last=False),

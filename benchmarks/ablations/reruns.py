@@ -1,6 +1,6 @@
-"""Jobs of the workflow that need not run again: the smallest configuration is run once, then something changes.
+"""Jobs of the workflow that are not repeated: the smallest configuration runs once, then something is changed.
 
-The project is copied, so that nothing here is touched; what would run again is asked of Snakemake by dry runs.
+The project is copied, so that this checkout is not changed; Snakemake's dry runs list the jobs that would run again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SMOKE = "workflow/config/smoke.yaml"
 
 
 def appended(path: str, text: str = "\n# a change\n") -> Callable[[Path], None]:
-    """Add a line to a file of the project."""
+    """Return a change that appends a line to a file of the project."""
 
     def change(project: Path) -> None:
         with (project / path).open("a") as stream:
@@ -33,7 +33,7 @@ def appended(path: str, text: str = "\n# a change\n") -> Callable[[Path], None]:
 
 
 def replaced(before: str, after: str) -> Callable[[Path], None]:
-    """Change a setting of the configuration, wherever it stands."""
+    """Return a change of a setting of the configuration."""
 
     def change(project: Path) -> None:
         text = (project / SMOKE).read_text()
@@ -61,11 +61,11 @@ CHANGES: dict[str, Callable[[Path], None]] = {
     "rocking/boundary/tracing.py": appended("rocking/boundary/tracing.py"),
     "a kernel: rocking/solver/kernels/chatter.py": appended("rocking/solver/kernels/chatter.py"),
 }
-"""What is changed, from little to much."""
+"""The changes, from few to many repeated jobs."""
 
 
 def snakemake(project: Path, directory: Path, *arguments: str) -> str:
-    """What the workflow of a project says."""
+    """Run the workflow of a project; return its output."""
     command = [
         sys.executable, "-m", "snakemake", "--snakefile", str(project / "Snakefile"), "--directory", str(directory),
         "--configfile", str(project / SMOKE), "--nocolor", *arguments,
@@ -79,14 +79,14 @@ def snakemake(project: Path, directory: Path, *arguments: str) -> str:
 
 
 def jobs(output: str) -> dict[str, int]:
-    """Jobs of each rule in the table of a run, without the target that stands for all."""
+    """Return the number of jobs of each rule in the job table of a run, without the target rule."""
     table = output.partition("Job stats:")[2].partition("total")[0]
     found = re.findall(r"^(\w+) +(\d+)$", table, flags=re.MULTILINE)
     return {rule: int(count) for rule, count in found if rule != "all"}
 
 
 def copied(folder: Path) -> Path:
-    """A copy of what the workflow reads."""
+    """Copy what the workflow reads."""
     project = folder / "project"
     project.mkdir()
     for name in COPIED:
@@ -95,14 +95,14 @@ def copied(folder: Path) -> Path:
             shutil.copytree(source, project / name, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy2(source, project / name)
-    kernels = PROJECT / "rocking/__pycache__"  # else the first job compiles them
+    kernels = PROJECT / "rocking/__pycache__"  # otherwise the first job compiles them
     if kernels.exists():
         shutil.copytree(kernels, project / "rocking/__pycache__")
     return project
 
 
 def reruns(changes: dict[str, Callable[[Path], None]], rounds: int) -> Iterator[Ablation]:
-    """Jobs that run again after each change, of all; the time of a run in which nothing is to be done."""
+    """Yield the repeated jobs after each change, of all; and the time of a run with nothing to do."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         project, directory = copied(folder), folder / "run"

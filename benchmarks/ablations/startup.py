@@ -1,6 +1,6 @@
-"""What a new process does not load: modules of other commands, cubes that nobody asks for.
+"""Work that a new process avoids: modules of other commands, cubes that are not requested.
 
-Each start is a process of its own; its processor time is all that it takes, Python's own start included.
+Each start is a separate process; its processor time includes the start of Python.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ for package in (rocking, rocking_api):
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
 """
-"""All modules of the package and the service, as a package that lists its contents by plain imports would load them."""
+"""All modules of the package and the service, as a package with plain imports would load them."""
 
 COUNT = "\nimport sys; print(len(sys.modules), file=sys.stderr)"
 
@@ -43,8 +43,8 @@ import json, resource, sys, time
 from pathlib import Path
 from rocking.lookup.collection import Atlas
 results, everything = Path(sys.argv[1]), sys.argv[2] == "all"
-question = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
-Atlas(results).response("sine", method="solver", **question)  # loads the kernels, as the service does first
+groups = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
+Atlas(results).response("sine", method="solver", **groups)  # load the kernels, as the service does when it starts
 memory = lambda: int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
 before, start = memory(), time.process_time()
 atlas = Atlas(results)
@@ -52,13 +52,13 @@ if everything:
     for folder in (results / "spectra").iterdir():
         for eta in atlas.levels(folder.name):
             atlas.level(folder.name, eta)
-answer, used = atlas.response("sine", **question)
+response, _ = atlas.response("sine", **groups)
 print(json.dumps({"seconds": time.process_time() - start, "MB": memory() - before, "cubes": len(atlas._cubes)}))
 """
 
 
 def started(code: str, *arguments: str) -> tuple[subprocess.CompletedProcess[str], float]:
-    """A new process that runs some code, and its processor time [s]."""
+    """Run code in a new process; return its result and processor time [s]."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -66,7 +66,7 @@ def started(code: str, *arguments: str) -> tuple[subprocess.CompletedProcess[str
 
 
 def imports(rounds: int) -> Iterator[Ablation]:
-    """Commands as they are, and after an import of everything: modules at the end, and time."""
+    """Yield the commands as they are and after an import of everything: loaded modules, and time."""
     for name, code in STARTS.items():
         times: tuple[list[float], list[float]] = ([], [])
         for k in range(rounds):
@@ -79,15 +79,15 @@ def imports(rounds: int) -> Iterator[Ablation]:
 
 
 def cubes(results: Path, rounds: int) -> Ablation | None:
-    """The first answer of a service from its cubes, one opened or all; None if there are no cubes."""
+    """Compare the first response of a service with one cube and with all cubes opened; None if there are no cubes."""
     if not any(results.glob("spectra/sine/eta-0.85.nc")):
         return None
-    found: dict[str, list[dict[str, Any]]] = {"asked": [], "all": []}
+    found: dict[str, list[dict[str, Any]]] = {"requested": [], "all": []}
     for k in range(rounds):
         for which, rows in found.items():
             rows.append(json.loads(started(CUBES, str(results), which)[0].stdout))
         progress(f"cubes: round {k + 1} of {rounds}")
     one, every = (rows[0] for rows in found.values())
     times = ([row["seconds"] for row in rows] for rows in found.values())
-    note = f"memory {one['MB']:.0f} MB and {every['MB']:.0f} MB, on top of the solver's"
-    return Ablation("cubes that nobody asks for", "cubes opened", one["cubes"], every["cubes"], *times, note=note)
+    note = f"memory {one['MB']:.0f} MB and {every['MB']:.0f} MB, in addition to the solver"
+    return Ablation("cubes that are not requested", "cubes opened", one["cubes"], every["cubes"], *times, note=note)

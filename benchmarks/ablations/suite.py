@@ -1,7 +1,7 @@
-"""Work that is not done, beside the same work done: `python -m benchmarks.ablations.suite`.
+"""Work that the package avoids, compared with doing it: `python -m benchmarks.ablations.suite`.
 
-Counts are exact. Times are processor times, the rounds of both ways alternating; the switch lies here and never in the
-package, which has no way to do what it skips.
+Counts are exact. Times are processor times of alternating rounds. The package has no option to do the avoided work:
+the switches are in these modules.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from benchmarks.ablations.ablation import Ablation
 from benchmarks.measure import progress, save, versions
 
 SIDE, NODES, ROUNDS = 128, 241, 3
-"""Blocks along an axis of the plane; those of the grid on which boundaries are sought, as in the reproduction where
-blocks are not slender."""
+"""Blocks along an axis of the control plane; nodes of the grid on which boundaries are searched, as in the reproduction
+for rigid blocks; rounds."""
 
 
 def of_motion(rounds: int) -> Iterator[Ablation]:
-    """In one block and in many."""
+    """Yield the ablations of the solver."""
     yield from motion.motions(SIDE, rounds)
     yield motion.no_uplift(SIDE, rounds)
     yield from motion.first_flights(SIDE, rounds)
@@ -31,14 +31,14 @@ def of_motion(rounds: int) -> Iterator[Ablation]:
 
 
 def of_grids(rounds: int) -> Iterator[Ablation]:
-    """Of boundaries and of cubes."""
+    """Yield the ablations of boundaries and cubes."""
     yield from grids.tracing(NODES, rounds)
     yield from grids.shared_tracing(NODES, rounds)
     yield from grids.probes(rounds)
 
 
 def of_startup(results: Path, rounds: int) -> Iterator[Ablation]:
-    """Of the commands and the service."""
+    """Yield the ablations of the start of the commands and the service."""
     yield from startup.imports(rounds)
     found = startup.cubes(results, rounds)
     if found is not None:
@@ -46,7 +46,7 @@ def of_startup(results: Path, rounds: int) -> Iterator[Ablation]:
 
 
 def table(record: dict[str, Any]) -> str:
-    """The skips in lines."""
+    """Format the ablations as text."""
     lines = [f"{'':58}{'counted':>24}{'done':>12}{'without':>19}{'s':>9}{'without':>9}{'changed':>9}"]
     for one in record["ablations"]:
         times = [f"{np.median(one[key]):9.3g}" if one[key] else f"{'':9}" for key in ("seconds", "seconds_without")]
@@ -60,7 +60,9 @@ def table(record: dict[str, Any]) -> str:
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=Path("results"), help="of the reproduction, for its cubes")
+    parser.add_argument(
+        "--results", type=Path, default=Path("results"), help="results of the reproduction, for its cubes"
+    )
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/ablations.json"))
     options = parser.parse_args()

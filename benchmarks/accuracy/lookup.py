@@ -1,7 +1,7 @@
-"""Do the cubes keep what they promise? `python -m benchmarks.accuracy.lookup` after `make reproduce`.
+"""Check the error bounds of interpolated responses: `python -m benchmarks.accuracy.lookup` after `make reproduce`.
 
-Random questions over all that the cubes of a pulse span, answered by interpolation and by the solver: the share that
-the cubes answer, wrong fates, errors above the bound that comes with the answer, time of a question.
+Random points over the whole range of the cubes of a pulse are evaluated by interpolation and by the solver. Reported
+are the share that the cubes answer, wrong outcomes, errors above the bound of the response, and the time per point.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from rocking.lookup.open import open_cube
 from rocking.solver.peak_response import peak_response
 
 KINDS = {
-    "on the levels": (False, False),
+    "on slices": (False, False),
     "between restitutions": (True, False),
     "between angles": (False, True),
     "between both": (True, True),
 }
-"""Whether the restitution and the slenderness angle of the questions lie between those of the cubes."""
+"""Whether restitution and slenderness angle of the points lie between those of the cubes."""
 
-PART = 100_000
-"""Questions solved at a time."""
+CHUNK = 100_000
+"""Points solved in one call."""
 
 
-def questions(cube: Cube, count: int, between: tuple[bool, bool], random: np.random.Generator) -> Points:
-    """Random questions, uniform in 1/a, log omega, eta and alpha, or on the levels of the latter two."""
+def random_points(cube: Cube, count: int, between: tuple[bool, bool], random: np.random.Generator) -> Points:
+    """Return random points, uniform in 1/a, log omega, eta and alpha, or at stored values of the latter two."""
     level = cube.level(0)
     assert level is not None
     low, high = np.log(level.frequency_ratio[[0, -1]])
@@ -44,39 +44,42 @@ def questions(cube: Cube, count: int, between: tuple[bool, bool], random: np.ran
     return Points(slenderness, np.exp(random.uniform(low, high, count)), eta, alpha)
 
 
-def judge(cube: Cube, points: Points, tolerance: float) -> dict[str, float]:
-    """What the cubes answer, held against the solver."""
+def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[str, float]:
+    """Compare the responses of the cubes with the solver."""
     start = time.perf_counter()
     known, found = cube.promised(points, tolerance)
     seconds = time.perf_counter() - start
-    asked = points[known]
-    true = peak_response(cube.pulse, **vars(asked))
-    standing = ~found.overturned
-    error = np.abs(found.peak_rotation - true.peak_rotation)[standing]
+    known_points = points[known]
+    exact = peak_response(cube.pulse, **vars(known_points))
+    surviving = ~found.overturned
+    error = np.abs(found.peak_rotation - exact.peak_rotation)[surviving]
     return {
         "answered": float(known.sum()),
-        "wrong_fates": float((found.outcome != true.outcome).sum()),
-        "wrong_about_alpha": float((found.exceeded_alpha != true.exceeded_alpha).sum()),
-        "bounds_broken": float((error > found.error_bound[standing]).sum()),
-        "largest_share_of_bound": float((error / found.error_bound[standing]).max(initial=0.0)),
+        "wrong_outcomes": float((found.outcome != exact.outcome).sum()),
+        "wrong_exceeded_alpha": float((found.exceeded_alpha != exact.exceeded_alpha).sum()),
+        "bounds_broken": float((error > found.error_bound[surviving]).sum()),
+        "largest_share_of_bound": float((error / found.error_bound[surviving]).max(initial=0.0)),
         "seconds": seconds,
     }
 
 
 def measure(folder: Path, count: int, tolerance: float, seed: int) -> dict[str, dict[str, float]]:
-    """All kinds of questions to the cubes of one pulse."""
+    """Evaluate all kinds of points on the cubes of one pulse."""
     cube = open_cube(folder)
     record = {}
     for kind, between in KINDS.items():
         random = np.random.default_rng(seed)
-        parts = [judge(cube, questions(cube, PART, between, random), tolerance) for _ in range(max(1, count // PART))]
+        parts = [
+            compare_with_solver(cube, random_points(cube, CHUNK, between, random), tolerance)
+            for _ in range(max(1, count // CHUNK))
+        ]
         total = {name: sum(part[name] for part in parts) for name in parts[0]}
-        asked = PART * len(parts)
+        total_points = CHUNK * len(parts)
         record[kind] = total | {
-            "questions": asked,
-            "share": total["answered"] / asked,
+            "points": total_points,
+            "share": total["answered"] / total_points,
             "largest_share_of_bound": max(part["largest_share_of_bound"] for part in parts),
-            "microseconds": 1e6 * total["seconds"] / asked,
+            "microseconds": 1e6 * total["seconds"] / total_points,
         }
     return record
 
@@ -85,13 +88,14 @@ def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--spectra", type=Path, default=Path("results/spectra"), help="folder with a folder per pulse")
-    parser.add_argument("--count", type=int, default=1_000_000, help="questions of each kind and tolerance")
+    parser.add_argument("--count", type=int, default=1_000_000, help="points of each kind and tolerance")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/lookup.json"))
     options = parser.parse_args()
     record: dict[str, Any] = {}
     print(
-        f"{'':38}{'share':>8}{'fates':>7}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}   wrong or broken; of the bound"
+        f"{'':38}{'share':>8}{'outc.':>7}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
+        "   errors in outcome, exceeded_alpha and bounds; largest share of a bound"
     )
     for folder in sorted(path for path in options.spectra.iterdir() if path.is_dir()):
         for tolerance in (1e-4, 1e-6):
@@ -99,8 +103,8 @@ def main() -> None:
             record.setdefault(folder.name, {})[str(tolerance)] = found
             for kind, row in found.items():
                 print(
-                    f"{folder.name:10}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}{row['wrong_fates']:7.0f}"
-                    f"{row['wrong_about_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
+                    f"{folder.name:10}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}{row['wrong_outcomes']:7.0f}"
+                    f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
                     f"{row['microseconds']:7.2f}",
                     flush=True,
                 )

@@ -1,1 +1,1 @@
-"""Other integrators under the same event loop, with which the package is compared."""
+"""Other integrators with which the package is compared; all of them use the same event loop."""

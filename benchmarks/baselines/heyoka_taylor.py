@@ -1,8 +1,8 @@
-"""The block under a pulse by heyoka, which compiles Taylor series of the order that a tolerance asks for.
+"""The block under a pulse with heyoka, which compiles Taylor series of the order that a tolerance requires.
 
-heyoka is no dependency of the project; where it cannot be imported the benchmark leaves this peer out. Its events are
-roots of the step's own polynomial, isolated: none can be missed. Each tolerance is an integrator of its own, compiled
-once; the loop over flights and the record of a peak are Python.
+heyoka is not a dependency of the project; the benchmark omits this baseline where it cannot be imported. Its events
+are isolated roots of the polynomial of a step, so that none can be missed. Each tolerance has its own integrator,
+compiled once; the loop over flights and the record of peaks run in Python.
 """
 
 from __future__ import annotations
@@ -15,52 +15,54 @@ import heyoka
 
 from benchmarks.baselines.event_loop import HALF_WINDOW, SINE, Block, acceleration, duration, ground
 
-FALLEN = heyoka.taylor_outcome(-2)
-"""The second of the events that stop the integrator; the first is the impact."""
+OVERTURNED = heyoka.taylor_outcome(-2)
+"""The second of the terminal events; the first is the impact."""
 
 START = 1e-18
-"""Height at which a flight begins: from 0 itself an impact within the first step would not be seen."""
+"""Height at the start of a flight: from 0 itself an impact within the first step would not be found."""
 
 LIFT = 1e-6
-"""Phase [rad] that a block lifting off is moved by hand: z, z' and z'' vanish together, and roots so close to one of
-such multiplicity escape isolation."""
+"""Phase [rad] bridged by a series at uplift.
+
+There z, z' and z'' vanish together, and roots close to one of such multiplicity are not isolated.
+"""
 
 
-def flight(
+def integrate_flight(
     tolerance: float, block: Block, side: float, tau: float, v: float
 ) -> tuple[float, float, float, float, bool]:
-    """One flight, see `one_pulse`."""
-    a, omega, alpha, lean, pulse = block
-    integrator, tops = _integrator(tolerance, pulse, alpha == 0.0)
-    tops.clear()
+    """Integrate one flight, see `event_loop`."""
+    a, omega, alpha, tan_ratio, pulse = block
+    integrator, peaks = _integrator(tolerance, pulse, alpha == 0.0)
+    peaks.clear()
     end = duration(block)
     z = START
     if v == 0.0:
         h = LIFT / omega
-        pull = acceleration(block, side, ground(block, tau + h), 0.0)
-        tau, z, v = tau + h, pull * h * h / 6.0, 0.5 * pull * h
+        outward = acceleration(block, side, ground(block, tau + h), 0.0)
+        tau, z, v = tau + h, outward * h * h / 6.0, 0.5 * outward * h
     integrator.time = tau
     integrator.state[:] = z, v
-    integrator.pars[:] = side * a * lean, omega, 1.0 + a if alpha == 0.0 else alpha
+    integrator.pars[:] = side * a * tan_ratio, omega, 1.0 + a if alpha == 0.0 else alpha
     integrator.reset_cooldowns()
     outcome = integrator.propagate_until(end)[0]
     tau, (z, v) = float(integrator.time), map(float, integrator.state)
     if outcome == heyoka.taylor_outcome.time_limit:
-        return end, z, v, max([z, *tops]), False
-    return tau, z, v, max([z, *tops]), outcome == FALLEN
+        return end, z, v, max([z, *peaks]), False
+    return tau, z, v, max([z, *peaks]), outcome == OVERTURNED
 
 
 @lru_cache
 def _integrator(tolerance: float, pulse: float, slender: bool) -> tuple[Any, list[float]]:
-    """(3.1) or (2.2) in z and z' with its events, and the list into which they write the peaks of z."""
+    """Return the integrator of (3.1) or (2.2) in z and z', and the list to which its events append peaks of z."""
     z, v = heyoka.make_vars("z", "v")
-    push, omega = heyoka.par[0], heyoka.par[1]
+    forcing, omega = heyoka.par[0], heyoka.par[1]
     phase = omega * heyoka.time
     if pulse == SINE:
-        ground = push * heyoka.sin(phase)
+        ground = forcing * heyoka.sin(phase)
     else:
         square = (phase - HALF_WINDOW) ** 2
-        ground = push * (1.0 - 0.5 * square) * heyoka.exp(-0.25 * square)
+        ground = forcing * (1.0 - 0.5 * square) * heyoka.exp(-0.25 * square)
     if slender:
         rate, beyond_return = z - 1.0 - ground, z + v - heyoka.par[2]
     else:
@@ -68,10 +70,10 @@ def _integrator(tolerance: float, pulse: float, slender: bool) -> tuple[Any, lis
         angle = alpha * (1.0 - z)
         rate = -heyoka.sin(angle) / alpha - ground * heyoka.cos(angle)
         beyond_return = alpha * z - 0.5 * math.pi
-    tops: list[float] = []
+    peaks: list[float] = []
 
-    def note(integrator: Any, tau: float, _sign: int) -> None:
-        tops.append(float(integrator.update_d_output(tau)[0]))
+    def append_peak(integrator: Any, tau: float, _sign: int) -> None:
+        peaks.append(float(integrator.update_d_output(tau)[0]))
 
     falling, rising = heyoka.event_direction.negative, heyoka.event_direction.positive
     integrator = heyoka.taylor_adaptive(
@@ -83,6 +85,6 @@ def _integrator(tolerance: float, pulse: float, slender: bool) -> tuple[Any, lis
             heyoka.t_event(z, direction=falling),
             heyoka.t_event(beyond_return, direction=rising),
         ],
-        nt_events=[heyoka.nt_event(v, note, direction=falling)],
+        nt_events=[heyoka.nt_event(v, append_peak, direction=falling)],
     )
-    return integrator, tops
+    return integrator, peaks

@@ -1,7 +1,7 @@
-"""The block under a pulse by the classical Runge-Kutta method with fixed steps, compiled: what most scripts do.
+"""The block under a pulse with the classical Runge-Kutta method and fixed steps, compiled.
 
-Impacts and peaks are found by shortening the step in which they fall, so that they are as accurate as the steps; by
-false position (Illinois), since plain bisection would take most of the time where the steps are few.
+Impacts and peaks are found by shortening the step in which they occur, so that they are as accurate as the steps. The
+search uses false position (Illinois): with few steps, plain bisection would take most of the time.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ from benchmarks.baselines.event_loop import Block, acceleration, beyond_return, 
 
 
 @compiled
-def flight(steps: int, block: Block, side: float, tau: float, v: float) -> tuple[float, float, float, float, bool]:
-    """One flight, see `one_pulse`, with so many steps to the pulse."""
+def integrate_flight(
+    steps: int, block: Block, side: float, tau: float, v: float
+) -> tuple[float, float, float, float, bool]:
+    """Integrate one flight, see `event_loop`, with `steps` steps over the pulse."""
     end = duration(block)
     z, highest = 0.0, 0.0
     while tau < end:
@@ -32,26 +34,26 @@ def flight(steps: int, block: Block, side: float, tau: float, v: float) -> tuple
 
 @compiled
 def crossing(block: Block, side: float, tau: float, z: float, v: float, low: float, high: float, which: int) -> float:
-    """The step after which z (`which` = 0) or z' (1), positive after `low` and not positive after `high`, is zero."""
+    """Return the step at which z (`which` = 0) or z' (1), positive after `low` but not after `high`, is zero."""
     above, below = step(block, side, tau, z, v, low)[which], step(block, side, tau, z, v, high)[which]
-    kept = 0
+    retained_end = 0
     while above > 0.0 > below and high - low > 4e-16 * high:
         x = low + (high - low) * above / (above - below)
         value = step(block, side, tau, z, v, x)[which]
         if value > 0.0:
             low, above = x, value
-            below *= 0.5 if kept == 1 else 1.0
-            kept = 1
+            below *= 0.5 if retained_end == 1 else 1.0
+            retained_end = 1
         else:
             high, below = x, value
-            above *= 0.5 if kept == -1 else 1.0
-            kept = -1
+            above *= 0.5 if retained_end == -1 else 1.0
+            retained_end = -1
     return high
 
 
 @compiled
 def step(block: Block, side: float, tau: float, z: float, v: float, h: float) -> tuple[float, float]:
-    """z and z' after a step h."""
+    """Return z and z' after a step h."""
     half = 0.5 * h
     u = ground(block, tau + half)
     k1 = acceleration(block, side, ground(block, tau), z)

@@ -1,6 +1,6 @@
-"""How long a new process waits for its first answer: `python -m benchmarks.cost.first_call`.
+"""Time of the first response of a new process: `python -m benchmarks.cost.first_call`.
 
-A fresh copy of the package, whose kernels have to be compiled, and then the same copy with the kernels on disk.
+Measured in a fresh copy of the package, whose kernels must be compiled, and again with the kernels cached on disk.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ print(imported - begin, first - imported, time.perf_counter() - first)
 
 
 def seconds() -> dict[str, dict[str, float]]:
-    """To import, to the first and second answer, in a new process: kernels compiled, then from disk."""
+    """Return the times of import, first call and second call in a new process, with kernels compiled and cached [s]."""
     with tempfile.TemporaryDirectory() as folder:
         source = Path(rocking.__file__).parent
         shutil.copytree(source, Path(folder) / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
-        answers = {}
-        for state in ("compiled", "from disk"):
+        measured = {}
+        for state in ("compiled", "cached"):
             done = subprocess.run(
                 [sys.executable, "-c", FIRST_CALL], cwd=folder, capture_output=True, text=True, check=True
             )
             names = ("import", "first_call", "second_call")
-            answers[state] = dict(zip(names, map(float, done.stdout.split()), strict=True))
-    return answers
+            measured[state] = dict(zip(names, map(float, done.stdout.split()), strict=True))
+    return measured
 
 
 def main() -> None:
@@ -49,7 +49,7 @@ def main() -> None:
     out = parser.parse_args().out
     found = seconds()
     save({"seconds": found, "versions": versions("numpy", "numba")}, out)
-    print(f"{'kernels':12}{'import':>10}{'first':>10}{'second':>10}   s to answer one cell")
+    print(f"{'kernels':12}{'import':>10}{'first':>10}{'second':>10}   s for one cell")
     for state, times in found.items():
         print(f"{state:12}" + "".join(f"{value:10.4f}" for value in times.values()))
     print(f"\nwritten to {out}")

@@ -1,9 +1,9 @@
 """Time and memory of 10^3 to 10^8 cells, on one and two threads: `python -m benchmarks.cost.growth`.
 
-The cells are square grids under one sine, restitution 0.85: omega 0.5 to 12 in the logarithm by 1/a 0.02 to 0.85,
-slender blocks and blocks of 20 degrees. Each size is a process of its own, for its peak memory; grids of more than 10^6
-cells are solved in blocks of rows, so that memory stays where it is. The fates are counted: more threads must find the
-same.
+The cells form square grids under one sine, restitution 0.85: omega 0.5 to 12 log-spaced by 1/a 0.02 to 0.85, slender
+blocks and blocks of 20 degrees. Each size runs in its own process, so that its peak memory is known; grids of more than
+10^6 cells are solved in groups of rows, which bounds the memory. The number of overturned blocks is recorded: it must
+not depend on the number of threads.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ SIDES = {"slender": (32, 100, 316, 1000, 3162, 10_000), "rigid": (32, 100, 316, 
 """Nodes along each axis of the grids."""
 
 ALPHA = {"slender": 0.0, "rigid": math.radians(20.0)}
-BLOCK = 1_000_000
-"""Cells solved in one call at most."""
+CHUNK = 1_000_000
+"""Maximum number of cells in one call."""
 
-ENOUGH, MOST = 1.0, 25
-"""A size is solved again until so many seconds or so many times."""
+MIN_TIME, MAX_REPEATS = 1.0, 25
+"""A size is repeated until this time [s] or this number of repeats is reached."""
 
 
 def overturned(kind: str, side: int, threads: int) -> int:
-    """Blocks of a grid that overturn."""
+    """Return the number of blocks of a grid that overturn."""
     slenderness, frequency_ratio = np.linspace(*SLENDERNESS, side), np.geomspace(*FREQUENCY_RATIO, side)
-    rows = max(1, BLOCK // side)
+    rows = max(1, CHUNK // side)
     return sum(
         int(
             np.isnan(
@@ -58,13 +58,13 @@ def overturned(kind: str, side: int, threads: int) -> int:
     )
 
 
-def solved(kind: str, side: int, threads: int) -> dict[str, Any]:
-    """Time of a grid [s] as often as there is time for, and the memory of this process [bytes]."""
-    overturned(kind, 4, threads)  # loads the kernels
+def measure_grid(kind: str, side: int, threads: int) -> dict[str, Any]:
+    """Return the times of a grid [s], repeated while time allows, and the memory of this process [bytes]."""
+    overturned(kind, 4, threads)  # load the kernels
     before = memory()
     wall: list[float] = []
     count = 0
-    while not wall or (sum(wall) < ENOUGH and len(wall) < MOST):
+    while not wall or (sum(wall) < MIN_TIME and len(wall) < MAX_REPEATS):
         start = time.perf_counter()
         count = overturned(kind, side, threads)
         wall.append(time.perf_counter() - start)
@@ -80,12 +80,12 @@ def solved(kind: str, side: int, threads: int) -> dict[str, Any]:
 
 
 def memory() -> int:
-    """Largest resident memory of this process so far [bytes]."""
+    """Return the largest resident memory of this process so far [bytes]."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 def in_new_process(kind: str, side: int, threads: int) -> dict[str, Any]:
-    """`solved` there."""
+    """Call `measure_grid` in a new process."""
     command = [sys.executable, "-m", "benchmarks.cost.growth", "--one", kind, str(side), str(threads)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     found: dict[str, Any] = json.loads(done.stdout)
@@ -93,7 +93,7 @@ def in_new_process(kind: str, side: int, threads: int) -> dict[str, Any]:
 
 
 def measure(largest: int, threads: tuple[int, ...]) -> dict[str, Any]:
-    """All grids of at most so many cells, as one record."""
+    """Measure all grids with at most `largest` cells; return one record."""
     sizes = []
     for kind, sides in SIDES.items():
         for side in (side for side in sides if side * side <= largest):
@@ -104,7 +104,7 @@ def measure(largest: int, threads: tuple[int, ...]) -> dict[str, Any]:
 
 
 def table(record: dict[str, Any]) -> str:
-    """The record in lines."""
+    """Format the record as text."""
     titles = ("cells", "threads", "s", "us a cell", "smallest", "largest", "MB", "overturned")
     lines = [f"{'':9}" + "".join(f"{title:>11}" for title in titles)]
     for one in record["sizes"]:
@@ -127,7 +127,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.one:
         kind, side, threads = options.one
-        print(json.dumps(solved(kind, int(side), int(threads))))
+        print(json.dumps(measure_grid(kind, int(side), int(threads))))
         return
     record = measure(options.largest, tuple(options.threads))
     save(record, options.out)

@@ -1,7 +1,7 @@
-"""Where the time of `make reproduce` goes: `python -m benchmarks.cost.stages`, from what Snakemake noted of each job.
+"""Where the time of `make reproduce` goes, from Snakemake's record of each job: `python -m benchmarks.cost.stages`.
 
-One row for each kind of job: jobs, wall-clock and processor time, and the largest memory of one job. Jobs run side by
-side, and each starts Python and loads the kernels, which is part of its time.
+One row for each kind of job: number of jobs, wall-clock and processor time, largest memory of one job. Jobs run in
+parallel; each starts Python and loads the kernels, which is part of its time.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ KINDS = {
 
 
 def kind_of(job: str) -> str:
-    """What a job does, by its name."""
+    """Return the kind of a job from its name."""
     return next((kind for pattern, kind in KINDS.items() if re.fullmatch(pattern, job)), job)
 
 
 def measure(folder: Path) -> list[dict[str, Any]]:
-    """Rows by kind of job, the longest first."""
+    """Return one row for each kind of job, sorted by decreasing time."""
     rows: dict[str, dict[str, Any]] = {}
     for path in sorted(folder.glob("*.tsv")):
         with path.open(newline="") as stream:
-            (noted,) = csv.DictReader(stream, delimiter="\t")
+            (job_record,) = csv.DictReader(stream, delimiter="\t")
         row = rows.setdefault(
             kind_of(path.stem),
             {"kind": kind_of(path.stem), "jobs": 0, "seconds": 0.0, "processor_seconds": 0.0, "largest_mb": 0.0},
         )
         row["jobs"] += 1
-        row["seconds"] += float(noted["s"])
-        row["processor_seconds"] += number(noted["cpu_time"])
-        row["largest_mb"] = max(row["largest_mb"], number(noted["max_rss"]))
+        row["seconds"] += float(job_record["s"])
+        row["processor_seconds"] += number(job_record["cpu_time"])
+        row["largest_mb"] = max(row["largest_mb"], number(job_record["max_rss"]))
     return sorted(rows.values(), key=lambda row: -row["seconds"])
 
 
 def number(text: str) -> float:
-    """Of a column that Snakemake leaves without a value for the shortest jobs."""
+    """Read a column that Snakemake leaves without a value for very short jobs."""
     try:
         return float(text)
     except ValueError:
@@ -55,7 +55,7 @@ def number(text: str) -> float:
 
 
 def table(rows: list[dict[str, Any]]) -> str:
-    """The rows in lines, with their sum."""
+    """Format the rows and their sum as text."""
     lines = [f"{'':24}{'jobs':>6}{'wall s':>9}{'cpu s':>9}{'MB':>7}"]
     total = {key: sum(row[key] for row in rows) for key in ("jobs", "seconds", "processor_seconds")}
     total |= {"kind": "sum", "largest_mb": max((row["largest_mb"] for row in rows), default=0.0)}
@@ -69,7 +69,7 @@ def table(rows: list[dict[str, Any]]) -> str:
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--logs", type=Path, default=Path("logs/benchmarks"), help="where Snakemake notes its jobs")
+    parser.add_argument("--logs", type=Path, default=Path("logs/benchmarks"), help="folder of Snakemake's job records")
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/stages.json"))
     options = parser.parse_args()
     rows = measure(options.logs)

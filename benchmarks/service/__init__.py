@@ -1,1 +1,1 @@
-"""Load and batches on the HTTP service."""
+"""Load and batch measurements of the HTTP service."""

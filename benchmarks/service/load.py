@@ -1,7 +1,7 @@
-"""Questions to a server from many connections at once: by wrk where it is installed, else by a small client.
+"""Concurrent requests to a server over many connections, by wrk where it is installed, else by a small client.
 
-wrk costs the machine far less than the server does; the client here, Python too, costs as much, so that what it
-measures is a lower bound. Every question is another one: nothing is answered from memory.
+wrk takes far less processor time than the server; the Python client takes as much as the server, so that its result
+is a lower bound. Every request has different parameters, so that no response comes from a cache.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ WINDOW = {"low": 0.05, "width": 0.9, "first": 0.5, "octaves": 3.178}
 
 
 def load(port: int, path: str, connections: int, seconds: float, core: int | None) -> dict[str, Any]:
-    """Ask for `seconds` over `connections`; `path` holds two %.9f, for 1/a and omega.
+    """Send requests for `seconds` over `connections`; `path` holds two %.9f, for 1/a and omega.
 
     Returns
     -------
     dict
-        client, questions per second, median and 99 % quantile of the time of one [ms], errors.
+        client, requests per second, median and 99 % quantile of the response time [ms], errors.
     """
     if shutil.which("wrk"):
         return _wrk(port, path, connections, seconds, core)
-    return asyncio.run(_ask(port, path, connections, seconds))
+    return asyncio.run(_run_client(port, path, connections, seconds))
 
 
 def _wrk(port: int, path: str, connections: int, seconds: float, core: int | None) -> dict[str, Any]:
@@ -63,11 +63,11 @@ def _wrk(port: int, path: str, connections: int, seconds: float, core: int | Non
     return _record("wrk", connections, count, microseconds / 1e6, [median / 1e3, last / 1e3], errors)
 
 
-async def _ask(port: int, path: str, connections: int, seconds: float) -> dict[str, Any]:
+async def _run_client(port: int, path: str, connections: int, seconds: float) -> dict[str, Any]:
     times: list[float] = []
     random = np.random.default_rng(connections)
 
-    def question() -> bytes:
+    def request() -> bytes:
         s = WINDOW["low"] + WINDOW["width"] * random.random()
         w = WINDOW["first"] * np.exp(WINDOW["octaves"] * random.random())
         return f"GET {path % (s, w)} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode()
@@ -75,18 +75,18 @@ async def _ask(port: int, path: str, connections: int, seconds: float) -> dict[s
     began = time.perf_counter()
     until = began + seconds
 
-    errors = sum(await asyncio.gather(*(_converse(port, question, until, times) for _ in range(connections))))
+    errors = sum(await asyncio.gather(*(_request_until(port, request, until, times) for _ in range(connections))))
     took = time.perf_counter() - began
     return _record("asyncio", connections, len(times), took, (1e3 * np.quantile(times, [0.5, 0.99])).tolist(), errors)
 
 
-async def _converse(port: int, question: Callable[[], bytes], until: float, times: list[float]) -> int:
-    """Ask over one connection; the number of answers that were not 200."""
+async def _request_until(port: int, request: Callable[[], bytes], until: float, times: list[float]) -> int:
+    """Send requests over one connection; return the number of responses other than 200."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     errors = 0
     while time.perf_counter() < until:
         began = time.perf_counter()
-        writer.write(question())
+        writer.write(request())
         head = await reader.readuntil(b"\r\n\r\n")
         length = re.search(rb"content-length: (\d+)", head, re.IGNORECASE)
         await reader.readexactly(int(length[1]) if length else 0)

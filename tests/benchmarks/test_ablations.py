@@ -1,4 +1,4 @@
-"""What is not done changes no answer and saves work: counts with and without it, as in `benchmarks.ablations.suite`."""
+"""Avoided work changes no result and saves work: counts with and without it, as in `benchmarks.ablations`."""
 
 from collections.abc import Callable, Iterable
 
@@ -11,19 +11,19 @@ from rocking.boundary.tracing import overturning_boundaries, overturning_boundar
 from rocking.solver import peak_response as solve
 from rocking.solver.peak_response import peak_response
 
-NO_ROUNDS = 0
-"""Counts alone, no time."""
+COUNTS_ONLY = 0
+"""No timing rounds."""
 
 
 @pytest.mark.parametrize(
     ("measure", "least"),
     [
-        (lambda: motion.motions(16, NO_ROUNDS), {"free": 30, "chatter: slender": 1.5, "chatter: rigid": 1.5}),
-        (lambda: motion.first_flights(12, NO_ROUNDS), {"first": 11}),
-        (lambda: [grids.precision(32, NO_ROUNDS)], {"all digits": 10}),
-        (lambda: grids.shared_tracing(31, NO_ROUNDS), {"first": 11, "boundaries": 11}),
-        (lambda: grids.tracing(61, NO_ROUNDS), {"points": 2}),
-        (lambda: grids.probes(NO_ROUNDS), {"probes": 1.5, "between": 3}),
+        (lambda: motion.motions(16, COUNTS_ONLY), {"free": 30, "chatter: slender": 1.5, "chatter: rigid": 1.5}),
+        (lambda: motion.first_flights(12, COUNTS_ONLY), {"first": 11}),
+        (lambda: [grids.precision(32, COUNTS_ONLY)], {"all digits": 10}),
+        (lambda: grids.shared_tracing(31, COUNTS_ONLY), {"first": 11, "boundaries": 11}),
+        (lambda: grids.tracing(61, COUNTS_ONLY), {"points": 2}),
+        (lambda: grids.probes(COUNTS_ONLY), {"probes": 1.5, "between": 3}),
     ],
     ids=["motion", "first flights", "digits", "boundaries", "tracing", "cubes"],
 )
@@ -33,14 +33,14 @@ def test_an_optimisation_saves_work_and_changes_nothing(
     found = [*measure()]
     assert [one.name for one in found if one.changed] == []
     for name, factor in least.items():
-        ours = [one for one in found if one.name.startswith(name)]
-        assert ours, name
-        for one in ours:
+        rows = [one for one in found if one.name.startswith(name)]
+        assert rows, name
+        for one in rows:
             assert one.without >= factor * max(one.done, 1), one
 
 
-def test_a_block_that_cannot_uplift_is_not_followed() -> None:
-    found = motion.no_uplift(8, NO_ROUNDS)
+def test_a_block_that_cannot_uplift_is_not_integrated() -> None:
+    found = motion.no_uplift(8, COUNTS_ONLY)
     assert (found.done, found.without) == (0, 64)
 
 
@@ -55,8 +55,8 @@ def test_boundaries_of_several_restitutions_are_those_of_each() -> None:
 
 
 def test_arcs_are_never_solved_a_second_time() -> None:
-    """Exact as they are; Taylor steps are, where another fate is near."""
-    slenderness, frequency_ratio = motion.plane(32)
+    """Arcs are exact at once; Taylor steps are repeated where another outcome is near."""
+    slenderness, frequency_ratio = motion.control_plane(32)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": 0.85, "tolerance": 1e-3}
     solved = {
         (pulse, alpha): grids.cells_solved(lambda p=pulse, a=alpha: peak_response(p, alpha=a, **groups))
@@ -68,16 +68,16 @@ def test_arcs_are_never_solved_a_second_time() -> None:
     assert max(solved.values()) > slenderness.size
 
 
-def test_counting_sees_every_cell() -> None:
+def test_every_solved_cell_is_counted() -> None:
     cells = {"slenderness": np.linspace(0.1, 0.9, 7)[:, None], "frequency_ratio": np.arange(1.0, 4.0)}
-    ask: Callable[[], object] = lambda: peak_response("sine", restitution=0.9, **cells)  # noqa: E731
-    assert grids.cells_solved(ask) == 21
-    again = grids.with_settings(solve, lambda: grids.cells_solved(ask), CLOSE=np.inf)
+    evaluate: Callable[[], object] = lambda: peak_response("sine", restitution=0.9, **cells)  # noqa: E731
+    assert grids.cells_solved(evaluate) == 21
+    again = grids.with_settings(solve, lambda: grids.cells_solved(evaluate), CLOSE=np.inf)
     assert again == 21
 
 
-def test_the_table_tells_all() -> None:
-    found = [motion.no_uplift(8, 1), *motion.first_flights(4, NO_ROUNDS)]
+def test_the_table_has_a_line_for_each_ablation_and_note() -> None:
+    found = [motion.no_uplift(8, 1), *motion.first_flights(4, COUNTS_ONLY)]
     lines = suite.table({"ablations": [one.record() for one in found]}).splitlines()
     assert len(lines) == 1 + 2 * len(found)
     assert "64" in lines[1]
