@@ -21,7 +21,7 @@ import numpy as np
 from benchmarks.cells import DATA, DIAGRAMS
 from reference.exact_pulses import PULSES
 from reference.exact_response import working_precision
-from reference.make_truth import solved_row
+from reference.make_table import solved_row
 from reference.multiprecision import integrate
 
 RESTITUTION = 0.85

@@ -1,8 +1,8 @@
-"""Write a table of random cells with their multi-precision answers: `python -m reference.make_truth --help`.
+"""Write a table of random cells with their multi-precision responses: `python -m reference.make_table --help`.
 
-The tables in tests/data/truth are made by
-    python -m reference.make_truth tests/data/truth/slender.csv
-    python -m reference.make_truth tests/data/truth/rigid.csv --cells 300 --seed 2 --alpha 1e-8 1.5
+The tables in tests/data/multiprecision are made by
+    python -m reference.make_table tests/data/multiprecision/slender.csv
+    python -m reference.make_table tests/data/multiprecision/rigid.csv --cells 300 --seed 2 --alpha 1e-8 1.5
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from reference.conditioning import integrate_with_conditioning
 from reference.exact_pulses import PULSES
 
 ONSET = (1e-9, 0.2)
-"""1 - slenderness of the cells near the onset of rocking, where blocks chatter."""
+"""1 - slenderness of the cells near the onset of uplift, where blocks chatter."""
 
 
 def random_cells(
@@ -33,10 +33,10 @@ def random_cells(
     slenderness: tuple[float, float],
     onset_share: float,
 ) -> Iterator[dict[str, Any]]:
-    """Cells [-; alpha in rad] with every pulse in turn.
+    """Yield cells [-; alpha in rad] with every pulse in turn.
 
     frequency_ratio and slenderness are uniform in the logarithm, restitution is uniform in [0, 1]; a share of the cells
-    has 1 - slenderness uniform in the logarithm instead; alpha is uniform in the logarithm and uniform by turns.
+    has 1 - slenderness uniform in the logarithm instead; alpha is uniform in the logarithm and uniform in turns.
     """
     random = np.random.default_rng(seed)
 
@@ -57,18 +57,18 @@ def random_cells(
 
 
 def solved_row(cell: dict[str, Any]) -> dict[str, str]:
-    """The cell with its answers: inputs to their last bit, answers to 20 digits, empty where there is none."""
-    truth, condition = integrate_with_conditioning(**cell)
+    """Return the cell with its response: inputs with all digits, results with 20 digits, empty where there is none."""
+    response, condition = integrate_with_conditioning(**cell)
     row = {name: value if isinstance(value, str) else repr(value) for name, value in cell.items()}
     row |= {
-        "outcome": str(truth.outcome),
-        "overturned": str(int(truth.overturned)),
-        "impacts": str(truth.impacts),
-        "chatter": str(int(truth.chatter)),
-        "exceeded_alpha": str(int(truth.exceeded_alpha)),
+        "outcome": str(response.outcome),
+        "overturned": str(int(response.overturned)),
+        "impacts": str(response.impacts),
+        "chatter": str(int(response.chatter)),
+        "exceeded_alpha": str(int(response.exceeded_alpha)),
     }
     for name in ("peak_rotation", "uplift_time", "first_impact_time", "first_impact_velocity", "margin"):
-        row[name] = _digits(getattr(truth, name))
+        row[name] = _digits(getattr(response, name))
     row |= {f"{name}_per_ulp": f"{value:.3e}" for name, value in condition._asdict().items()}
     return row
 

@@ -1,4 +1,4 @@
-"""The multi-precision integration of reference against an independent one, and against itself at higher precision."""
+"""The multi-precision integration compared with an independent one, and with itself at higher precision."""
 
 import csv
 import math
@@ -15,7 +15,7 @@ from reference.polynomial_roots import roots
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference" / "response.csv"
 ROWS = list(csv.DictReader(REFERENCE.read_text().splitlines()))
-# Every pulse, slender and rigid, every fate, no impact to many, and two that chatter (8: slender, 32: slender, longer).
+# Every pulse, slender and rigid, every outcome, no impact to many, and two with chatter (8 and 32, slender).
 SAMPLE = [0, 3, 5, 6, 8, 24, 32, 61, 90, 99, 151, 219, 259, 305, 328, 352, 380, 395]
 
 
@@ -94,7 +94,7 @@ def test_uplift_is_where_the_ground_reaches_the_threshold() -> None:
         assert abs(second - arb.pi() - arb("0.4").asin()) < arb("1e-50")
 
 
-def test_roots_are_all_found_and_a_near_miss_is_not_one() -> None:
+def test_all_roots_are_found_and_a_near_miss_is_not_a_root() -> None:
     with working_precision(192):
         known = [arb("0.1"), arb("0.1000001"), arb("0.5"), arb("0.9")]
         polynomial = [arb(1)]
@@ -107,20 +107,20 @@ def test_roots_are_all_found_and_a_near_miss_is_not_one() -> None:
         assert roots([arb(1) / 9 + grazing, arb(-2) / 3, arb(1)], arb(1)) == []
 
 
-def test_plain_numbers_that_need_no_reference() -> None:
-    """Uplift never; no bounce; no loss; a rectangular pulse at Housner's threshold a = 1/(1 - exp(-p t_1))."""
+def test_cases_with_a_known_result() -> None:
+    """No uplift; restitution 0; restitution 1; the rectangular pulse at Housner's threshold a = 1/(1 - exp(-p t_1))."""
     assert integrate("sine", slenderness=1.5, frequency_ratio=2.0, restitution=0.5).outcome == NO_UPLIFT
     dead = integrate("sine", slenderness=0.95, frequency_ratio=3.0, restitution=0.0)
     assert (dead.outcome, dead.impacts, dead.chatter) == (SAFE, 2, True)
     lossless = {"slenderness": 0.999, "frequency_ratio": 5.0, "restitution": 1.0}
-    assert integrate("sine", **lossless, most_impacts=20).outcome == CAPPED
+    assert integrate("sine", **lossless, max_impacts=20).outcome == CAPPED
     threshold = -math.expm1(-math.pi / 2.0)  # omega = 2
     for slenderness, overturns in ((threshold * (1 - 1e-14), True), (threshold * (1 + 1e-14), False)):
         found = integrate("rectangular", slenderness=slenderness, frequency_ratio=2.0, restitution=0.1)
         assert found.overturned is overturns
 
 
-def test_small_angles_tend_to_the_slender_block() -> None:
+def test_small_angles_converge_to_the_slender_block() -> None:
     """The rigid equation differs from the slender one by O(alpha^2)."""
     cell = {"slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.8}
     with working_precision(192):
