@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.ablations.ablation import Ablation, measure_both
-from rocking._numba.cancellation import NEVER
-from rocking._numba.compilation import Record, Vector, entry, kernel
+from rocking._numba.cancellation import NEVER_STOPPED
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking.excitation.pulses import get_pulse
-from rocking.history.motion import FALLEN, FREE_IMPACTS
-from rocking.history.sampling import INVISIBLE, rock_freely
-from rocking.solver.arcs.flight import state
-from rocking.solver.kernels.event_loop import SAFE, advance, begin
+from rocking.history.motion import MAX_FREE_IMPACTS, MAX_ROTATION
+from rocking.history.sampling import REST_VELOCITY, sample_free_rocking
+from rocking.solver.arcs.flight import state_at
+from rocking.solver.kernels.event_loop import SAFE, advance, init_state
 from rocking.solver.peak_response import peak_response
-from rocking.solver.state import prepared, prepared_steps
+from rocking.solver.state import pulse_state, step_state
 from rocking.solver.taylor.step import take_step
 
 PULSE, RESTITUTION = "sine", 0.85
@@ -46,13 +46,20 @@ def continue_beyond_return(flight: Record, steps: Record, phase: float) -> int:
     """Continue from an overturning at `phase` to the end of the pulse; return the number of intervals or steps."""
     found = 0
     if flight.by_arcs == 1:
-        for k in range(flight.count + 1):
-            if flight.cut_phase[k] > phase:
-                h = (flight.cut_phase[k] - flight.phase) / flight.omega
-                flight.end_z, flight.end_w = state(flight, h, flight.cut_cosine[k], flight.cut_sine[k])
+        for k in range(flight.interval_count + 1):
+            if flight.interval_phase[k] > phase:
+                h = (flight.interval_phase[k] - flight.phase) / flight.omega
+                flight.end_rotation, flight.end_velocity = state_at(
+                    flight, h, flight.interval_cosine[k], flight.interval_sine[k]
+                )
                 found += 1
         return found
-    steps.z0[0], steps.w0[0], steps.lifted[0], steps.phase[0] = flight.end_z, flight.end_w, 0.0, phase
+    steps.z0[0], steps.w0[0], steps.starts_at_uplift[0], steps.phase[0] = (
+        flight.end_rotation,
+        flight.end_velocity,
+        0.0,
+        phase,
+    )
     left = (flight.end_phase[flight.pieces] - phase) / flight.omega
     while left > 0.0:
         steps.limit[0] = left
@@ -73,13 +80,13 @@ def follow_block(
     flight: Record,
     steps: Record,
     followed: int,
-    impact_times: Vector,
-    stop: Vector,
-    counts: Vector,
+    impact_times: FloatArray,
+    stop: FloatArray,
+    counts: FloatArray,
 ) -> None:
     """Solve one block as the solver does, and integrate farther where `followed` says so."""
-    begin(slenderness, omega, alpha, flight)
-    going, phase = flight.count > 0, math.inf
+    init_state(slenderness, omega, alpha, flight)
+    going, phase = flight.interval_count > 0, math.inf
     while going:
         flight.length = math.nan
         going = advance(flight, steps, eta)
@@ -87,7 +94,7 @@ def follow_block(
             break
         counts[FLIGHTS] += 1
         phase = flight.phase + omega * flight.length
-        if followed & CHATTER and flight.at_rest == 1 and flight.next_w > INVISIBLE:
+        if followed & CHATTER and flight.at_rest == 1 and flight.next_w > REST_VELOCITY:
             flight.at_rest = flight.chatter = 0
     if flight.end_sign == 0.0:
         return
@@ -96,10 +103,10 @@ def follow_block(
         counts[FARTHER] += continue_beyond_return(flight, steps, phase)
     if not before_end and followed & FREE:
         nothing = impact_times[:0]
-        farthest = min(FALLEN, 0.5 * math.pi / alpha) if alpha > 0.0 else FALLEN
-        counts[IMPACTS] += rock_freely(
-            flight.end_z,
-            flight.end_w,
+        farthest = min(MAX_ROTATION, 0.5 * math.pi / alpha) if alpha > 0.0 else MAX_ROTATION
+        counts[IMPACTS] += sample_free_rocking(
+            flight.end_rotation,
+            flight.end_velocity,
             flight.end_sign,
             alpha,
             steps,
@@ -118,22 +125,22 @@ def follow_block(
 
 @entry
 def follow_blocks(
-    slenderness: Vector,
-    omega: Vector,
+    slenderness: FloatArray,
+    omega: FloatArray,
     eta: float,
     alpha: float,
     flight: Record,
     steps: Record,
     followed: int,
-    impact_times: Vector,
-    stop: Vector,
-    counts: Vector,
-    peaks: Vector,
+    impact_times: FloatArray,
+    stop: FloatArray,
+    counts: FloatArray,
+    peaks: FloatArray,
 ) -> None:
     """Solve blocks one after another; fills `peaks` (cells,)."""
     for i in range(len(slenderness)):
         follow_block(slenderness[i], omega[i], eta, alpha, flight, steps, followed, impact_times, stop, counts)
-        peaks[i] = flight.peak
+        peaks[i] = flight.peak_rotation
 
 
 def control_plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> tuple[NDArray[np.float64], ...]:
@@ -144,11 +151,20 @@ def control_plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> 
 
 def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return counts and peaks of the blocks with the additional motion `what`."""
-    flight = prepared(get_pulse(PULSE)).copy()
+    flight = pulse_state(get_pulse(PULSE)).copy()
     cells, counts = control_plane(side), np.zeros(4)
     peaks = np.empty(side * side)
     follow_blocks(
-        *cells, RESTITUTION, alpha, flight, prepared_steps(flight), what, np.empty(FREE_IMPACTS), NEVER, counts, peaks
+        *cells,
+        RESTITUTION,
+        alpha,
+        flight,
+        step_state(flight),
+        what,
+        np.empty(MAX_FREE_IMPACTS),
+        NEVER_STOPPED,
+        counts,
+        peaks,
     )
     return counts, peaks
 

@@ -72,7 +72,7 @@ def test_every_solved_cell_is_counted() -> None:
     cells = {"slenderness": np.linspace(0.1, 0.9, 7)[:, None], "frequency_ratio": np.arange(1.0, 4.0)}
     evaluate: Callable[[], object] = lambda: peak_response("sine", restitution=0.9, **cells)  # noqa: E731
     assert grids.cells_solved(evaluate) == 21
-    again = grids.with_settings(solve, lambda: grids.cells_solved(evaluate), CLOSE=np.inf)
+    again = grids.with_settings(solve, lambda: grids.cells_solved(evaluate), NEAR_BOUNDARY_MARGIN=np.inf)
     assert again == 21
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from rocking._numba.cancellation import StopFlag
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import LookupOptions, alpha_of, checked
 
 
 def ask(
-    atlas: Atlas,
+    atlas: CubeCollection,
     options: LookupOptions,
     *,
     slenderness: ArrayLike,
@@ -26,7 +26,7 @@ def ask(
     Raises
     ------
     InvalidArgumentError, DatasetError
-        As `Atlas.response`, and beyond the border of the service.
+        As `CubeCollection.response`, and beyond the border of the service.
     """
     return atlas.response(
         options.pulse,

@@ -8,7 +8,7 @@ import numpy as np
 from fastapi import Response
 
 from rocking._numba.cancellation import StopFlag
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import ask
 from rocking_api.http.batch_body import Batch
@@ -20,13 +20,13 @@ PIECE = 50_000
 """Points between two looks at the clock [-]: some hundredths of a second."""
 
 
-def answer_batch(atlas: Atlas, batch: Batch, stop: StopFlag) -> tuple[BoundedResponse, tuple[str, ...]]:
+def answer_batch(atlas: CubeCollection, batch: Batch, stop: StopFlag) -> tuple[BoundedResponse, tuple[str, ...]]:
     """Responses of all points, and the sha256 of each data set that gave some of them.
 
     Raises
     ------
     InvalidArgumentError, DatasetError
-        As `Atlas.response`.
+        As `CubeCollection.response`.
     StoppedError
         If `stop` was set.
     """
