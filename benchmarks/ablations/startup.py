@@ -41,19 +41,19 @@ COUNT = "\nimport sys; print(len(sys.modules), file=sys.stderr)"
 CUBES = """
 import json, resource, sys, time
 from pathlib import Path
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 results, everything = Path(sys.argv[1]), sys.argv[2] == "all"
 groups = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
-Atlas(results).response("sine", method="solver", **groups)  # load the kernels, as the service does when it starts
+CubeCollection(results).response("sine", method="solver", **groups)  # load the kernels, as the service does when it starts
 memory = lambda: int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
 before, start = memory(), time.process_time()
-atlas = Atlas(results)
+cubes = CubeCollection(results)
 if everything:
     for folder in (results / "spectra").iterdir():
-        for eta in atlas.levels(folder.name):
-            atlas.level(folder.name, eta)
-response, _ = atlas.response("sine", **groups)
-print(json.dumps({"seconds": time.process_time() - start, "MB": memory() - before, "cubes": len(atlas._cubes)}))
+        for eta in cubes.levels(folder.name):
+            cubes.level(folder.name, eta)
+response, _ = cubes.response("sine", **groups)
+print(json.dumps({"seconds": time.process_time() - start, "MB": memory() - before, "cubes": len(cubes._cubes)}))
 """
 
 
