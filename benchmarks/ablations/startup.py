@@ -44,7 +44,7 @@ from pathlib import Path
 from rocking.lookup.collection import CubeCollection
 results, everything = Path(sys.argv[1]), sys.argv[2] == "all"
 groups = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
-CubeCollection(results).response("sine", method="solver", **groups)  # load the kernels, as the service does when it starts
+CubeCollection(results).response("sine", method="solver", **groups)  # load the kernels
 memory = lambda: int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
 before, start = memory(), time.process_time()
 cubes = CubeCollection(results)

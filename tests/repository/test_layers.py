@@ -8,8 +8,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 
-# From the top down: folders below the root, or single modules of `rocking`. A folder may import itself and whatever
-# stands in a later row; folders in one row do not import each other.
+# From the top down: folders below the root, or single modules of `rocking`. A folder may import itself and folders of
+# later rows; folders in one row do not import each other.
 LAYERS = (
     ("tests",),
     ("stress",),
@@ -30,13 +30,13 @@ SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as i
 
 
 def folder_of(path: Path) -> str | None:
-    """The entry of `LAYERS` that holds a file, None for a file outside of all of them."""
+    """Return the entry of `LAYERS` that holds a file, None for a file outside of all of them."""
     place = path.relative_to(ROOT).with_suffix("").as_posix()
     return next((folder for folder in LAYER_OF if place == folder or place.startswith(folder + "/")), None)
 
 
 def imported_files(path: Path) -> Iterator[Path]:
-    """Files of the project that a file imports, at any depth of its code."""
+    """Yield the files of the project that a file imports, at any depth of its code."""
     for node in ast.walk(ast.parse(path.read_text())):
         names = []
         if isinstance(node, ast.Import):
@@ -57,8 +57,8 @@ NAMES = [path.relative_to(ROOT).as_posix() for path in MODULES]
 
 
 def test_every_module_of_the_package_has_a_layer() -> None:
-    ours = [*(ROOT / "rocking").rglob("*.py"), *(ROOT / "api").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")]
-    assert {path for path in ours if folder_of(path) is None} == {ROOT / "rocking/__init__.py"}
+    paths = [*(ROOT / "rocking").rglob("*.py"), *(ROOT / "api").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")]
+    assert {path for path in paths if folder_of(path) is None} == {ROOT / "rocking/__init__.py"}
 
 
 @pytest.mark.parametrize("path", MODULES, ids=NAMES)
@@ -74,7 +74,7 @@ def test_imports_point_to_own_folder_or_lower_layers(path: Path) -> None:
             assert own == other or LAYER_OF[own] < LAYER_OF[other], f"{path} imports {file}"
 
 
-def test_no_circle_between_modules() -> None:
+def test_no_circular_imports() -> None:
     edges = {path: set(imported_files(path)) - {path} for path in MODULES}
     while leaves := [path for path, targets in edges.items() if not targets & edges.keys()]:
         for leaf in leaves:
