@@ -80,17 +80,23 @@ def test_every_command_has_a_test() -> None:
 
 @pytest.mark.parametrize(
     ("target", "program"),
-    [("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"), ("test", "pytest"), ("serve", "rocking serve")],
+    [
+        ("environment", ":"),
+        ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
+        ("test", "pytest"),
+        ("serve", "rocking serve"),
+    ],
 )
 def test_make_targets_of_the_readme(target: str, program: str) -> None:
     assert ["make", target] in MAKE
-    assert len(MAKE) == 3
+    assert len(MAKE) == 4
     assert recipe(target).startswith(program)
 
 
 @pytest.mark.parametrize("command", ROCKING, ids=" ".join)
 def test_command_line(command: list[str]) -> None:
-    subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, check=True)
+    done = subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert f"`{done.stdout.splitlines()[0]}`" in README
 
 
 def test_first_python_block(capsys: pytest.CaptureFixture[str]) -> None:
