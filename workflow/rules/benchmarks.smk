@@ -1,6 +1,5 @@
-# Run time against error, cost against size, error against bytes: `snakemake bench`, or `make bench`. A job is one command
-# of `benchmarks`, and one runs at a time, with the machine to itself: what it prints stays in its log, its progress on
-# the screen.
+# The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
+# measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
 TIMED = ["tolerance", "growth", "grid-size", "first-call", "service", "ablations", "stages"]
 
@@ -19,7 +18,7 @@ rule work_precision:
     threads: workflow.cores
     params:
         code=benchmark_code("cost/work_precision"),
-        peers=installed_peers,
+        baselines=installed_baselines,
     message:
         "Run time against error, {wildcards.diagram}"
     shell:
@@ -59,7 +58,7 @@ rule tolerance:
     params:
         code=benchmark_code("accuracy/tolerance"),
     message:
-        "Error against the tolerance asked for"
+        "Error against the requested tolerance"
     shell:
         "python -m benchmarks.accuracy.tolerance --out {output.record} >{log}"
 
@@ -76,7 +75,7 @@ rule growth:
     params:
         code=benchmark_code("cost/growth"),
     message:
-        "Cost as the work grows"
+        "Cost against the number of cells"
     shell:
         "python -m benchmarks.cost.growth --out {output.record} >{log}"
 
@@ -111,7 +110,7 @@ rule first_call:
     params:
         code=benchmark_code("cost/first_call"),
     message:
-        "The first answer of a new process"
+        "First response of a new process"
     shell:
         "python -m benchmarks.cost.first_call --out {output.record} >{log}"
 
@@ -129,7 +128,7 @@ rule service:
     params:
         code=benchmark_code("service/performance"),
     message:
-        "Requests to the service"
+        "Load on the service"
     shell:
         "python -m benchmarks.service.performance --out {output.record} >{log}"
 
@@ -147,7 +146,7 @@ rule ablations:
     params:
         code=benchmark_code("ablations/suite"),
     message:
-        "Work that is not done"
+        "Ablations"
     shell:
         "python -m benchmarks.ablations.suite --out {output.record} >{log}"
 
@@ -164,7 +163,7 @@ rule stages:
     params:
         code=benchmark_code("cost/stages"),
     message:
-        "Where the time of the reproduction goes"
+        "Time of the stages of the reproduction"
     shell:
         "python -m benchmarks.cost.stages --out {output.record} >{log}"
 

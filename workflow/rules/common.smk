@@ -61,12 +61,12 @@ def provenance(rule_name, scripts, settings, products):
 
 
 def benchmark_code(*names):
-    """Digest of benchmarks and of all that they import, found when a job asks for it."""
+    """Digest of benchmarks and of all that they import, computed when a job needs it."""
     return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
 
 
-def installed_peers(wildcards):
-    """Versions of the optional integrators: another one is another measurement."""
+def installed_baselines(wildcards):
+    """Versions of the optional integrators: a measurement is repeated when one changes."""
     from benchmarks.measure import versions
     from benchmarks.baselines.methods import OPTIONAL
 
