@@ -130,8 +130,8 @@ class EdgeFamily:
         responses = [self._at(cell, s) for s in points]
         for (left, one), (right, other) in pairwise(zip(points, responses, strict=True)):
             if self.kind.key(one) != self.kind.key(other):
-                edge, *beside = self._bisect(cell, left, right)
-                if CAPPED not in {response.outcome for response in beside} and self.kind.confirm(*beside):
+                edge, *sides = self._bisect(cell, left, right)
+                if CAPPED not in {response.outcome for response in sides} and self.kind.confirm(*sides):
                     return edge
         return None
 

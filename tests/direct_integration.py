@@ -66,7 +66,7 @@ def integrate(
         motion.impact_times.append(tau)
         motion.impact_velocities.append(state[1])
         if len(motion.impact_times) > most_impacts:
-            raise RuntimeError("more impacts than asked for")
+            raise RuntimeError("more impacts than most_impacts")
         state = np.array([0.0, restitution * state[1]])  # (2.3)
         side = np.sign(state[1])
     motion.rotation, motion.velocity = state

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.lookup.cube import Cube, Points
+from rocking.lookup.cube import Cube
 from rocking.lookup.open import open_cube
+from rocking.lookup.points import Points
 from rocking.solver.peak_response import peak_response
 
 KINDS = {

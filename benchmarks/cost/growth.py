@@ -133,7 +133,7 @@ def main() -> None:
     save(record, options.out)
     draw(record, [options.out.with_suffix(f".{kind}") for kind in ("png", "svg")])
     print(table(record))
-    print(f"\nwritten to {options.out}, with figures beside it")
+    print(f"\nwritten to {options.out}, and figures with the same name")
 
 
 if __name__ == "__main__":
