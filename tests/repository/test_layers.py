@@ -1,12 +1,14 @@
 """Layers, read from the import statements: a module imports from its own folder and from lower layers only."""
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "architecture.md").read_text()
 
 # From the top down: folders below the root, or single modules of `rocking`. A folder may import itself and folders of
 # later rows; folders in one row do not import each other.
@@ -54,6 +56,40 @@ def imported_files(path: Path) -> Iterator[Path]:
 
 MODULES = sorted(path for path in ROOT.rglob("*.py") if folder_of(path) is not None and "__pycache__" not in path.parts)
 NAMES = [path.relative_to(ROOT).as_posix() for path in MODULES]
+
+
+def documented_folders() -> list[str]:
+    """Return the folders of the table of layers in docs/architecture.md, from the top down."""
+    table = PAGE.split("| layer |")[1].split("\n\n")[0].splitlines()[2:]
+    return [
+        name.rstrip("/").removesuffix(".py") for row in table for name in re.findall(r"`([^`]+)`", row.split("|")[2])
+    ]
+
+
+def documented_tree() -> set[str]:
+    """Return the folders of the tree in docs/architecture.md."""
+    found, parents = set(), [""]
+    for line in PAGE.split("```text\n")[1].split("```")[0].splitlines():
+        name = line.split()[0].rstrip("/")
+        depth = (len(line) - len(line.lstrip())) // 2
+        parents[depth + 1 :] = [f"{parents[depth]}{name}/"]
+        found.add(parents[-1].rstrip("/"))
+    return found
+
+
+def test_the_documented_layers_are_those_of_this_test() -> None:
+    folders = documented_folders()
+    assert set(folders) == LAYER_OF.keys()
+    assert [LAYER_OF[folder] for folder in folders] == sorted(LAYER_OF.values())
+
+
+def test_the_documented_tree_is_the_real_one() -> None:
+    packages = {path.parent for top in ("rocking", "api") for path in (ROOT / top).rglob("__init__.py")}
+    grouped = {path.parent for path in (ROOT / "benchmarks").rglob("__init__.py")}
+    workflow = {path for path in (ROOT / "workflow").iterdir() if path.is_dir() and path.name != "__pycache__"}
+    real = {path.relative_to(ROOT).as_posix() for path in packages | grouped | workflow}
+    plain = {"api", "api/rocking_api/static", "workflow", "reference", "stress", "tests", "docs"}
+    assert documented_tree() == real | plain
 
 
 def test_every_module_of_the_package_has_a_layer() -> None:
