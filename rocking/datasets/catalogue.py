@@ -172,6 +172,10 @@ class VersionCache(Generic[K, V]):
     def __init__(self) -> None:
         self._entries: dict[K, tuple[Path, FileVersion, V]] = {}
 
+    def __len__(self) -> int:
+        """Number of values that are kept."""
+        return len(self._entries)
+
     def current(self, key: K) -> V | None:
         """The value of a key if the file at its path has not changed since; None otherwise."""
         entry = self._entries.get(key)

@@ -125,6 +125,20 @@ def test_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Path,
     assert content(folder) == before
 
 
+def test_temporary_files_of_jobs_lie_in_the_folder_of_the_run_and_are_deleted_by_the_next_run(tmp_path: Path) -> None:
+    job = "import tempfile; print(tempfile.mkstemp()[1])"
+    (tmp_path / "Snakefile").write_text(f"rule all:\n    shell: {f'{sys.executable} -c {job!r}'!r}\n")
+    command = [sys.executable, "-m", "workflow.run", "--cores", "1", "--quiet", "all", "--directory", tmp_path / "run"]
+    environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
+    found = []
+    for _ in range(2):
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        found.append(Path(done.stdout.strip()))
+        assert [*(tmp_path / "run/.snakemake/tmp").iterdir()] == found[-1:]
+    assert found[0] != found[1]
+
+
 @pytest.fixture
 def holder(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     """A process that holds a folder."""

@@ -61,13 +61,13 @@ def provenance(rule_name, scripts, settings, products):
 
 
 def benchmark_code(*names):
-    """Digest of benchmarks and of all files that they import, computed when a job needs it."""
+    """Digest of benchmarks and of all that they import, computed when a job needs it."""
     return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
 
 
-def installed_peers(wildcards):
-    """Versions of the optional integrators, on which the measurements depend."""
+def installed_baselines(wildcards):
+    """Versions of the optional integrators: a measurement is repeated when one changes."""
     from benchmarks.measure import versions
-    from benchmarks.methods import OPTIONAL
+    from benchmarks.baselines.methods import OPTIONAL
 
     return versions(*OPTIONAL)
