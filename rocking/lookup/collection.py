@@ -165,7 +165,7 @@ class CubeCollection:
         """
         get_pulse(pulse)
         cube = self.cube(pulse, method)
-        answer = cube.response(
+        result = cube.response(
             slenderness=slenderness,
             frequency_ratio=frequency_ratio,
             restitution=restitution,
@@ -175,10 +175,10 @@ class CubeCollection:
             stop=stop,
         )
         eta = np.asarray(restitution, dtype=np.float64)
-        rocked = (answer.source == "cube") & (answer.outcome != Outcome.NO_UPLIFT)
-        served = np.broadcast_to(eta, rocked.shape)[rocked] if eta.ndim else eta.reshape(1)
-        used = [cube.slice_at(k) for k in cube.used(served)] if rocked.any() else []
-        return answer, tuple(one.sha256 for one in used if one is not None)
+        rocked = (result.source == "cube") & (result.outcome != Outcome.NO_UPLIFT)
+        interpolated = np.broadcast_to(eta, rocked.shape)[rocked] if eta.ndim else eta.reshape(1)
+        used = [cube.slice_at(k) for k in cube.used(interpolated)] if rocked.any() else []
+        return result, tuple(one.sha256 for one in used if one is not None)
 
     def problem(self, name: str) -> str | None:
         """Description of the problem of a data set; None if it is intact.

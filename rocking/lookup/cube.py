@@ -111,20 +111,20 @@ class Cube:
                 raise InvalidArgumentError("restitution", None, "a number: there are several cubes")
             restitution = self.restitutions[0]
         points, shape = Points.of(slenderness, frequency_ratio, restitution, alpha)
-        answer = BoundedResponse.empty(points.slenderness.shape)
+        result = BoundedResponse.empty(points.slenderness.shape)
         if method == "cube":
-            answer.source[...] = "cube"
+            result.source[...] = "cube"
         rocks = points.slenderness < 1.0
         left = np.flatnonzero(rocks)
         if method != "solver":
             known, part = self.interpolate(points[left], limit)
-            answer.put(left[known], part)
+            result.put(left[known], part)
             left = left[~known]
         if left.size:
             if method == "cube":
                 self._refuse(points[left[:1]], limit)
-            answer.put(left, _solve(self.pulse, points[left], stop))
-        return answer.reshape(shape)
+            result.put(left, _solve(self.pulse, points[left], stop))
+        return result.reshape(shape)
 
     def used(self, restitution: Array) -> list[int]:
         """Indices of the cubes needed for some restitutions: first those at or below one of them, then the others."""

@@ -45,7 +45,7 @@ def path(contents, tmp_path):
 
 
 @pytest.fixture
-def atlas(path):
+def cubes(path):
     return CubeCollection(path.parents[2])
 
 
@@ -64,16 +64,16 @@ def sha256(content):
 
 
 @pytest.mark.parametrize("change", [written, replaced])
-def test_changed_content_of_equal_size_and_time_is_detected(atlas, path, contents, change):
+def test_changed_content_of_equal_size_and_time_is_detected(cubes, path, contents, change):
     times = path.stat().st_atime_ns, path.stat().st_mtime_ns
-    answers, versions = [], []
+    sources, versions = [], []
     for content in (*contents, contents[0]):
         change(path, content)
         os.utime(path, ns=times)
-        answer, version = atlas.response("sine", **POINT)
-        answers.append(str(answer.source))
-        versions.append((*version, atlas.catalogue.product(NAME).sha256))
-    assert answers == ["cube"] * 3
+        response, version = cubes.response("sine", **POINT)
+        sources.append(str(response.source))
+        versions.append((*version, cubes.catalogue.product(NAME).sha256))
+    assert sources == ["cube"] * 3
     assert versions == [(sha256(content),) * 2 for content in (*contents, contents[0])]
 
 
@@ -101,23 +101,23 @@ def test_file_that_changes_while_it_is_read_is_refused(path, monkeypatch):
             file.content()
 
 
-def test_response_names_the_version_it_was_read_from(atlas, path, contents, monkeypatch):
+def test_response_names_the_version_it_was_read_from(cubes, path, contents, monkeypatch):
     respond = rocking.lookup.cube.Cube.response
 
     def replacing(*args, **kwargs):
-        answer = respond(*args, **kwargs)
+        response = respond(*args, **kwargs)
         replaced(path, contents[1])
-        return answer
+        return response
 
     monkeypatch.setattr(rocking.lookup.cube.Cube, "response", replacing)
-    assert atlas.response("sine", **POINT)[1] == (sha256(contents[0]),)
+    assert cubes.response("sine", **POINT)[1] == (sha256(contents[0]),)
 
 
-def test_cube_whose_file_changed_is_not_open(atlas, path, contents):
-    atlas.response("sine", **POINT)
-    assert atlas.is_open("sine", 0.85)
+def test_cube_whose_file_changed_is_not_open(cubes, path, contents):
+    cubes.response("sine", **POINT)
+    assert cubes.is_open("sine", 0.85)
     replaced(path, contents[1])
-    assert not atlas.is_open("sine", 0.85)
+    assert not cubes.is_open("sine", 0.85)
 
 
 def loop(path, _):
@@ -153,28 +153,28 @@ UNREADABLE = [loop, folder, pipe, link_to_nothing, forbidden]
 
 
 @pytest.mark.parametrize("make", UNREADABLE)
-def test_unreadable_file_is_reported_and_the_solver_is_used(atlas, path, monkeypatch, make):
+def test_unreadable_file_is_reported_and_the_solver_is_used(cubes, path, monkeypatch, make):
     path.unlink()
     make(path, monkeypatch)
-    assert atlas.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
+    assert cubes.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
     with pytest.raises(DatasetError, match="cannot be read"):
-        atlas.catalogue.product(NAME)
-    problem = atlas.problems()[NAME]
+        cubes.catalogue.product(NAME)
+    problem = cubes.problems()[NAME]
     assert problem.startswith(f"{NAME}: cannot be read: ")
     assert str(path.parents[2]) not in problem
-    answer, versions = atlas.response("sine", **POINT)
-    assert (str(answer.source), versions) == ("solver", ())
+    response, versions = cubes.response("sine", **POINT)
+    assert (str(response.source), versions) == ("solver", ())
     with pytest.raises(DatasetError, match="cannot be read"):
-        atlas.response("sine", **POINT, method="cube")
+        cubes.response("sine", **POINT, method="cube")
 
 
-def test_file_is_read_once_it_becomes_readable(atlas, path, contents):
+def test_file_is_read_once_it_becomes_readable(cubes, path, contents):
     path.unlink()
     path.symlink_to(path)
-    assert str(atlas.response("sine", **POINT)[0].source) == "solver"
+    assert str(cubes.response("sine", **POINT)[0].source) == "solver"
     replaced(path, contents[0])
-    assert str(atlas.response("sine", **POINT)[0].source) == "cube"
-    assert NAME not in atlas.problems()
+    assert str(cubes.response("sine", **POINT)[0].source) == "cube"
+    assert NAME not in cubes.problems()
 
 
 def folder_loop(folder, _):
@@ -194,28 +194,28 @@ def folder_forbidden(folder, monkeypatch):
 
 
 @pytest.mark.parametrize("make", [folder_loop, folder_forbidden])
-def test_unreadable_folder_is_reported_and_the_solver_is_used(atlas, path, monkeypatch, make):
+def test_unreadable_folder_is_reported_and_the_solver_is_used(cubes, path, monkeypatch, make):
     path.unlink()
     path.parent.rmdir()
     make(path.parent, monkeypatch)
-    assert atlas.catalogue.names() == ["spectra/cosine/eta-0.90"]
-    assert atlas.problems()["spectra/sine"].startswith("cannot be read: ")
-    assert str(atlas.response("sine", **POINT)[0].source) == "solver"
+    assert cubes.catalogue.names() == ["spectra/cosine/eta-0.90"]
+    assert cubes.problems()["spectra/sine"].startswith("cannot be read: ")
+    assert str(cubes.response("sine", **POINT)[0].source) == "solver"
 
 
-def test_links_to_parent_folders_are_followed_once(atlas, path):
+def test_links_to_parent_folders_are_followed_once(cubes, path):
     (path.parent / "around").symlink_to(path.parents[2])
-    assert atlas.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
-    assert "spectra/sine/around" not in atlas.problems()
+    assert cubes.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
+    assert "spectra/sine/around" not in cubes.problems()
 
 
 @pytest.mark.parametrize(
     "name",
     ["a" * 256, "spectra/" + "a" * 256, "a/" * 2500 + "b", f"{NAME}.nc/x", "spectra/sine/eta-0.99", "x", "../x/y", ""],
 )
-def test_unknown_names_raise(atlas, name):
+def test_unknown_names_raise(cubes, name):
     with pytest.raises(UnknownDatasetError):
-        atlas.catalogue.product(name)
+        cubes.catalogue.product(name)
 
 
 def test_reading_a_cube_opens_its_file_once(path, monkeypatch):
