@@ -1,4 +1,4 @@
-"""Claims of section 3 on the overturning curves: each closed form against curves traced with the solver."""
+"""Claims of section 3 on the overturning curves: closed forms compared with curves traced with the solver."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rocking.solver.peak_response import peak_response
 from workflow.claims.claim import FAILS, IN_RANGE, Claim, verdict
 
 AGREEMENT = 1e-9
-"""Difference in 1/a up to which a traced and a closed-form boundary count as the same curve [-]."""
+"""Difference in 1/a up to which a traced and a closed-form boundary are considered the same curve [-]."""
 
 
 def exact_curves(boundaries: Sequence[xr.Dataset]) -> list[Claim]:

@@ -18,20 +18,20 @@ ANGLES = (5, 10, 15, 20, 30)
 """Slenderness angles compared with the slender limit [deg]."""
 
 TIP_ANGLES = (0, 5, 10, 15, 20)
-"""Slenderness angles at which the tip of the loop is found [deg]; at 30 it has left practice under the sine."""
+"""Slenderness angles at which the tip of the overturning region is determined [deg]."""
 
 SMALL = 0.05
-"""Relative change that counts as small [-]; the paper gives no number."""
+"""Relative change that is considered small [-]; the paper gives no number."""
 
 BEFORE_TIP = {"sine": (1.0, 2.0, 3.0, 4.0), "cosine": (1.0, 1.5, 2.0, 2.5)}
-"""Frequency ratios well before the tip of the loop inside which blocks overturn after impacts [-]."""
+"""Frequency ratios well before the tip of the region of overturning after impacts [-]."""
 
 BEYOND = {"sine": (5.0, 6.0, 8.0), "cosine": (3.0, 4.0, 5.0)}
 """Frequency ratios around the tip and beyond it [-]."""
 
 
 def collapse(figure: xr.Dataset) -> list[Claim]:
-    """Figure 9: thresholds of two blocks, each integrated with its own dimensions, on one curve."""
+    """Figure 9: thresholds of two blocks, each integrated in SI units, on one curve."""
     above = figure.threshold_overturns_above.values
     as_stated = (figure.threshold_falls_above.values == above) & (figure.threshold_falls_below.values == 1 - above)
     sizes = " and ".join(f"{R:g}" for R in figure.half_diagonal.values)
@@ -51,7 +51,7 @@ def collapse(figure: xr.Dataset) -> list[Claim]:
 
 
 def dependence_on_alpha(restitution: float) -> list[Claim]:
-    """Thresholds and tips of figure 10 against those of the slender limit."""
+    """Thresholds and tips of figure 10 compared with those of the slender limit."""
     before = {pulse: _changes(pulse, BEFORE_TIP[pulse], restitution) for pulse in BEFORE_TIP}
     beyond = {pulse: _changes(pulse, BEYOND[pulse], restitution) for pulse in BEYOND}
     small = all(found[angle] < SMALL for found in before.values() for angle in ANGLES if angle <= 15)
@@ -160,12 +160,12 @@ def _differences(angle: float, restitution: float) -> Iterator[float]:
 
 
 def uplift(restitution: float) -> list[Claim]:
-    """What starts the rocking of a block that is not slender."""
+    """Condition of uplift of a block that is not slender."""
     angles = np.radians(np.arange(1, 81))
     step = 1e-12
 
     def lifts(acceleration: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether (2.2) turns a block at rest off its corner, a pulse to the right: about O, theta < 0."""
+        """Whether a block at rest uplifts by (2.2), for a pulse to the right: about O, theta < 0."""
         return np.sin(angles) - acceleration * np.cos(angles) < 0
 
     exact = ~lifts(np.tan(angles) * (1 - step)) & lifts(np.tan(angles) * (1 + step))
@@ -189,7 +189,7 @@ def uplift(restitution: float) -> list[Claim]:
 
 
 def expanded_equation() -> list[Claim]:
-    """The second line of (5.1) against (2.2)."""
+    """The second line of (5.1) compared with (2.2)."""
     alpha, theta, u = 0.3, -0.1, 0.2
     exact = np.sin(alpha + theta) - u * np.cos(alpha + theta)  # (2.2), theta < 0
 

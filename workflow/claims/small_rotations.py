@@ -1,4 +1,4 @@
-"""Claims of section 6: how nearly blocks of any slenderness are one in the groups of (6.1), and where it ends."""
+"""Claims of section 6: accuracy and limits of the groups of (6.1) for blocks of any slenderness."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _spreads(pulse: str, restitution: float) -> tuple[dict[str, Floats], NDArray
 
 
 def practical_similarity(pulses: Sequence[str], restitution: float) -> list[Claim]:
-    """(6.1) for g tan(alpha)/a_g from 0.5 to 1, and below, against (4.11)."""
+    """(6.1) for g tan(alpha)/a_g from 0.5 to 1, and below, compared with (4.11)."""
     rows, numbers = [], {}
     within, closer = {}, {}
     others = []
@@ -112,7 +112,7 @@ def _closer_below(pulse: str, limit: float, restitution: float) -> float:
 
 
 def larger_slenderness(pulses: Sequence[str], restitution: float) -> list[Claim]:
-    """Whether (6.1) works better as g tan(alpha)/a_g grows (figure 13), and as rotations are small (figure 10)."""
+    """Whether (6.1) is more accurate for large g tan(alpha)/a_g (figure 13) and for small rotations (figure 10)."""
     medians: dict[str, list[float]] = {}
     by_rotation: dict[str, list[float]] = {}
     sizes = ((0.0, 0.2), (0.2, 0.5), (0.5, 1.0))
@@ -186,7 +186,7 @@ def histories(figures: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def pure_rocking(pulses: Sequence[str], restitution: float) -> list[Claim]:
-    """Whether pure rocking itself is in doubt for angles beyond those of figure 11."""
+    """Whether pure rocking is doubtful for angles beyond those of figure 11."""
     angles = (10, 20, 30, 40)
     found = {angle: [one for pulse in pulses for one in _contacts(pulse, angle, restitution)] for angle in angles}
     doubtful = {

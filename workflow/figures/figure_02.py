@@ -1,4 +1,4 @@
-"""Figure 2: the sequences of stages a block can go through under one sine, and a history of each way to overturn."""
+"""Figure 2: the response sequences of a block under one sine, and a history of each way of overturning."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SAMPLES = 451
 
 
 def data(*, pulse: str, restitution: float, cases: Mapping[str, Mapping[str, Any]]) -> xr.Dataset:
-    """Two histories of each case: amplitudes on either side of one at which the block begins to overturn.
+    """Two histories of each case: amplitudes on either side of an overturning threshold.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ def main(
     histories : sequence of paths
         Plotted data of figures 11 and 12.
     restitution : sequence
-        eta [-] at which the closed forms are compared among themselves.
+        eta [-] at which the closed forms are compared with each other.
     table, text : path
         Outputs.
     provenance : mapping
