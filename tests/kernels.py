@@ -17,7 +17,7 @@ if precompile.is_missing():
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
-    """The record of a block at rest before the pulse."""
+    """Return the record of a block at rest before the pulse."""
     flight = pulse_state(get_pulse(pulse) if isinstance(pulse, str) else pulse).copy()
     init_state(slenderness, omega, alpha, flight)
     return flight
@@ -31,7 +31,7 @@ def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, a
 
 
 def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
-    """The record, at the start of a flight after an impact at `phase`."""
+    """Return the record at the start of a flight after an impact at `phase`."""
     set_angles(flight, phase, flight["cosine0"], flight["sine0"])
     flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
     assert start_flight(flight)

@@ -19,9 +19,8 @@ from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.excitation.shapes import MAX_SINUSOIDS
 from rocking.history import sampling
-from rocking.interpolation import selection as stencil_choice
+from rocking.interpolation import kernel as lookup_kernel
 from rocking.interpolation import stencils as interpolation
-from rocking.lookup import kernel as lookup_kernel
 from rocking.lookup.open import open_cube
 from rocking.solver import peak_response as solve
 from rocking.solver.arcs.arc import cosh_minus_one_and_sinh
@@ -39,8 +38,8 @@ ENTRIES = (
         sampling.sample_arcs,
         sampling.sample_free_rocking,
     ),
-    *(interpolation.lagrange_weight, lookup_kernel.interpolate_many),
-    *(stencil_choice.choose_stencils, stencil_choice.interpolate_cells),
+    *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
+    lookup_kernel.interpolate_many,
 )
 
 

@@ -56,7 +56,7 @@ def reference() -> tuple[Table, rocking.Response]:
 
 @pytest.fixture(scope="module")
 def truth() -> tuple[Table, rocking.Response]:
-    table = Table(DATA / "truth" / "slender.csv")
+    table = Table(DATA / "multiprecision" / "slender.csv")
     return table, table.solved()
 
 

@@ -48,7 +48,7 @@ def reference() -> Table:
 
 @pytest.fixture(scope="module")
 def truth() -> Table:
-    return Table(DATA / "truth" / "rigid.csv")
+    return Table(DATA / "multiprecision" / "rigid.csv")
 
 
 def test_reference_outcomes(reference):
