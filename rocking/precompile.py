@@ -38,8 +38,8 @@ def load_kernels() -> None:
     time_history("sine", **block, samples=2)
     time_history("sine", **block, alpha=0.3, samples=2)
     axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}
-    levels = [slice_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
-    cube = Cube("sine", np.array([level.restitution for level in levels]), levels.__getitem__)
+    slices = [slice_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
+    cube = Cube("sine", np.array([one.restitution for one in slices]), slices.__getitem__)
     cube.response(**block)
 
 

@@ -5,19 +5,19 @@ The record of a job is one of its outputs, so a job without its record is run ag
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
+
+from rocking.datasets.checksum import sha256_of_file
 
 FOLDER = Path("results/.records")
 
 
 def digest(path: Path) -> dict[str, Any]:
     """Size [bytes] and sha256 of a file."""
-    with path.open("rb") as file:
-        return {"sha256": hashlib.file_digest(file, "sha256").hexdigest(), "size": path.stat().st_size}
+    return {"sha256": sha256_of_file(path), "size": path.stat().st_size}
 
 
 def write_record(record: Path, products: Iterable[Path]) -> None:

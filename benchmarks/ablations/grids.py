@@ -129,12 +129,12 @@ def probes(rounds: int) -> Iterator[Ablation]:
         return list(sweep.spectra(PULSE, restitution=ETAS, alpha=ANGLES, barred=barred, threads=1, **GRID))
 
     def everywhere() -> list[xr.Dataset]:
-        return with_settings(sweep, fill, REFINE_TOL=-1.0, LEVEL_TOL=-1.0, MAX_ERROR=math.inf)
+        return with_settings(sweep, fill, REFINE_TOL=-1.0, MAX_ERROR=math.inf)
 
     cells = (GRID["slenderness"].size - 1) * (GRID["frequency_ratio"].size - 1)
     nodes = GRID["slenderness"].size * GRID["frequency_ratio"].size * len(ETAS) * len(ANGLES)
-    between, more_between = (cells_between(call) for call in (fill, everywhere))
-    done, more = cells_solved(fill) - nodes - between, cells_solved(everywhere) - nodes - more_between
+    between = cells_between(fill)
+    done, more = cells_solved(fill) - nodes - between, cells_solved(everywhere) - nodes - cells_between(everywhere)
     kept = int(np.sum(np.isfinite([cube.interpolation_error.values for cube in fill()])))
     times = measure_both("probes", fill, everywhere, rounds)
     layers = len(ETAS) * len(ANGLES)
@@ -142,11 +142,8 @@ def probes(rounds: int) -> Iterator[Ablation]:
         "probes in the cells of a cube", "cells", done, more, *times,
         note=f"{layers} layers of {cells} cells, {kept} of them with a bound; time of the whole cubes",
     )  # fmt: skip
-    gaps = (len(ETAS) - 1) * len(ANGLES) + (len(ANGLES) - 1) * len(ETAS)
-    everything = gaps * cells * (1 + len(sweep.EXTRA_PROBES))
-    yield Ablation(
-        "between the slices of a cube", "cells", between, everything, note=f"{gaps} intervals, three points each"
-    )
+    intervals = (len(ETAS) - 1) * len(ANGLES) + (len(ANGLES) - 1) * len(ETAS)
+    yield Ablation("between the slices of a cube", "cells", between, intervals * cells, note=f"{intervals} intervals")
 
 
 def cells_between(fill: Callable[[], Any]) -> int:

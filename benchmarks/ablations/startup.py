@@ -50,8 +50,8 @@ before, start = memory(), time.process_time()
 cubes = CubeCollection(results)
 if everything:
     for folder in (results / "spectra").iterdir():
-        for eta in cubes.levels(folder.name):
-            cubes.level(folder.name, eta)
+        for eta in cubes.restitutions(folder.name):
+            cubes.slice_at(folder.name, eta)
 response, _ = cubes.response("sine", **groups)
 print(json.dumps({"seconds": time.process_time() - start, "MB": memory() - before, "cubes": len(cubes._cubes)}))
 """

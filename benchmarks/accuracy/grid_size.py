@@ -118,7 +118,7 @@ def quantiles(error: NDArray[np.float64]) -> dict[str, float]:
 def compare_interpolations(path: Path, points: Points, exact: NDArray[np.float64]) -> dict[str, Any]:
     """Compare both interpolations on one cube with the solver."""
     cube = open_cube(path)
-    known, answer = cube.promised(points, math.inf)
+    known, answer = cube.interpolate(points, math.inf)
     package = np.full(exact.size, np.nan)
     package[known] = answer.peak_rotation
     bound = np.where(np.isnan(answer.peak_rotation), 0.0, answer.error_bound)

@@ -33,22 +33,22 @@ CHUNK = 100_000
 
 def random_points(cube: Cube, count: int, between: tuple[bool, bool], random: np.random.Generator) -> Points:
     """Return random points, uniform in 1/a, log omega, eta and alpha, or at stored values of the latter two."""
-    level = cube.level(0)
-    assert level is not None
-    low, high = np.log(level.frequency_ratio[[0, -1]])
-    levels = (cube.restitutions, level.alpha)
+    first = cube.slice_at(0)
+    assert first is not None
+    low, high = np.log(first.frequency_ratio[[0, -1]])
+    levels = (cube.restitutions, first.alpha)
     eta, alpha = (
         random.uniform(values[0], values[-1], count) if free else random.choice(values, count)
         for values, free in zip(levels, between, strict=True)
     )
-    slenderness = random.uniform(level.slenderness[0], level.slenderness[-1], count)
+    slenderness = random.uniform(first.slenderness[0], first.slenderness[-1], count)
     return Points(slenderness, np.exp(random.uniform(low, high, count)), eta, alpha)
 
 
 def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[str, float]:
     """Compare the responses of the cubes with the solver."""
     start = time.perf_counter()
-    known, found = cube.promised(points, tolerance)
+    known, found = cube.interpolate(points, tolerance)
     seconds = time.perf_counter() - start
     known_points = points[known]
     exact = peak_response(cube.pulse, **vars(known_points))

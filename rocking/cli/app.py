@@ -1,6 +1,6 @@
-"""The `rocking` command: questions in groups or in units, answers as text, JSON or CSV, and the service.
+"""The `rocking` command: parameters as groups or with units, output as text, JSON or CSV, and the service.
 
-Only signatures stand here. The work is imported inside the commands, so that `rocking --help` does not wait for the
+This module holds the signatures only. The commands import what they need, so that `rocking --help` does not load the
 solver, the data sets and the unit registry.
 """
 
@@ -9,6 +9,8 @@ from __future__ import annotations
 from typing import Annotated
 
 import typer
+
+from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 app = typer.Typer(
     help="Rocking of free-standing rigid blocks under pulse ground motion.",
@@ -21,14 +23,17 @@ _GROUPS = "In groups"
 _UNITS = "With units"
 
 Pulse = Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
-Slenderness = Annotated[float | None, typer.Option(help="g tan(alpha)/a_g = 1/a.", rich_help_panel=_GROUPS)]
-FrequencyRatio = Annotated[float | None, typer.Option(help="omega_g/p.", rich_help_panel=_GROUPS)]
+Slenderness = Annotated[float | None, typer.Option(help=f"{SLENDERNESS.help}.", rich_help_panel=_GROUPS)]
+FrequencyRatio = Annotated[float | None, typer.Option(help=f"{FREQUENCY_RATIO.help}.", rich_help_panel=_GROUPS)]
 Restitution = Annotated[
-    str, typer.Option(help="Coefficient eta in [0, 1]; housner for a block with units: (2.4), 0 where negative.")
+    str,
+    typer.Option(
+        help=f"{RESTITUTION.help}, {RESTITUTION.interval}; housner for a block with units: (2.4), 0 where negative."
+    ),
 ]
 Alpha = Annotated[
     str | None,
-    typer.Option(help="Slenderness angle, such as '20 deg'; absent: the slender limit.", rich_help_panel=_GROUPS),
+    typer.Option(help=f"{ALPHA.help}, such as '20 deg'.", rich_help_panel=_GROUPS),
 ]
 HalfWidth = Annotated[str | None, typer.Option(help="b, such as 0.2m.", rich_help_panel=_UNITS)]
 HalfHeight = Annotated[str | None, typer.Option(help="h, such as '80 cm'.", rich_help_panel=_UNITS)]
@@ -36,8 +41,8 @@ PeakAcceleration = Annotated[str | None, typer.Option(help="a_g, such as '4 m/s^
 PulsePeriod = Annotated[str | None, typer.Option(help="T_p, such as 0.5s.", rich_help_panel=_UNITS)]
 FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
 FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
-Json = Annotated[bool, typer.Option("--json", help="Answer as JSON.")]
-Csv = Annotated[bool, typer.Option("--csv", help="Answer as CSV.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Csv = Annotated[bool, typer.Option("--csv", help="Print CSV.")]
 
 
 @app.command()
@@ -54,15 +59,15 @@ def response(
     json: Json = False,
     csv: Csv = False,
 ) -> None:
-    """Fate and peak rotation of one block, by the solver."""
+    """Outcome and peak rotation of one block, by the solver."""
     from rocking.cli import arguments, output
 
     with arguments.option_errors():
-        question = arguments.read_params(
+        params = arguments.read_params(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        output.response(question, output.output_format(json=json, csv=csv))
+        output.response(params, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -88,18 +93,18 @@ def history(
     from rocking.cli import arguments, output
 
     with arguments.option_errors():
-        question = arguments.read_params(
+        params = arguments.read_params(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        output.history(question, duration, samples, contact, output.output_format(json=json, csv=csv))
+        output.history(params, duration, samples, contact, output.output_format(json=json, csv=csv))
 
 
 @app.command()
 def spectrum(
     pulse: Pulse,
-    slenderness: Annotated[float, typer.Option(help="g tan(alpha)/a_g = 1/a.")],
-    restitution: Annotated[float, typer.Option(help="Coefficient eta in [0, 1].")],
+    slenderness: Annotated[float, typer.Option(help=f"{SLENDERNESS.help}.")],
+    restitution: Annotated[float, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}.")],
     alpha: Alpha = None,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
@@ -112,27 +117,27 @@ def spectrum(
 
     with arguments.option_errors():
         window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
-        question = arguments.read_params(pulse, str(restitution), slenderness, window[0], alpha)
-        output.spectrum(question, window, points, output.output_format(json=json, csv=csv))
+        params = arguments.read_params(pulse, str(restitution), slenderness, window[0], alpha)
+        output.spectrum(params, window, points, output.output_format(json=json, csv=csv))
 
 
 @app.command()
 def boundary(
     pulse: Pulse,
-    restitution: Annotated[float, typer.Option(help="Coefficient eta in [0, 1].")],
+    restitution: Annotated[float, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}.")],
     alpha: Alpha = None,
     frequency_ratio_min: FrequencyRatioMin = 0.2,
     frequency_ratio_max: FrequencyRatioMax = 15.0,
     json: Json = False,
     csv: Csv = False,
 ) -> None:
-    """The curves that separate standing from falling, traced."""
+    """Overturning boundary curves, traced with the solver."""
     from rocking.cli import arguments, output
 
     with arguments.option_errors():
         window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
-        question = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
-        output.boundary(question, window, output.output_format(json=json, csv=csv))
+        params = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
+        output.boundary(params, window, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -144,7 +149,7 @@ def serve(
         typer.Option(help="Folder that the workflow filled; ROCKING_RESULTS, or results.", show_default=False),
     ] = None,
 ) -> None:
-    """Answer over HTTP until interrupted; the routes are described under /docs."""
+    """Run the HTTP service until interrupted; the routes are described under /docs."""
     from importlib.metadata import entry_points
 
     (entry,) = entry_points(group="rocking.commands", name="serve")

@@ -1,4 +1,4 @@
-"""Questions to cubes: checked, broadcast and flattened."""
+"""Points of the control space: checked, broadcast and flattened arguments."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.compilation import contiguous_array
-from rocking.errors import broadcast, in_range
+from rocking.model.checks import broadcast_groups
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Points:
-    """Questions, all arrays (points,); alpha in rad, 0 the slender limit."""
+    """Arguments of a response, all float arrays (points,); alpha in rad, 0 for the slender limit."""
 
     slenderness: Array
     frequency_ratio: Array
@@ -27,21 +27,14 @@ class Points:
     def of(
         cls, slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
     ) -> tuple[Points, tuple[int, ...]]:
-        """Checked, broadcast and flattened; and the broadcast shape.
+        """The checked, broadcast and flattened arguments, and the broadcast shape.
 
         Raises
         ------
         InvalidArgumentError
             If a value is out of range, or the shapes do not broadcast.
         """
-        groups = (
-            in_range("slenderness", slenderness, 0.0, np.inf, closed="neither"),
-            in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither"),
-            in_range("restitution", restitution, 0.0, 1.0),
-            in_range("alpha", 0.0 if alpha is None else alpha, 0.0, np.pi / 2, closed="left", unit="rad"),
-        )
-        given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
-        full = broadcast(given | {"restitution": restitution, "alpha": alpha}, groups)
+        full = broadcast_groups(slenderness, frequency_ratio, restitution, alpha)
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
     def __getitem__(self, index: Any) -> Points:

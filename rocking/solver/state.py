@@ -15,6 +15,7 @@ from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+from rocking.model.fields import RECORD_FIELDS, record_dtype
 
 SERIES_LENGTH = 17
 """Length of the series of the slender arcs: degree 16 in z."""
@@ -187,22 +188,8 @@ def _steps_layout() -> np.dtype[np.void]:
 STEP_STATE = _steps_layout()
 """Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
 
-RESPONSE_RECORD = np.dtype(
-    [
-        ("outcome", np.int8),
-        ("chatter", np.bool_),
-        ("impacts", np.int32),
-        ("peak_mode", np.int32),
-        ("peak_rotation", np.float64),
-        ("uplift_time", np.float64),
-        ("first_impact_time", np.float64),
-        ("first_impact_velocity", np.float64),
-        ("end_rotation", np.float64),  # state at the end of the pulse
-        ("end_velocity", np.float64),
-    ],
-    align=True,
-)
-"""What is answered about a cell, as in `response.Response`."""
+RESPONSE_RECORD = record_dtype(RECORD_FIELDS)
+"""Record of the response of a cell."""
 
 
 def has_one_sinusoid(pulse: AbstractPulse) -> bool:

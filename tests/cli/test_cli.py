@@ -1,4 +1,4 @@
-"""The `rocking` command: the solver's answers, three forms, units at the edge, refusals that name the option."""
+"""The `rocking` command: responses in three formats, units, and errors that name the option."""
 
 import csv
 import io
@@ -43,7 +43,7 @@ def read_csv(text):
     return list(csv.DictReader(io.StringIO(text)))
 
 
-def test_response_in_three_forms():
+def test_response_in_three_formats():
     truth = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
     answer = json.loads(run("response", *GROUPS, "--json"))
     assert answer["peak_rotation"] == truth.peak_rotation
@@ -57,7 +57,7 @@ def test_response_in_three_forms():
     assert f"{float(truth.peak_rotation):.9g}" in text
 
 
-def test_response_with_units_is_the_rigid_block_s():
+def test_response_with_units_is_that_of_the_rigid_block():
     block = Block(0.2, 0.8)
     truth = peak_response(
         "sine",
@@ -83,7 +83,7 @@ def test_overturned_has_no_peak():
     assert run("response", *falls).startswith("overturns")
 
 
-def test_the_first_line_says_where_the_rocking_model_does_not_apply():
+def test_first_line_states_that_the_rocking_model_does_not_apply():
     cube = ["--half-width", "0.5m", "--half-height", "0.5m", "--peak-acceleration", "1.5g"]
     asked = ["response", *UNITS[:2], *cube, *UNITS[8:]]
     first = run(*asked).splitlines()[0]
@@ -95,12 +95,12 @@ def test_the_first_line_says_where_the_rocking_model_does_not_apply():
     assert "rocking_model_applies" not in json.loads(run("response", *GROUPS, "--json"))  # the slender limit
 
 
-def test_a_squat_block_does_not_uplift():
+def test_squat_block_does_not_uplift():
     squat = ["--half-width", "1m", "--half-height", "0.5m", "--peak-acceleration", "1.2g"]
     assert run("response", *UNITS[:2], *squat, *UNITS[8:]).startswith("never uplifts")
 
 
-def test_history_in_three_forms():
+def test_history_in_three_formats():
     truth = time_history("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, samples=20)
     answer = json.loads(run("history", *GROUPS, "--samples", "20", "--json"))
     assert answer["rotation"] == truth["rotation"].values.tolist()
@@ -136,7 +136,7 @@ def test_history_with_the_reactions_of_the_ground():
     assert "friction_demand" not in run(*asked[:-1])
 
 
-def test_a_block_that_lifts_off_says_so_and_has_no_friction_demand():
+def test_block_that_lifts_off_has_no_friction_demand():
     asked = [*GROUPS[:3], "0.2", "--frequency-ratio", "12", "--restitution", "0.85", "--alpha", "45 deg", "--contact"]
     answer = json.loads(run("history", *asked, "--json"))
     assert answer["lifts_off"]
@@ -147,7 +147,7 @@ def test_a_block_that_lifts_off_says_so_and_has_no_friction_demand():
     assert "the block lifts off" in run("history", *asked)
 
 
-def test_spectrum_in_three_forms():
+def test_spectrum_in_three_formats():
     arguments = ["--pulse", "cosine", "--slenderness", "0.6", "--restitution", "0.9", "--points", "7"]
     truth = peak_response("cosine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 7), restitution=0.9)
     answer = json.loads(run("spectrum", *arguments, "--json"))
@@ -159,7 +159,7 @@ def test_spectrum_in_three_forms():
     assert run("spectrum", *arguments).splitlines()[-1].endswith(str(truth.impacts[-1]))
 
 
-def test_boundary_in_three_forms():
+def test_boundary_in_three_formats():
     arguments = ["--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-min", "2"]
     truth = overturning_boundary("sine", restitution=0.85, frequency_ratio=(2.0, 15.0))
     answer = json.loads(run("boundary", *arguments, "--json"))
@@ -193,7 +193,7 @@ def test_boundary_in_three_forms():
         (["serve", "--results", ""], "--results", "the name of a folder"),
     ],
 )  # fmt: skip
-def test_refusals_name_the_option_and_what_is_allowed(arguments, option, allowed):
+def test_errors_name_the_option_and_the_allowed_values(arguments, option, allowed):
     output = refused(*arguments)
     assert option in output
     assert allowed in output
@@ -224,7 +224,7 @@ def test_units(text, unit, value):
     [("0.3", "m"), ("0.3 s", "m"), ("0.3 furlongs per", "m"), ("", "m"), ("m", "s"), ("nan m", "m"), ("0.3", "rad"),
      ("1 kg", "m/s**2"), ("__import__('os')", "m"), ("1e999 m", "m")],
 )  # fmt: skip
-def test_quantities_that_mean_nothing(text, unit):
+def test_invalid_quantities_are_refused(text, unit):
     with pytest.raises(InvalidArgumentError) as caught:
         si_value("x", text, unit)
     assert caught.value.parameter == "x"

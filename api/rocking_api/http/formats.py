@@ -7,7 +7,6 @@ plain Python (scipy), so that no hostile bytes reach the HDF5 library.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import isfinite
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +16,7 @@ from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from rocking.datasets.csv_text import csv_rows, csv_text
 from rocking.datasets.cube import MODEL_RESULT, VARIABLES
 from rocking.solver.bounded_response import BoundedResponse
 
@@ -55,8 +55,7 @@ def json_response(answer: BaseModel) -> Response:
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
     """Columns as CSV: numbers to the last digit, nothing where there is no number, true and false."""
-    text = ",".join(columns) + "\n" + _rows(columns)
-    return Response(text, media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+    return Response(csv_text(columns), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
 
 def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
@@ -65,7 +64,7 @@ def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
     def parts() -> Iterator[str]:
         yield ",".join(columns) + "\n"
         for start in range(0, len(next(iter(columns.values()))), ROWS):
-            yield _rows({key: column[start : start + ROWS].tolist() for key, column in columns.items()})
+            yield csv_rows({key: column[start : start + ROWS].tolist() for key, column in columns.items()})
 
     return StreamingResponse(parts(), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
@@ -90,20 +89,6 @@ def dataset_of(
     variables["error_bound"] = ("point", found.error_bound, bound)
     variables["source"] = ("point", (found.source == "solver").astype("i1"), {"long_name": "source", **source})
     return xr.Dataset(variables, attrs={"Conventions": "CF-1.11", **attributes})
-
-
-def _rows(columns: Mapping[str, list[Any]]) -> str:
-    """Lines of CSV; no cell of ours needs quotes."""
-    lines = zip(*(map(_cell, column) for column in columns.values()), strict=True)
-    return "".join(f"{','.join(line)}\n" for line in lines)
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, float):
-        return repr(value) if isfinite(value) else ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return str(value)
 
 
 def _file(name: str) -> dict[str, str]:
