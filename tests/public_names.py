@@ -26,7 +26,7 @@ from rocking.cli.app import app as command_line
 
 STORED = Path(__file__).parent / "data" / "public_names.json"
 
-UNDOCUMENTED = {"rocking.Cube": {"level", "promised", "used"}}
+UNDOCUMENTED = {"rocking.Cube": {"level", "slice_at", "promised", "interpolate", "used"}}
 """Members without a leading underscore that the documentation does not name."""
 
 Names = dict[str, list[str]]
@@ -53,9 +53,9 @@ def members(name: str, value: Any) -> Names:
         return {name: [f"{member.name} = {member.value}" for member in value]}
     if inspect.isclass(value):
         public = {key for key in dir(value) if not key.startswith("_")} - set(dir(Exception))
-        public -= UNDOCUMENTED.get(name, set())
         if dataclasses.is_dataclass(value):
             public |= {field.name for field in dataclasses.fields(value)}
+        public -= UNDOCUMENTED.get(name, set())
         found = {name: sorted(public)}
         for key in public:
             if inspect.isfunction(getattr(value, key, None)):
