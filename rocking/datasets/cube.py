@@ -35,7 +35,7 @@ from xarray.backends import NetCDF4DataStore
 
 from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_number
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking.model.fields import CUBE_FIELDS
 
@@ -140,16 +140,17 @@ def build_spectrum_dataset(
 
 def scalar_coordinates(pulse: str, restitution: float) -> dict[str, xr.Variable]:
     """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set."""
+    number, names = pulse_number(pulse), PULSE_NAMES if pulse in PULSE_NAMES else (*PULSE_NAMES, "registered")
     flags = {
-        "flag_values": np.arange(len(PULSE_NAMES), dtype=np.int8),
-        "flag_meanings": " ".join(PULSE_NAMES),
+        "flag_values": np.array([pulse_number(name) for name in names], dtype=np.int8),
+        "flag_meanings": " ".join(names),
     }
     shape = get_pulse(pulse)
     window = np.array([shape.start, shape.end])
     named = {"long_name": "shape of the ground acceleration", "units": "1", "pulse_name": pulse, "phase_window": window}
     eta = {"long_name": "coefficient of restitution eta", "units": "1", "equation": "2.3"}
     return {
-        "pulse": xr.Variable((), np.int8(PULSE_NAMES.index(pulse)), named | flags),
+        "pulse": xr.Variable((), np.int8(number), named | flags),
         "restitution": xr.Variable((), np.float64(restitution), eta),
     }
 

@@ -17,7 +17,7 @@ from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, in_range
-from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
+from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check, check_groups
 from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
 from rocking.model.outcome_margin import outcome_margin
@@ -127,7 +127,7 @@ def peak_response(
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in groups]
     allowed = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
-    by_arcs = isinstance(made, SinusoidalPulse) and not cells[3].any()  # which have nothing to leave out
+    by_arcs = made.series.has_exact_arcs and not cells[3].any()  # exact: no terms to truncate
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * allowed)
     answers = _solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
