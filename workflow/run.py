@@ -1,6 +1,7 @@
-"""Makes what is missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
+"""Makes products that are missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
 
-The command is safe to repeat after any interruption, `kill -9` included, and refuses to work beside another live run.
+The command may be repeated after any interruption, including `kill -9`. It refuses to start while another run is
+active.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ class Claim:
     place : str
         Section and equation of the paper.
     printed : str
-        What the paper says, in our words or with its numbers.
+        The statement of the paper, in short or with its numbers.
     found : str
         What we found, with the range where it holds.
     verdict : str

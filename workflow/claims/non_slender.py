@@ -42,7 +42,7 @@ def collapse(figure: xr.Dataset) -> list[Claim]:
             place="section 5, (5.3), figure 9",
             printed="overturning plots of geometrically similar blocks of different size collapse to one curve",
             found=f"blocks of R = {sizes} m at alpha = {np.degrees(figure.attrs['alpha']):.0f} degrees, integrated "
-            f"with their dimensions by (2.2), change their fate within a relative {step:.0e} of the one curve at "
+            f"with their dimensions by (2.2), change their outcome within a relative {step:.0e} of the one curve at "
             f"{int(as_stated.sum())} of {as_stated.size} thresholds",
             verdict=verdict(bool(as_stated.all()), somewhere=bool(as_stated.any())),
             numbers={"thresholds": as_stated.size, "on_the_curve": int(as_stated.sum()), "step": step},
@@ -130,7 +130,7 @@ def _listed(changes: Mapping[int, float]) -> str:
 
 
 def convergence(restitution: float) -> list[Claim]:
-    """How the thresholds under the sine tend to the closed forms of section 3 as alpha falls."""
+    """Convergence of the thresholds under the sine to the closed forms of section 3 as alpha decreases."""
     angles = (8.0, 4.0, 2.0)
     differences = np.array([list(_differences(angle, restitution)) for angle in angles])
     orders = np.log2(differences[:-1] / differences[1:])
@@ -139,8 +139,8 @@ def convergence(restitution: float) -> list[Claim]:
             key="slender-limit",
             place="section 5, figure 10",
             printed="as alpha decreases the curves of the sine converge to the closed forms for slender blocks",
-            found="the distance of the thresholds from (3.10), (3.18) and (3.20) with (3.21) falls with alpha to the "
-            f"power {orders.min():.3f} to {orders.max():.3f} between {angles[0]:g} and {angles[-1]:g} degrees; at "
+            found="the distance of the thresholds from (3.10), (3.18) and (3.20) with (3.21) decreases with alpha to "
+            f"the power {orders.min():.3f} to {orders.max():.3f} between {angles[0]:g} and {angles[-1]:g} degrees; at "
             f"{angles[-1]:g} degrees it is at most {100 * differences[-1].max():.2g} %",
             verdict=verdict(bool(np.all(np.abs(orders - 2) < 0.2)), somewhere=bool(np.all(orders > 0))),
             numbers={"lowest_order": orders.min(), "highest_order": orders.max(), "largest": differences[-1].max()},
@@ -169,9 +169,9 @@ def uplift(restitution: float) -> list[Claim]:
         return np.sin(angles) - acceleration * np.cos(angles) < 0
 
     exact = ~lifts(np.tan(angles) * (1 - step)) & lifts(np.tan(angles) * (1 + step))
-    question = {"frequency_ratio": 3.0, "restitution": restitution, "alpha": angles}
+    groups = {"frequency_ratio": 3.0, "restitution": restitution, "alpha": angles}
     for pulse in BEFORE_TIP:
-        starts = [peak_response(pulse, slenderness=1 + sign * step, **question).outcome for sign in (-1, 1)]
+        starts = [peak_response(pulse, slenderness=1 + sign * step, **groups).outcome for sign in (-1, 1)]
         exact &= (starts[0] != Outcome.NO_UPLIFT) & (starts[1] == Outcome.NO_UPLIFT)
     slender = float(np.tan(angles[19]) / angles[19] - 1)
     return [

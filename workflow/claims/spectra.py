@@ -86,7 +86,7 @@ def closed_form(cubes: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def no_real_root(restitution: Sequence[float]) -> list[Claim]:
-    """(4.13) has no real root exactly where (3.18) says that the block overturns."""
+    """(4.13) has no real root exactly where the block overturns by (3.18)."""
     eta = np.array(restitution)[:, None, None]
     omega = np.linspace(0.5, 12.0, 231)
     share = np.linspace(0.001, 0.999, 199)[:, None]
@@ -174,7 +174,7 @@ def scale_law(cubes: Sequence[xr.Dataset]) -> list[Claim]:
             place="section 4a, figures 7 and 8",
             printed="as restitution decreases the largest rotation decreases",
             found=f"at {100 * falling.sum() / survives.sum():.1f} % of {int(survives.sum())} surviving nodes the peak "
-            f"never falls with rising eta; at {100 * slender:.1f} % of "
+            f"never decreases with increasing eta; at {100 * slender:.1f} % of "
             "those with 1/a < 0.85",
             verdict=verdict(bool(falling.sum() == survives.sum())),
             numbers={"share": float(falling.sum() / survives.sum()),

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from rocking.history.time_history import time_history
 from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, plotted
 
-DURATION = 9.0  # of tau, after which every fate is plain
+DURATION = 9.0  # tau after which every outcome is visible
 SAMPLES = 451
 
 
@@ -121,8 +121,8 @@ def _tree(ax: Axes) -> None:
     ax.set_ylim(0, 1)
     placed = {}
     for key, (x, y, text) in BOXES.items():
-        fate = key.startswith("case")
-        colour = VERMILION if fate else GREY if key == "rest" else BLUE
+        overturns = key.startswith("case")
+        colour = VERMILION if overturns else GREY if key == "rest" else BLUE
         placed[key] = ax.annotate(
             text, (x, y), ha="center", va="center", fontsize=7, annotation_clip=False,
             bbox={"boxstyle": "round,pad=0.35", "facecolor": "white", "edgecolor": colour, "linewidth": 0.9},

@@ -56,11 +56,11 @@ def data(
             samples=SAMPLES,
         )
         scaled = scaled_rotation(alpha * found.rotation, problem, group_set)
-        return np.interp(tau, found.tau, scaled, right=np.nan)  # a block that falls has no more history
+        return np.interp(tau, found.tau, scaled, right=np.nan)  # the history of a block ends where it overturns
 
     def master(pulse: str) -> np.ndarray:
-        question = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
-        found = time_history(pulse, **question, duration=duration, samples=SAMPLES)
+        groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
+        found = time_history(pulse, **groups, duration=duration, samples=SAMPLES)
         return np.interp(tau, found.tau, slenderness * found.rotation, right=np.nan)
 
     blocks = np.array([[[rotation(p, group_set, a) for a in angles] for group_set in GROUP_SETS] for p in pulses])

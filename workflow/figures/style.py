@@ -52,5 +52,5 @@ def panel_letters(axes: Sequence[Axes]) -> None:
 
 
 def plotted(dims: str | Sequence[str], values: ArrayLike, long_name: str, **attributes: Any) -> xr.Variable:
-    """A variable of plotted data; dimensionless unless `units` says otherwise."""
+    """A variable of plotted data; dimensionless unless `units` is given."""
     return xr.Variable(dims, np.asarray(values), {**MODEL_RESULT, "long_name": long_name, **attributes})

@@ -86,7 +86,7 @@ def as_markdown(claims: Sequence[Claim]) -> str:
         "",
         ", ".join(f"{verdict}: {count}" for verdict, count in sorted(counts.items())) + ".",
         "",
-        "| place | the paper says | found | verdict |",
+        "| place | paper | found | verdict |",
         "|---|---|---|---|",
         *(f"| {claim.place} | {claim.printed} | {claim.found} | {claim.verdict} |" for claim in claims),
     ]
