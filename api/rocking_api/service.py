@@ -37,6 +37,7 @@ class Service:
     metrics: Metrics = field(init=False)
     inspection: Inspection = field(init=False)
     reader: CapacityLimiter = field(init=False)
+    reader_of_large: CapacityLimiter = field(init=False)
     in_flight: InFlight = field(init=False)
 
     def __post_init__(self) -> None:
@@ -49,6 +50,7 @@ class Service:
         self.metrics = Metrics(self.executor)
         self.inspection = Inspection(self.atlas)
         self.reader = CapacityLimiter(settings.max_workers)
+        self.reader_of_large = CapacityLimiter(1)
         self.in_flight = InFlight(settings.max_bytes_in_flight)
 
     async def off_loop(self, question: Question, work: Work[T], request: Request) -> T:
@@ -63,9 +65,9 @@ class Service:
         await self.kernels.wait()
         return await self.executor.run(work, request)
 
-    async def reading(self, work: Callable[[], T]) -> T:
-        """Have files and bodies read: this does not wait behind heavy work."""
-        return await anyio.to_thread.run_sync(work, limiter=self.reader)
+    async def reading(self, work: Callable[[], T], large: bool = False) -> T:
+        """Have files and bodies read: this does not wait behind heavy work. Large bodies are read one at a time."""
+        return await anyio.to_thread.run_sync(work, limiter=self.reader_of_large if large else self.reader)
 
 
 async def _service(request: Request) -> Service:  # async: a plain function would cost a thread hop per request

@@ -8,7 +8,7 @@ import time
 
 import httpx2
 import pytest
-import rocking_api.http.batch_response
+import rocking_api.execution.evaluation
 from rocking_api.execution.batching import Together
 from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
 from rocking_api.models.params import ResponseQuestion
@@ -112,7 +112,7 @@ def test_a_full_queue_is_503_with_a_hint_and_points_go_on(results, monkeypatch):
     with client_of(results, max_workers=1, max_queue=0) as client:
         client.get("/v1/response", params=POINT)
         shop = client.app.state.service.executor
-        monkeypatch.setattr(rocking_api.http.batch_response, "ask", lambda *_, **__: gate.work())
+        monkeypatch.setattr(rocking_api.execution.evaluation, "ask", lambda *_, **__: gate.work())
         batch = threading.Thread(target=client.post, args=("/v1/response",), kwargs={"json": BATCH})
         batch.start()
         gate.begun.acquire()
@@ -179,7 +179,7 @@ def test_a_wrong_batch_does_not_wait(results, form):
 
 
 def test_too_long_is_504(results, monkeypatch):
-    monkeypatch.setattr(rocking_api.http.batch_response, "PIECE", 1)
+    monkeypatch.setattr(rocking_api.execution.evaluation, "PIECE", 1)
     with client_of(results, max_seconds=0.2) as client:
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
         problem = assert_problem(client.post("/v1/response", json=many), 504)
@@ -231,7 +231,7 @@ def test_the_end_of_the_whole_is_no_end_of_a_part():
 def test_batches_in_pieces_are_the_same(client, monkeypatch):
     many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
     whole = client.post("/v1/response", json=many).json()
-    monkeypatch.setattr(rocking_api.http.batch_response, "PIECE", 7)
+    monkeypatch.setattr(rocking_api.execution.evaluation, "PIECE", 7)
     assert client.post("/v1/response", json=many).json() == whole
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import isfinite
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import xarray as xr
@@ -16,9 +16,10 @@ from fastapi import Request, Response
 from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
 from pydantic import BaseModel
+from pydantic_core import to_json
 
 from rocking.datasets.cube import MODEL_RESULT, VARIABLES
-from rocking.solver.bounded_response import BoundedResponse
+from rocking_api.execution.evaluation import FIELDS, BatchResult
 
 Form = Literal["json", "csv", "nc"]
 
@@ -29,10 +30,17 @@ CONTENT: dict[int | str, dict[str, Any]] = {
 }
 """For the OpenAPI description: the other forms of an answer."""
 
-Column = NDArray[np.float64] | NDArray[np.int32] | NDArray[np.bool_] | NDArray[np.str_] | NDArray[np.object_]
 
-ROWS = 10_000
-"""Lines of CSV that are sent at once [-]."""
+class Column(Protocol):
+    """One value for each point: an array, or what makes parts of one."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, points: slice, /) -> NDArray[Any]: ...
+
+
+ROWS = 5_000
+"""Points of a batch whose text is made and sent at once [-]: up to half a megabyte, some milliseconds."""
 
 _SOURCES = ["cube", "solver"]
 
@@ -60,35 +68,64 @@ def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
 
 
 def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
-    """Arrays (points,) as CSV, written while it is sent: the text of a million points is 100 MB."""
+    """Arrays (points,) as CSV, written while it is sent: the text of a million points takes 100 MB."""
 
-    def parts() -> Iterator[str]:
-        yield ",".join(columns) + "\n"
-        for start in range(0, len(next(iter(columns.values()))), ROWS):
-            yield _rows({key: column[start : start + ROWS].tolist() for key, column in columns.items()})
+    def parts() -> Iterator[bytes]:
+        yield (",".join(columns) + "\n").encode()
+        for start in range(0, _points(columns), ROWS):
+            rows = {key: column[start : start + ROWS].tolist() for key, column in columns.items()}
+            yield _rows(rows).encode()
 
-    return StreamingResponse(parts(), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+    return _streamed(parts(), _points(columns), MEDIA_TYPES["csv"], _file(f"{name}.csv"))
+
+
+def json_stream(fields: Mapping[str, Any], columns: Mapping[str, Column]) -> Response:
+    """An object of the columns, arrays (points,), and then the other fields, written while it is sent."""
+
+    def parts() -> Iterator[bytes]:
+        opening = b"{"
+        for key, column in columns.items():
+            opening += to_json(key) + b":["
+            for start in range(0, len(column), ROWS):
+                yield opening + to_json(column[start : start + ROWS].tolist(), inf_nan_mode="null")[1:-1]
+                opening = b","
+            opening = (b"" if len(column) else opening) + b"],"
+        yield opening + to_json(fields, inf_nan_mode="null")[1:]
+
+    return _streamed(parts(), _points(columns), MEDIA_TYPES["json"], {})
+
+
+def _points(columns: Mapping[str, Column]) -> int:
+    return len(next(iter(columns.values())))
+
+
+def _streamed(parts: Iterator[bytes], points: int, media_type: str, headers: dict[str, str]) -> Response:
+    """A short answer is sent as a whole: a thread for each part of it would take longer."""
+    if points <= ROWS:
+        return Response(b"".join(parts), media_type=media_type, headers=headers)
+    return StreamingResponse(parts, media_type=media_type, headers=headers)
 
 
 def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
     """A data set as a netCDF-3 file."""
-    content = bytes(dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
+    content = dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT")
     return Response(content, media_type=MEDIA_TYPES["nc"], headers=_file(f"{name}.nc"))
 
 
 def dataset_of(
-    groups: Mapping[str, NDArray[np.float64]], found: BoundedResponse, attributes: Mapping[str, Any]
+    groups: Mapping[str, NDArray[np.float64]], result: BatchResult, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Questions and answers over one dimension `point`, with the attributes of the data sets."""
     variables: dict[str, Any] = {name: ("point", values, {"units": "1"}) for name, values in groups.items()}
-    for name in ("peak_rotation", "outcome", "impacts", "exceeded_alpha"):
-        dtype, about = VARIABLES[name]
-        kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
-        variables[name] = ("point", getattr(found, name).astype(dtype), MODEL_RESULT | kept)
+    for name in FIELDS:
+        if name in VARIABLES:
+            dtype, about = VARIABLES[name]
+            kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
+            variables[name] = ("point", result.fields[name].astype(dtype, copy=False), MODEL_RESULT | kept)
     bound = {"units": "1", "long_name": "bound of the absolute error of peak_rotation"}
     source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": " ".join(_SOURCES)}
-    variables["error_bound"] = ("point", found.error_bound, bound)
-    variables["source"] = ("point", (found.source == "solver").astype("i1"), {"long_name": "source", **source})
+    variables["error_bound"] = ("point", result.fields["error_bound"], bound)
+    variables["source"] = ("point", (~result.from_cube).astype("i1"), {"long_name": "source", **source})
     return xr.Dataset(variables, attrs={"Conventions": "CF-1.11", **attributes})
 
 

@@ -47,6 +47,24 @@ class Holding:
         self._own = 0
         self._released = False
 
+    def replace(self, count: int) -> None:
+        """Count this many bytes in place of all that were counted before.
+
+        Raises
+        ------
+        BusyError
+            If they are more than before, and others hold so many that these would exceed the limit.
+        """
+        total = self._in_flight
+        with total.lock:
+            if self._released:
+                return  # nobody waits for the answer any more
+            others = total.held - self._own
+            if count > self._own and others and others + count > total.limit:
+                raise BusyError(f"bodies and answers of {total.limit} bytes are on their way; ask again in a moment")
+            total.held = others + count
+            self._own = count
+
     def add(self, count: int) -> None:
         """Count bytes more.
 
@@ -55,14 +73,7 @@ class Holding:
         BusyError
             If others hold so many that these would exceed the limit.
         """
-        total = self._in_flight
-        with total.lock:
-            if self._released:
-                return  # nobody waits for the answer any more
-            if total.held > self._own and total.held + count > total.limit:
-                raise BusyError(f"bodies and answers of {total.limit} bytes are on their way; ask again in a moment")
-            total.held += count
-            self._own += count
+        self.replace(self._own + count)
 
     def release(self) -> None:
         """The request is over."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
 from rocking.model.response import Outcome
-from rocking.solver.bounded_response import BoundedResponse
+from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.formats import Column
 from rocking_api.models.params import HistoryQuestion, OverturningQuestion, ResponseQuestion
 from rocking_api.models.point import Point
@@ -177,21 +179,39 @@ class Health(BaseModel):
     problems: dict[str, str] = Field(description="what is missing or damaged, by name")
 
 
-def columns_of(found: BoundedResponse) -> dict[str, Any]:
-    """The fields of `Columns` as plain lists."""
-    return {name: column.tolist() for name, column in arrays_of(found).items()}
+class Names:
+    """A column of names, kept as codes.
+
+    Parameters
+    ----------
+    codes : int or bool array, shape (points,)
+        Index of each name.
+    names : sequence of str
+        All of them.
+    """
+
+    def __init__(self, codes: NDArray[Any], names: Sequence[str]) -> None:
+        self._codes = codes
+        self._names = np.array(names, dtype=np.object_)  # each name once, not once a point
+
+    def __len__(self) -> int:
+        return len(self._codes)
+
+    def __getitem__(self, points: slice) -> NDArray[np.object_]:
+        return np.asarray(self._names[self._codes[points].astype(np.intp)])
 
 
-def arrays_of(found: BoundedResponse) -> dict[str, Column]:
-    """The same as arrays (points,)."""
+def columns_of(result: BatchResult) -> dict[str, Column]:
+    """The fields of `Columns` that have one value for each point."""
+    fields = result.fields
     return {
-        "peak_rotation": found.peak_rotation,
-        "overturned": found.overturned,
-        "outcome": np.array(OUTCOMES, dtype=np.object_)[found.outcome],  # each name once, not once a point
-        "impacts": found.impacts,
-        "exceeded_alpha": found.exceeded_alpha,
-        "error_bound": found.error_bound,
-        "source": found.source,
+        "peak_rotation": fields["peak_rotation"],
+        "overturned": fields["outcome"] >= Outcome.OVERTURNED_DIRECTLY,
+        "outcome": Names(fields["outcome"], OUTCOMES),
+        "impacts": fields["impacts"],
+        "exceeded_alpha": fields["exceeded_alpha"],
+        "error_bound": fields["error_bound"],
+        "source": Names(result.from_cube, ["solver", "cube"]),
     }
 
 

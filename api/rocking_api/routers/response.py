@@ -8,8 +8,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
+from rocking_api.execution.evaluation import BYTES_PER_POINT, ask_many
 from rocking_api.http.batch_body import Batch, body_form, limited_body, read_batch
-from rocking_api.http.batch_response import answer_batch, batch_response
+from rocking_api.http.batch_response import batch_response
 from rocking_api.http.formats import CONTENT, MEDIA_TYPES, Form, form_of
 from rocking_api.http.in_flight import Holding, holding_of
 from rocking_api.http.params_route import QuestionRoute, single_parameters
@@ -18,6 +19,9 @@ from rocking_api.models.responses import BatchAnswer, ResponseAnswer, response_a
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
+
+LARGE_BODY = 1_000_000
+"""Bytes beyond which a body is read alone: the numbers of JSON take five times its memory until they are an array."""
 
 
 @router.get("/response", summary="One block")
@@ -53,17 +57,23 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     """
     given = body_form(request)
     form = form_of(request, None, default=given)
+    holding = holding_of(request)
+    batch = await _read(request, service, given, holding)
+    holding.replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is gone
+    return await service.off_loop(batch.options, lambda stop: _answered(service, batch, form, stop), request)
+
+
+async def _read(request: Request, service: Service, form: Form, holding: Holding) -> Batch:
     parameters = single_parameters(request)
     settings = service.settings
-    holding = holding_of(request)
     body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds, holding)
-    batch = await service.reading(partial(read_batch, body, given, parameters, settings.max_points))
-    return await service.off_loop(batch.options, lambda stop: _answered(service, batch, form, holding, stop), request)
+    read = partial(read_batch, body, form, parameters, settings.max_points)
+    return await service.reading(read, large=len(body) > LARGE_BODY)
 
 
-def _answered(service: Service, batch: Batch, form: Form, holding: Holding, stop: StopFlag) -> Response:
-    found, versions = answer_batch(service.atlas, batch, stop)
-    from_cubes = int((found.source == "cube").sum())
+def _answered(service: Service, batch: Batch, form: Form, stop: StopFlag) -> Response:
+    result = ask_many(service.atlas, batch.options, batch.groups, stop)
+    from_cubes = int(result.from_cube.sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)
-    return batch_response(batch, found, versions, form, holding)
+    return batch_response(batch, result, form)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
-from rocking_api.execution.evaluation import ask
-from rocking_api.http.formats import CONTENT, csv_response, dataset_of, form_of, json_response, netcdf_response
+from rocking_api.execution.evaluation import ask_many
+from rocking_api.http.formats import CONTENT, csv_stream, dataset_of, form_of, json_response, netcdf_response
 from rocking_api.http.params_route import QuestionRoute
 from rocking_api.http.problems import TooLargeError
 from rocking_api.models.params import FREQUENCY_RATIOS, SpectrumQuestion
@@ -49,19 +49,19 @@ def _axis(service: Service, question: SpectrumQuestion) -> NDArray[np.float64]:
 def _spectrum(
     service: Service, question: SpectrumQuestion, frequency_ratio: NDArray[np.float64], form: str, stop: StopFlag
 ) -> Response:
-    found, versions = ask(
-        service.atlas,
-        question,
-        slenderness=question.slenderness,
-        frequency_ratio=frequency_ratio,
-        restitution=question.restitution,
-        stop=stop,
-    )
+    shape = frequency_ratio.shape
+    groups = {
+        "slenderness": np.broadcast_to(np.float64(question.slenderness), shape),
+        "frequency_ratio": frequency_ratio,
+        "restitution": np.broadcast_to(np.float64(question.restitution), shape),
+    }
+    result = ask_many(service.atlas, question, groups, stop)
     query = question.model_dump(exclude={"format"})
     if form == "nc":
         attributes = {name: value for name, value in query.items() if value is not None}
-        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, found, attributes), "spectrum")
-    curve = {"frequency_ratio": frequency_ratio.tolist()} | columns_of(found)
+        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum")
+    curve = {"frequency_ratio": frequency_ratio} | columns_of(result)
     if form == "csv":
-        return csv_response(curve, "spectrum")
-    return json_response(SpectrumAnswer.model_construct(query=query, data_versions=list(versions), **curve))
+        return csv_stream(curve, "spectrum")
+    lists = {name: column[:].tolist() for name, column in curve.items()}
+    return json_response(SpectrumAnswer.model_construct(query=query, data_versions=list(result.versions), **lists))
