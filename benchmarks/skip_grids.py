@@ -38,14 +38,14 @@ FINE = 1e-6
 def cells_solved(call: Callable[[], Any]) -> int:
     """Cells that the solver follows during a call."""
     count = 0
-    follow = solve._rock
+    follow = solve._solve_cells
 
     def counting(pulse: Any, cells: list[NDArray[np.float64]], *rest: Any) -> NDArray[np.void]:
         nonlocal count
         count += cells[0].size
         return follow(pulse, cells, *rest)
 
-    with patch.object(solve, "_rock", counting):
+    with patch.object(solve, "_solve_cells", counting):
         call()
     return count
 
@@ -65,7 +65,7 @@ def tracing(nodes: int, rounds: int) -> Iterator[Skip]:
         return overturning_boundary(PULSE, restitution=RESTITUTION, nodes=nodes)
 
     def by_fate_alone() -> xr.Dataset:
-        return with_settings(boundary_points, trace, fate_margin=lambda z, *_: np.ones_like(z))
+        return with_settings(boundary_points, trace, outcome_margin=lambda z, *_: np.ones_like(z))
 
     done, without = cells_solved(trace), cells_solved(by_fate_alone)
     times = alternately("boundary", trace, by_fate_alone, rounds)
@@ -129,7 +129,7 @@ def probes(rounds: int) -> Iterator[Skip]:
         return list(sweep.spectra(PULSE, restitution=ETAS, alpha=ANGLES, barred=barred, threads=1, **GRID))
 
     def everywhere() -> list[xr.Dataset]:
-        return with_settings(sweep, fill, TAME=-1.0, FAIR=-1.0, WORTH=math.inf)
+        return with_settings(sweep, fill, REFINE_TOL=-1.0, LEVEL_TOL=-1.0, MAX_ERROR=math.inf)
 
     cells = (GRID["slenderness"].size - 1) * (GRID["frequency_ratio"].size - 1)
     nodes = GRID["slenderness"].size * GRID["frequency_ratio"].size * len(ETAS) * len(ANGLES)
@@ -143,7 +143,7 @@ def probes(rounds: int) -> Iterator[Skip]:
         note=f"{layers} layers of {cells} cells, {kept} of them with a bound; time of all of it",
     )  # fmt: skip
     gaps = (len(ETAS) - 1) * len(ANGLES) + (len(ANGLES) - 1) * len(ETAS)
-    everything = gaps * cells * (1 + len(sweep.ELSEWHERE))
+    everything = gaps * cells * (1 + len(sweep.EXTRA_PROBES))
     yield Skip("between the levels of a cube", "cells", between, everything, note=f"{gaps} gaps, three points")
 
 
@@ -172,7 +172,7 @@ def precision(side: int, rounds: int) -> Skip:
         return peak_response(PULSE, **groups, tolerance=tolerance, threads=1).peak_rotation
 
     def all_again() -> NDArray[np.float64]:
-        return with_settings(solve, ask, CLOSE=math.inf)
+        return with_settings(solve, ask, NEAR_BOUNDARY_MARGIN=math.inf)
 
     changed = int(np.sum(np.isnan(ask()) != np.isnan(ask(None))))
     done, without = (cells_solved(call) - omega.size for call in (ask, all_again))

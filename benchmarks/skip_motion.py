@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.skip import Skip, alternately
-from rocking._numba.cancellation import NEVER
-from rocking._numba.compilation import Record, Vector, entry, kernel
+from rocking._numba.cancellation import NEVER_STOPPED
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking.excitation.pulses import get_pulse
-from rocking.history.motion import FALLEN, FREE_IMPACTS
-from rocking.history.sampling import INVISIBLE, rock_freely
-from rocking.solver.arcs.flight import state
-from rocking.solver.kernels.event_loop import SAFE, advance, begin
+from rocking.history.motion import MAX_FREE_IMPACTS, MAX_ROTATION
+from rocking.history.sampling import REST_VELOCITY, sample_free_rocking
+from rocking.solver.arcs.flight import state_at
+from rocking.solver.kernels.event_loop import SAFE, advance, init_state
 from rocking.solver.peak_response import peak_response
-from rocking.solver.state import prepared, prepared_steps
+from rocking.solver.state import pulse_state, step_state
 from rocking.solver.taylor.step import take_step
 
 PULSE, RESTITUTION = "sine", 0.85
@@ -45,13 +45,20 @@ def go_beyond(flight: Record, steps: Record, phase: float) -> int:
     """Go on from a fall at `phase` to the end of the pulse; the cuts met, or Taylor steps taken."""
     found = 0
     if flight.by_arcs == 1:
-        for k in range(flight.count + 1):
-            if flight.cut_phase[k] > phase:
-                h = (flight.cut_phase[k] - flight.phase) / flight.omega
-                flight.end_z, flight.end_w = state(flight, h, flight.cut_cosine[k], flight.cut_sine[k])
+        for k in range(flight.interval_count + 1):
+            if flight.interval_phase[k] > phase:
+                h = (flight.interval_phase[k] - flight.phase) / flight.omega
+                flight.end_rotation, flight.end_velocity = state_at(
+                    flight, h, flight.interval_cosine[k], flight.interval_sine[k]
+                )
                 found += 1
         return found
-    steps.z0[0], steps.w0[0], steps.lifted[0], steps.phase[0] = flight.end_z, flight.end_w, 0.0, phase
+    steps.z0[0], steps.w0[0], steps.starts_at_uplift[0], steps.phase[0] = (
+        flight.end_rotation,
+        flight.end_velocity,
+        0.0,
+        phase,
+    )
     left = (flight.end_phase[flight.pieces] - phase) / flight.omega
     while left > 0.0:
         steps.limit[0] = left
@@ -72,13 +79,13 @@ def rock_on(
     flight: Record,
     steps: Record,
     followed: int,
-    landings: Vector,
-    stop: Vector,
-    counts: Vector,
+    landings: FloatArray,
+    stop: FloatArray,
+    counts: FloatArray,
 ) -> None:
     """One block as the solver follows it, and farther where `followed` says so."""
-    begin(slenderness, omega, alpha, flight)
-    going, phase = flight.count > 0, math.inf
+    init_state(slenderness, omega, alpha, flight)
+    going, phase = flight.interval_count > 0, math.inf
     while going:
         flight.length = math.nan
         going = advance(flight, steps, eta)
@@ -86,7 +93,7 @@ def rock_on(
             break
         counts[FLIGHTS] += 1
         phase = flight.phase + omega * flight.length
-        if followed & CHATTER and flight.at_rest == 1 and flight.next_w > INVISIBLE:
+        if followed & CHATTER and flight.at_rest == 1 and flight.next_w > REST_VELOCITY:
             flight.at_rest = flight.chatter = 0
     if flight.end_sign == 0.0:
         return
@@ -95,10 +102,10 @@ def rock_on(
         counts[FARTHER] += go_beyond(flight, steps, phase)
     if not before_end and followed & FREE:
         nothing = landings[:0]
-        farthest = min(FALLEN, 0.5 * math.pi / alpha) if alpha > 0.0 else FALLEN
-        counts[IMPACTS] += rock_freely(
-            flight.end_z,
-            flight.end_w,
+        farthest = min(MAX_ROTATION, 0.5 * math.pi / alpha) if alpha > 0.0 else MAX_ROTATION
+        counts[IMPACTS] += sample_free_rocking(
+            flight.end_rotation,
+            flight.end_velocity,
             flight.end_sign,
             alpha,
             steps,
@@ -117,22 +124,22 @@ def rock_on(
 
 @entry
 def rock_all(
-    slenderness: Vector,
-    omega: Vector,
+    slenderness: FloatArray,
+    omega: FloatArray,
     eta: float,
     alpha: float,
     flight: Record,
     steps: Record,
     followed: int,
-    landings: Vector,
-    stop: Vector,
-    counts: Vector,
-    peaks: Vector,
+    landings: FloatArray,
+    stop: FloatArray,
+    counts: FloatArray,
+    peaks: FloatArray,
 ) -> None:
     """Blocks one after another; `peaks` (cells,) is filled."""
     for i in range(len(slenderness)):
         rock_on(slenderness[i], omega[i], eta, alpha, flight, steps, followed, landings, stop, counts)
-        peaks[i] = flight.peak
+        peaks[i] = flight.peak_rotation
 
 
 def plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> tuple[NDArray[np.float64], ...]:
@@ -143,11 +150,20 @@ def plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> tuple[ND
 
 def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Counts and peaks of blocks of which so much is followed."""
-    flight = prepared(get_pulse(PULSE)).copy()
+    flight = pulse_state(get_pulse(PULSE)).copy()
     cells, counts = plane(side), np.zeros(4)
     peaks = np.empty(side * side)
     rock_all(
-        *cells, RESTITUTION, alpha, flight, prepared_steps(flight), what, np.empty(FREE_IMPACTS), NEVER, counts, peaks
+        *cells,
+        RESTITUTION,
+        alpha,
+        flight,
+        step_state(flight),
+        what,
+        np.empty(MAX_FREE_IMPACTS),
+        NEVER_STOPPED,
+        counts,
+        peaks,
     )
     return counts, peaks
 

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-_LARGEST = sys.float_info.max
+_MAX_FLOAT = sys.float_info.max
 
 
 class InvalidArgumentError(ValueError):
@@ -89,7 +89,7 @@ def in_range(
     except (TypeError, ValueError):
         reject_range(parameter, value, low, high, closed, unit)
     except OverflowError:  # an integer beyond all doubles: what its digits would be as a float
-        wrong = next(entry for entry in np.asarray(value, dtype=object).flat if not -_LARGEST <= entry <= _LARGEST)
+        wrong = next(entry for entry in np.asarray(value, dtype=object).flat if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
     if array.size == 0:
         return array
@@ -155,7 +155,7 @@ def broadcast(
     first: list[tuple[Hashable, Any]] = []
     for labels in labelled.values():
         first = first or labels
-        if labels and not _same(labels, first):
+        if labels and not _same_labels(labels, first):
             dims = tuple(tuple(dim for dim, _ in one) for one in labelled.values())
             raise InvalidArgumentError(
                 ", ".join(labelled), dims, "equal dimensions and indexes: use xarray.broadcast or align first"
@@ -177,7 +177,7 @@ def _labels(value: Any) -> list[tuple[Hashable, Any]]:
     return list(enumerate(getattr(value, "axes", ())))
 
 
-def _same(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable, Any]]) -> bool:
+def _same_labels(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable, Any]]) -> bool:
     return len(labels) == len(others) and all(
         dim == other and (index is None or one is None or index.equals(one))
         for (dim, index), (other, one) in zip(labels, others, strict=True)

@@ -14,18 +14,18 @@ from rocking._numba.compilation import cache_folder
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.history.time_history import time_history
 from rocking.lookup.cube import Cube
-from rocking.lookup.cube_slice import level_of
+from rocking.lookup.cube_slice import slice_of
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectra
 
-COMPLETE = "complete"
+COMPLETE_MARKER = "complete"
 """File in the cache folder that says that all kernels are in it."""
 
 
 def is_missing() -> bool:
     """Whether machine code can be kept on disk and is not all there yet."""
     folder = cache_folder()
-    return folder is not None and not (Path(folder) / COMPLETE).exists()
+    return folder is not None and not (Path(folder) / COMPLETE_MARKER).exists()
 
 
 def load_kernels() -> None:
@@ -38,7 +38,7 @@ def load_kernels() -> None:
     time_history("sine", **block, samples=2)
     time_history("sine", **block, alpha=0.3, samples=2)
     axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}
-    levels = [level_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
+    levels = [slice_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
     cube = Cube("sine", np.array([level.restitution for level in levels]), levels.__getitem__)
     cube.response(**block)
 
@@ -48,7 +48,7 @@ def main() -> None:
     folder = cache_folder()
     if folder is not None and is_missing():
         load_kernels()
-        (Path(folder) / COMPLETE).touch()
+        (Path(folder) / COMPLETE_MARKER).touch()
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 from starlette.types import ASGIApp
 
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking_api.http.fast_path import ShortWay
 from rocking_api.http.in_flight import InFlightLayer
 from rocking_api.http.params_route import QuestionRoute
@@ -85,7 +85,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         lifespan=_lifespan,
         responses=RESPONSES,
     )
-    atlas = Atlas(settings.results)
+    atlas = CubeCollection(settings.results)
     service = app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
     # data sets are compressed already, and a compressed answer has no ranges
     binary = ("application/x-netcdf", "application/octet-stream")

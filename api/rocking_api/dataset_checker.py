@@ -9,7 +9,7 @@ from typing import NamedTuple
 import anyio.to_thread
 
 from rocking.datasets.catalogue import UnknownDatasetError
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 
 PATIENCE = 0.1
 """How long a request waits for the check to end [s]."""
@@ -32,7 +32,7 @@ class Inspection:
         Whose data sets.
     """
 
-    def __init__(self, atlas: Atlas) -> None:
+    def __init__(self, atlas: CubeCollection) -> None:
         self._atlas = atlas
         self._task: asyncio.Task[None] | None = None
         self._state = State([], 0, {})

@@ -10,7 +10,7 @@ import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking_api.dataset_checker import Inspection
 from rocking_api.execution.batching import Together
 from rocking_api.execution.executor import BoundedExecutor, Work
@@ -29,7 +29,7 @@ class Service:
     """One per application, made in `create_app`."""
 
     settings: Settings
-    atlas: Atlas
+    atlas: CubeCollection
     zarr_views: ZarrViews
     together: Together = field(init=False)
     kernels: Kernels = field(init=False)

@@ -21,7 +21,7 @@ from rocking.errors import StoppedError
 
 T = TypeVar("T")
 
-NEVER = np.zeros(1, np.uint8)
+NEVER_STOPPED = np.zeros(1, np.uint8)
 """For kernels that nobody stops."""
 
 
@@ -36,12 +36,12 @@ class StopFlag:
 
     def __init__(self) -> None:
         self.array: NDArray[np.uint8] = np.zeros(1, np.uint8)
-        self._parts: list[StopFlag] = []
+        self._children: list[StopFlag] = []
 
     def set(self) -> None:
         """Ask the work, and its parts, to stop; from any thread."""
         self.array[0] = 1
-        for part in self._parts.copy():
+        for part in self._children.copy():
             part.set()
 
     def is_set(self) -> bool:
@@ -60,19 +60,19 @@ class StopFlag:
             raise StoppedError("the work was stopped before its end")
 
     @contextmanager
-    def part(self) -> Iterator[StopFlag]:
+    def child(self) -> Iterator[StopFlag]:
         """A flag for a part of the work: it is set with this one, or by itself."""
         part = StopFlag()
-        self._parts.append(part)
+        self._children.append(part)
         try:
             if self.is_set():
                 part.set()
             yield part
         finally:
-            self._parts.remove(part)
+            self._children.remove(part)
 
 
-def attempt(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T | None:
+def run_with_timeout(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T | None:
     """Do a part of the work of this thread within some time [s]; None if that was not enough.
 
     Raises
@@ -80,7 +80,7 @@ def attempt(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T 
     StoppedError
         If `stop`, the flag of the whole, was set meanwhile.
     """
-    with stop.part() as part:
+    with stop.child() as part:
         timer = threading.Timer(seconds, part.set)
         timer.daemon = True
         timer.start()
@@ -93,15 +93,15 @@ def attempt(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T 
             timer.cancel()
 
 
-def check(stop: StopFlag | None) -> None:
+def check_stop(stop: StopFlag | None) -> None:
     """Raise `StoppedError` if there is a flag and it is set."""
     if stop is not None:
         stop.check()
 
 
-def array_of(stop: StopFlag | None) -> NDArray[np.uint8]:
+def flag_array(stop: StopFlag | None) -> NDArray[np.uint8]:
     """What kernels read."""
-    return NEVER if stop is None else stop.array
+    return NEVER_STOPPED if stop is None else stop.array
 
 
 def _flag_is_set(_: Any, flag: Any) -> Any:
@@ -113,5 +113,5 @@ def _flag_is_set(_: Any, flag: Any) -> Any:
     return types.boolean(flag), lower
 
 
-stopped: Any = intrinsic(_flag_is_set)
+is_stopped: Any = intrinsic(_flag_is_set)
 """stopped(array): whether the flag is set, for kernels; an atomic load, which the compiler leaves in the loop."""

@@ -39,10 +39,10 @@ from numpy.typing import NDArray
 Record = Any
 """A numpy record of named numbers and short arrays, handed to a kernel by address."""
 
-Vector = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 """A float64 array; the kernels' docstrings give shapes."""
 
-Lanes = Any
+SimdVector = Any
 """One number for each of several cells, see `lanes`."""
 
 Series = NDArray[np.float64]
@@ -54,7 +54,7 @@ _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {
 """Nopython mode, no interpreter lock, fused multiply-add allowed but no reordering."""
 
 
-class _OneModule(JITCodeLibrary):
+class _SingleModuleLibrary(JITCodeLibrary):
     """A library in which the copies of other kernels are internal."""
 
     def _optimize_final_module(self) -> None:
@@ -65,8 +65,8 @@ class _OneModule(JITCodeLibrary):
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class _UseOneModule(LoweringPass):
-    """Has the code generated into a `_OneModule`."""
+class _UseSingleModuleLibrary(LoweringPass):
+    """Has the code generated into a `_SingleModuleLibrary`."""
 
     _name = "rocking_one_module"
 
@@ -74,7 +74,7 @@ class _UseOneModule(LoweringPass):
         LoweringPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
-        state.library = _OneModule(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = _SingleModuleLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         return False
 
@@ -84,7 +84,7 @@ class _EntryCompiler(CompilerBase):
 
     def define_pipelines(self) -> list[Any]:
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.add_pass_after(_UseOneModule, self._before_lowering(passes))
+        passes.add_pass_after(_UseSingleModuleLibrary, self._before_lowering(passes))
         passes.finalize()
         return [passes]
 
@@ -101,7 +101,7 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile `function`, which is called from Python with arrays as `plain` makes them, and keep the machine code."""
+    """Compile `function`, which is called from Python with arrays as `contiguous_array` makes them, and keep the machine code."""
     folder = cache_folder()
     compile_ = numba.njit(pipeline_class=_EntryCompiler, cache=folder is not None, **_OPTIONS)
     config: Any = numba.config  # its attributes are made at run time
@@ -114,7 +114,7 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     return compiled
 
 
-def plain(array: NDArray[Any]) -> NDArray[Any]:
+def contiguous_array(array: NDArray[Any]) -> NDArray[Any]:
     """The array, or a copy, contiguous, aligned and writable: the one kind that entries take."""
     # to ask a view that numpy has broadcast whether it is writable raises a warning
     return array if array.flags.owndata and array.flags.carray else np.array(array, order="C")

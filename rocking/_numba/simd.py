@@ -18,57 +18,57 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 LANES = 8
 """Cells side by side: 512 bits, which processors with narrower units take in two or four parts."""
 
-BYTES = 8 * LANES
+VECTOR_BYTES = 8 * LANES
 """Size of a value and the alignment of rows in memory: a row that straddles two cache lines costs twice."""
 
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-_BITS = ir.VectorType(ir.IntType(64), LANES)
+_LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_LLVM_BITS = ir.VectorType(ir.IntType(64), LANES)
 
 
-class _Lanes(types.Type):
+class _VectorType(types.Type):
     """numba's name for the value."""
 
     def __init__(self) -> None:
         super().__init__("Lanes")
 
 
-_LANES = _Lanes()
+_VECTOR_TYPE = _VectorType()
 
 
-@register_model(_Lanes)
-class _LanesModel(models.PrimitiveModel):
+@register_model(_VectorType)
+class _VectorModel(models.PrimitiveModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
-        super().__init__(manager, fe_type, _VECTOR)
+        super().__init__(manager, fe_type, _LLVM_VECTOR)
 
 
 def _constant(value: float) -> Any:
-    return ir.Constant(_VECTOR, [value] * LANES)
+    return ir.Constant(_LLVM_VECTOR, [value] * LANES)
 
 
-def _spread(builder: Any, value: Any) -> Any:
-    undefined = ir.Constant(_VECTOR, ir.Undefined)
+def _splat(builder: Any, value: Any) -> Any:
+    undefined = ir.Constant(_LLVM_VECTOR, ir.Undefined)
     single = builder.insert_element(undefined, value, ir.Constant(ir.IntType(32), 0))
     return builder.shuffle_vector(single, undefined, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
 
 
-def _row(builder: Any, array: Any, row: Any) -> Any:
-    offset = builder.mul(row, ir.Constant(row.type, BYTES))
-    return builder.bitcast(cgutils.pointer_add(builder, array, offset), _VECTOR.as_pointer())
+def _row_address(builder: Any, array: Any, row: Any) -> Any:
+    offset = builder.mul(row, ir.Constant(row.type, VECTOR_BYTES))
+    return builder.bitcast(cgutils.pointer_add(builder, array, offset), _LLVM_VECTOR.as_pointer())
 
 
-def _magnitude(builder: Any, x: Any) -> Any:
-    without_sign = ir.Constant(_BITS, [2**63 - 1] * LANES)
-    return builder.bitcast(builder.and_(builder.bitcast(x, _BITS), without_sign), _VECTOR)
+def _absolute(builder: Any, x: Any) -> Any:
+    without_sign = ir.Constant(_LLVM_BITS, [2**63 - 1] * LANES)
+    return builder.bitcast(builder.and_(builder.bitcast(x, _LLVM_BITS), without_sign), _LLVM_VECTOR)
 
 
-def _rough_log2(builder: Any, x: Any) -> Any:
-    whole = builder.sitofp(builder.bitcast(x, _BITS), _VECTOR)
+def _approx_log2(builder: Any, x: Any) -> Any:
+    whole = builder.sitofp(builder.bitcast(x, _LLVM_BITS), _LLVM_VECTOR)
     return builder.fsub(builder.fmul(whole, _constant(2.0**-52)), _constant(1023.0))
 
 
-def _rough_exp2(builder: Any, x: Any) -> Any:
+def _approx_exp2(builder: Any, x: Any) -> Any:
     whole = builder.fmul(builder.fadd(x, _constant(1023.0)), _constant(2.0**52))
-    return builder.bitcast(builder.fptosi(whole, _BITS), _VECTOR)
+    return builder.bitcast(builder.fptosi(whole, _LLVM_BITS), _LLVM_VECTOR)
 
 
 def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
@@ -96,36 +96,44 @@ def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) ->
     return intrinsic(forms[len(parameters)])
 
 
-load = _instruction(lambda builder, *place: builder.load(_row(builder, *place), align=8), _LANES, None, types.intp)
+load = _instruction(
+    lambda builder, *place: builder.load(_row_address(builder, *place), align=8), _VECTOR_TYPE, None, types.intp
+)
 """load(array, row): a row of an array (rows, LANES), or the only one of an array (LANES,) as row 0."""
 
 store = _instruction(
-    lambda builder, array, row, x: builder.store(x, _row(builder, array, row), align=8),
-    *(types.void, None, types.intp, _LANES),
+    lambda builder, array, row, x: builder.store(x, _row_address(builder, array, row), align=8),
+    *(types.void, None, types.intp, _VECTOR_TYPE),
 )
 """store(array, row, x): set that row."""
 
-everywhere = _instruction(_spread, _LANES, types.float64)
+splat = _instruction(_splat, _VECTOR_TYPE, types.float64)
 """everywhere(number): the same number in every lane."""
 
-magnitude = _instruction(_magnitude, _LANES, _LANES)
+absolute = _instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
 """|x|."""
 
-larger = _instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y), _LANES, _LANES, _LANES
+maximum = _instruction(
+    lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
+    _VECTOR_TYPE,
+    _VECTOR_TYPE,
+    _VECTOR_TYPE,
 )
 """The larger of two."""
 
-smaller = _instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y), _LANES, _LANES, _LANES
+minimum = _instruction(
+    lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y),
+    _VECTOR_TYPE,
+    _VECTOR_TYPE,
+    _VECTOR_TYPE,
 )
 """The smaller of two."""
 
-rough_log2 = _instruction(_rough_log2, _LANES, _LANES)
+approx_log2 = _instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
 """log2 of positive numbers, at most 0.09 too small: the bits of a double read as a whole number. -1023 for 0."""
 
-rough_exp2 = _instruction(_rough_exp2, _LANES, _LANES)
-"""2**x for |x| < 1000, up to 6 % too large: the inverse of `rough_log2`."""
+approx_exp2 = _instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
+"""2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
 def _arithmetic(operation: Any, instruction: str) -> None:
@@ -134,15 +142,15 @@ def _arithmetic(operation: Any, instruction: str) -> None:
     @infer_global(operation)
     class Typing(AbstractTemplate):
         def generic(self, args: Any, _: Any) -> Any:
-            if _LANES not in args or not all(isinstance(one, (_Lanes, types.Number)) for one in args):
+            if _VECTOR_TYPE not in args or not all(isinstance(one, (_VectorType, types.Number)) for one in args):
                 return None
-            return signature(_LANES, *(one if one is _LANES else types.float64 for one in args))
+            return signature(_VECTOR_TYPE, *(one if one is _VECTOR_TYPE else types.float64 for one in args))
 
     def lower(_: Any, builder: Any, sig: Any, args: Any) -> Any:
-        operands = [x if kind is _LANES else _spread(builder, x) for kind, x in zip(sig.args, args, strict=True)]
+        operands = [x if kind is _VECTOR_TYPE else _splat(builder, x) for kind, x in zip(sig.args, args, strict=True)]
         return getattr(builder, instruction)(*operands)
 
-    for left, right in ((_LANES, _LANES), (_LANES, types.float64), (types.float64, _LANES)):
+    for left, right in ((_VECTOR_TYPE, _VECTOR_TYPE), (_VECTOR_TYPE, types.float64), (types.float64, _VECTOR_TYPE)):
         lower_builtin(operation, left, right)(lower)
 
 

@@ -9,26 +9,26 @@ from __future__ import annotations
 
 from typing import Any
 
-from rocking._numba.compilation import Lanes, kernel
+from rocking._numba.compilation import SimdVector, kernel
 
-ROUNDING = 6755399441055744.0
+ROUNDING_CONSTANT = 6755399441055744.0
 """1.5 * 2**52: adding and subtracting it rounds to the nearest whole number."""
 
-HALF_PI, HALF_PI_REST = 1.5707963267948966, 6.123233995736766e-17
+HALF_PI, HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17
 """pi/2 as a double, and what that leaves out."""
 
 
 @kernel
-def nearest(x: Lanes) -> Any:
+def round_to_nearest(x: SimdVector) -> Any:
     """The nearest whole number."""
-    return (x + ROUNDING) - ROUNDING
+    return (x + ROUNDING_CONSTANT) - ROUNDING_CONSTANT
 
 
 @kernel
-def sine_and_cosine(angle: Lanes) -> Any:
+def sine_and_cosine(angle: SimdVector) -> Any:
     """Both of them."""
-    quarters = nearest(angle * (1.0 / HALF_PI))
-    r = (angle - quarters * HALF_PI) - quarters * HALF_PI_REST
+    quarters = round_to_nearest(angle * (1.0 / HALF_PI))
+    r = (angle - quarters * HALF_PI) - quarters * HALF_PI_LOW
     x = r * r
     sine = r + r * x * (
         -1.66666666666666324348e-01
@@ -49,9 +49,9 @@ def sine_and_cosine(angle: Lanes) -> Any:
     whole = 1.0 - 0.5 * x
     cosine = whole + (((1.0 - whole) - 0.5 * x) + tail)
     # quarters = 2 halves + odd: an odd quarter swaps the two, an odd half turns both
-    halves = nearest(quarters * 0.5 - 0.25)
+    halves = round_to_nearest(quarters * 0.5 - 0.25)
     odd = quarters - 2.0 * halves
-    turned = halves - 2.0 * nearest(halves * 0.5 - 0.25)
+    turned = halves - 2.0 * round_to_nearest(halves * 0.5 - 0.25)
     side = 1.0 - 2.0 * turned
     even = 1.0 - odd
     return side * (even * sine + odd * cosine), side * (even * cosine - odd * sine)

@@ -16,7 +16,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.boundary.search import Floats, classifier, fates_along
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.solver.peak_response import FREQUENCY_RATIOS
+from rocking.solver.peak_response import FREQUENCY_RATIO_RANGE
 
 NODES_PER_DECADE = 1000
 """Nodes on which fates are looked for, before their changes are refined [-]."""
@@ -77,7 +77,7 @@ def critical_frequency_ratio(
         If `stop` was set.
     """
     made = as_pulse(pulse)
-    low, high = (float(in_range("window", end, *FREQUENCY_RATIOS)) for end in window)
+    low, high = (float(in_range("window", end, *FREQUENCY_RATIO_RANGE)) for end in window)
     if not low < high <= 1e4 * low:
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 

@@ -14,9 +14,9 @@ from scipy.optimize.elementwise import find_root
 
 from rocking._numba.cancellation import StopFlag
 from rocking.excitation.pulses import AbstractPulse
-from rocking.model.outcome_margin import fate_margin
+from rocking.model.outcome_margin import outcome_margin
 from rocking.model.response import Response
-from rocking.solver.peak_response import FREQUENCY_RATIOS, peak_response
+from rocking.solver.peak_response import FREQUENCY_RATIO_RANGE, peak_response
 
 RESOLUTION = 1e-12
 """Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
@@ -66,11 +66,11 @@ def classifier(pulse: AbstractPulse, alpha: float | None, stop: StopFlag | None 
     """The solver as a `Classify`, which raises `StoppedError` once `stop` is set."""
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
-        omega = np.clip(np.exp(log_omega), *FREQUENCY_RATIOS)  # rounding must not lead out of the range
+        omega = np.clip(np.exp(log_omega), *FREQUENCY_RATIO_RANGE)  # rounding must not lead out of the range
         found = peak_response(
             pulse, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha, stop=stop
         )
-        return fate_code(found), fate_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
+        return fate_code(found), outcome_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
 
     return classify
 

@@ -57,12 +57,12 @@ def response(
     """Fate and peak rotation of one block, by the solver."""
     from rocking.cli import arguments, output
 
-    with arguments.refusals():
-        question = arguments.read(
+    with arguments.option_errors():
+        question = arguments.read_params(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        output.response(question, output.form(json=json, csv=csv))
+        output.response(question, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -87,12 +87,12 @@ def history(
     """Rotation and angular velocity of one block against time."""
     from rocking.cli import arguments, output
 
-    with arguments.refusals():
-        question = arguments.read(
+    with arguments.option_errors():
+        question = arguments.read_params(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        output.history(question, duration, samples, contact, output.form(json=json, csv=csv))
+        output.history(question, duration, samples, contact, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -110,10 +110,10 @@ def spectrum(
     """Peak rotation against the frequency ratio."""
     from rocking.cli import arguments, output
 
-    with arguments.refusals():
-        window = arguments.window(frequency_ratio_min, frequency_ratio_max)
-        question = arguments.read(pulse, str(restitution), slenderness, window[0], alpha)
-        output.spectrum(question, window, points, output.form(json=json, csv=csv))
+    with arguments.option_errors():
+        window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
+        question = arguments.read_params(pulse, str(restitution), slenderness, window[0], alpha)
+        output.spectrum(question, window, points, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -129,10 +129,10 @@ def boundary(
     """The curves that separate standing from falling, traced."""
     from rocking.cli import arguments, output
 
-    with arguments.refusals():
-        window = arguments.window(frequency_ratio_min, frequency_ratio_max)
-        question = arguments.read(pulse, str(restitution), 1.0, window[0], alpha)
-        output.boundary(question, window, output.form(json=json, csv=csv))
+    with arguments.option_errors():
+        window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
+        question = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
+        output.boundary(question, window, output.output_format(json=json, csv=csv))
 
 
 @app.command()

@@ -16,7 +16,7 @@ from rocking.model.block import Block
 
 
 @dataclass(frozen=True)
-class Question:
+class Params:
     """One block under one pulse, in groups; `block` if it was given with units."""
 
     pulse: str
@@ -28,7 +28,7 @@ class Question:
 
 
 @contextmanager
-def refusals() -> Iterator[None]:
+def option_errors() -> Iterator[None]:
     """Turn a wrong argument into the command line's own error, with the name of the option."""
     try:
         yield
@@ -45,7 +45,7 @@ def _si_value(parameter: str, text: str, unit: str) -> float:
     return si_value(parameter, text, unit)
 
 
-def read(
+def read_params(
     pulse: str,
     restitution: str,
     slenderness: float | None,
@@ -55,7 +55,7 @@ def read(
     half_height: str | None = None,
     peak_acceleration: str | None = None,
     pulse_period: str | None = None,
-) -> Question:
+) -> Params:
     """The question in groups.
 
     Raises
@@ -75,7 +75,7 @@ def read(
             if groups[name] is None:
                 raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
         angle = None if alpha is None else _si_value("alpha", alpha, "rad")
-        return Question(pulse, slenderness or 0.0, frequency_ratio or 0.0, _eta(restitution), angle or None)
+        return Params(pulse, slenderness or 0.0, frequency_ratio or 0.0, _eta(restitution), angle or None)
     for name, value in groups.items():
         if value is not None:
             raise InvalidArgumentError(name, value, "either groups or a block and a pulse with units")
@@ -87,10 +87,10 @@ def read(
     found = groups_of(problem, GroupSet.RIGID)  # (5.3)
     eta = block.inelastic_restitution if restitution == "housner" else _eta(restitution)
     s, omega = float(np.asarray(found.slenderness)), float(np.asarray(found.frequency_ratio))
-    return Question(pulse, s, omega, eta, block.alpha, block)
+    return Params(pulse, s, omega, eta, block.alpha, block)
 
 
-def window(low: float, high: float) -> tuple[float, float]:
+def frequency_window(low: float, high: float) -> tuple[float, float]:
     """A window of the frequency ratio [-], 0 < low < high."""
     checked = float(in_range("frequency_ratio_min", low, 0.0, math.inf, closed="neither"))
     return checked, float(in_range("frequency_ratio_max", high, checked, math.inf, closed="neither"))

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 import typer
 
-from rocking.cli.arguments import Question
+from rocking.cli.arguments import Params
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
@@ -20,7 +20,7 @@ from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
 Form = Literal["text", "json", "csv"]
 
 
-def form(*, json: bool, csv: bool) -> Form:
+def output_format(*, json: bool, csv: bool) -> Form:
     """The form that was asked for.
 
     Raises
@@ -33,17 +33,17 @@ def form(*, json: bool, csv: bool) -> Form:
     return "json" if json else "csv" if csv else "text"
 
 
-def response(question: Question, form: Form) -> None:
+def response(question: Params, form: Form) -> None:
     """Print outcome and peak of one block; of one that is not slender, whether the rocking model applies to it."""
     found = _solve(question, question.frequency_ratio)
     groups = _groups(question)
     answer = groups | {name: column[0] for name, column in _columns(found).items()}
     sentence = Outcome[answer["outcome"]].sentence
     if question.alpha is not None:
-        from rocking.history.contact import extremes_of
-        from rocking.history.motion import motion_of
+        from rocking.history.contact import contact_extremes
+        from rocking.history.motion import build_motion
 
-        contact = extremes_of(motion_of(**groups))
+        contact = contact_extremes(build_motion(**groups))
         sentence = contact.sentence
         answer["friction_demand"] = _number(contact.largest_friction_demand)
         answer["lifts_off"] = contact.lifts_off
@@ -60,7 +60,7 @@ def response(question: Question, form: Form) -> None:
         _print_text(answer)
 
 
-def history(question: Question, duration: float | None, samples: int, contact: bool, form: Form) -> None:
+def history(question: Params, duration: float | None, samples: int, contact: bool, form: Form) -> None:
     """Print the motion of one block, with `contact` also what the ground has to supply."""
     from rocking.history.contact import ATTRIBUTES, COLUMNS
     from rocking.history.time_history import time_history
@@ -96,7 +96,7 @@ def history(question: Question, duration: float | None, samples: int, contact: b
         _print_table(columns)
 
 
-def spectrum(question: Question, window: tuple[float, float], points: int, form: Form) -> None:
+def spectrum(question: Params, window: tuple[float, float], points: int, form: Form) -> None:
     """Print the peak against the frequency ratio."""
     in_range("points", points, 2, 1_000_000)
     frequency_ratio = np.geomspace(*window, points)
@@ -111,7 +111,7 @@ def spectrum(question: Question, window: tuple[float, float], points: int, form:
         _print_table({name: columns[name] for name in ("frequency_ratio", "peak_rotation", "outcome", "impacts")})
 
 
-def boundary(question: Question, window: tuple[float, float], form: Form) -> None:
+def boundary(question: Params, window: tuple[float, float], form: Form) -> None:
     """Print the curves that separate standing from falling."""
     from rocking.boundary.tracing import overturning_boundary
 
@@ -136,7 +136,7 @@ def boundary(question: Question, window: tuple[float, float], form: Form) -> Non
         _print_table(columns)
 
 
-def _solve(question: Question, frequency_ratio: Any) -> BoundedResponse:
+def _solve(question: Params, frequency_ratio: Any) -> BoundedResponse:
     return solve_with_bound(
         question.pulse,
         slenderness=question.slenderness,
@@ -146,7 +146,7 @@ def _solve(question: Question, frequency_ratio: Any) -> BoundedResponse:
     )
 
 
-def _groups(question: Question) -> dict[str, Any]:
+def _groups(question: Params) -> dict[str, Any]:
     return {
         "pulse": question.pulse,
         "slenderness": question.slenderness,

@@ -19,10 +19,10 @@ import xarray as xr
 from rocking.datasets.cube import decode_dataset
 from rocking.errors import DatasetError
 
-TICK = 20_000_000
+CLOCK_TICK = 20_000_000
 """Within this, two changes of a file may bear the same time [ns]: the clocks of file systems tick every 1 to 10 ms."""
 
-READS = 5
+MAX_READS = 5
 """Attempts to read a file that changes meanwhile [-]."""
 
 _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")  # of a name: no "..", nothing hidden
@@ -54,7 +54,7 @@ class FileVersion(NamedTuple):
     @property
     def is_settled(self) -> bool:
         """Whether a later change is certain to bear another time."""
-        return time.time_ns() - self.changed > TICK
+        return time.time_ns() - self.changed > CLOCK_TICK
 
 
 def version_of(path: Path) -> FileVersion | None:
@@ -66,7 +66,7 @@ def version_of(path: Path) -> FileVersion | None:
 
 
 @dataclass(frozen=True)
-class Product:
+class DatasetFile:
     """One version of a data set file: its name (path below the folder, without suffix), size [bytes] and sha256."""
 
     name: str
@@ -118,7 +118,7 @@ class DataFile:
             If they cannot be read, or the file changes again and again.
         """
         try:
-            for _ in range(READS):
+            for _ in range(MAX_READS):
                 self.version = self._settled()
                 self._file.seek(0)
                 content = self._file.read()
@@ -156,7 +156,7 @@ class DataFile:
         version = FileVersion.of(status)
         if version.is_settled:
             return version
-        time.sleep(TICK / 1e9)
+        time.sleep(CLOCK_TICK / 1e9)
         return FileVersion.of(os.fstat(self.fileno()))
 
 
@@ -173,7 +173,7 @@ class Catalogue:
         self.results = Path(results)
         self.lock = threading.RLock()
         """To be held while a file is read: the netCDF library is not safe for threads."""
-        self._products: dict[str, tuple[FileVersion, Product]] = {}
+        self._products: dict[str, tuple[FileVersion, DatasetFile]] = {}
 
     def names(self) -> list[str]:
         """Names of all data sets, such as `spectra/sine/eta-0.85`, sorted."""
@@ -211,7 +211,7 @@ class Catalogue:
                 raise UnknownDatasetError(name) from None
             raise _unreadable(name, error) from error
 
-    def product(self, name: str) -> Product:
+    def product(self, name: str) -> DatasetFile:
         """Size and sha256 of a data set.
 
         Raises
@@ -222,7 +222,7 @@ class Catalogue:
         with self.open(name) as file:
             return self.product_of(file)
 
-    def product_of(self, file: DataFile) -> Product:
+    def product_of(self, file: DataFile) -> DatasetFile:
         """Size and sha256 of an open data set, computed once per version of the file.
 
         Raises
@@ -234,10 +234,10 @@ class Catalogue:
             known = self._products.get(file.name)
             if known is None or known[0] != file.version:
                 digest = hashlib.sha256(file.content()).hexdigest()
-                known = self._products[file.name] = file.version, Product(file.name, file.version.size, digest)
+                known = self._products[file.name] = file.version, DatasetFile(file.name, file.version.size, digest)
             return known[1]
 
-    def dataset(self, name: str) -> tuple[Product, xr.Dataset]:
+    def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
         """A data set, read into memory and checked, and which version of it that is.
 
         Raises

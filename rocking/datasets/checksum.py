@@ -15,13 +15,13 @@ _MARK = b"\nsha256 "
 _LENGTH = len(_MARK) + 64 + 1
 
 
-def seal(path: Path) -> None:
+def append_checksum(path: Path) -> None:
     """Append the digest of all that a file holds."""
     with path.open("ab") as file:
         file.write(_MARK + hashlib.sha256(path.read_bytes()).hexdigest().encode() + b"\n")
 
 
-def flaw(content: bytes) -> str | None:
+def find_damage(content: bytes) -> str | None:
     """What is wrong with the bytes of a sealed file: no seal, or not its own; None if they are whole."""
     body, end = content[:-_LENGTH], content[-_LENGTH:]
     if not end.startswith(_MARK):

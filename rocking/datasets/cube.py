@@ -35,7 +35,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from xarray.backends import NetCDF4DataStore
 
-from rocking.datasets.checksum import PARTIAL, flaw, seal
+from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.model.response import Outcome
@@ -199,7 +199,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Its values are written with a digest (`content_sha256`), and the file with another at its end (`seal`), by which
+        Its values are written with a digest (`content_sha256`), and the file with another at its end (`append_checksum`), by which
         `read_dataset` sees damage.
     path : path
         Parent folders are made; an existing file is replaced.
@@ -212,7 +212,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     temporary = Path(name)
     try:
         signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed))
-        seal(temporary)
+        append_checksum(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
         temporary.chmod(0o644)  # mkstemp makes it readable by its owner only
@@ -257,7 +257,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
     DatasetError
         If they are not those of one of our files, or not what was written.
     """
-    damage = flaw(content)
+    damage = find_damage(content)
     if damage is not None:  # some broken files make the netCDF library run for ever
         raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
     try:

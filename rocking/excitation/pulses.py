@@ -16,10 +16,10 @@ from rocking.excitation.shapes import (
     AbstractPulse,
     SinusoidalPulse,
     WaveletPulse,
-    number,
-    peak_of,
-    sinusoids,
-    turns_of_sinusoids,
+    checked_number,
+    peak_amplitude,
+    stationary_phases_of_sinusoids,
+    sum_of_sinusoids,
 )
 
 __all__ = [
@@ -122,12 +122,12 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
         ((cycles - 1) / 2, 1 - 1 / cycles, shift),
     )
     end = math.pi * cycles
-    peak = peak_of(partial(sinusoids, raw), -end, end, turns_of_sinusoids(raw, -end, end))
+    peak = peak_amplitude(partial(sum_of_sinusoids, raw), -end, end, stationary_phases_of_sinusoids(raw, -end, end))
     terms = tuple((c / peak, w, d) for c, w, d in raw)
     return SinusoidalPulse("mavroeidis_papageorgiou", -end, end, (), terms)
 
 
-_CATALOGUE: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
+_FACTORIES: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
     factory.__name__: factory
     for factory in (
         sine,
@@ -142,7 +142,7 @@ _CATALOGUE: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
     )
 }
 
-PULSE_NAMES: tuple[str, ...] = tuple(_CATALOGUE)
+PULSE_NAMES: tuple[str, ...] = tuple(_FACTORIES)
 """Names that `get_pulse` knows; a leading minus mirrors the pulse."""
 
 
@@ -177,14 +177,14 @@ def get_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
     if not isinstance(name, str):
         allowed = "a SinusoidalPulse, a WaveletPulse, or one of " + ", ".join(PULSE_NAMES)
         raise InvalidArgumentError("pulse", name, allowed)
-    return _made(name, **{key: number(key, value) for key, value in parameters.items()})
+    return _build_pulse(name, **{key: checked_number(key, value) for key, value in parameters.items()})
 
 
 @lru_cache(maxsize=256)
-def _made(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
+def _build_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
     base = one_of("pulse", name.removeprefix("-"), PULSE_NAMES)
     allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
     for parameter in parameters:
         one_of(f"parameter of pulse {base}", parameter, allowed)
-    made = _CATALOGUE[base](**parameters)
+    made = _FACTORIES[base](**parameters)
     return made.mirrored() if name.startswith("-") else made

@@ -23,7 +23,7 @@ MAX_POLYNOMIAL = 4
 MAX_PIECES = 84
 """Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
 
-LARGEST = 1e6
+MAX_MAGNITUDE = 1e6
 """Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase loses more than ten digits."""
 
 PEAK_TOLERANCE = 1e-12
@@ -42,7 +42,7 @@ class AbstractPulse(ABC):
     name : str
         Not empty.
     start, end : float
-        Window of the phase [rad], start < end, within +-`LARGEST`.
+        Window of the phase [rad], start < end, within +-`MAX_MAGNITUDE`.
     stationary : tuple of float
         All phases strictly inside the window at which f' changes its sign [rad], ascending; at most `MAX_PIECES` - 1.
         Left empty, they are found.
@@ -61,11 +61,11 @@ class AbstractPulse(ABC):
     def __post_init__(self) -> None:
         if not (self.name and isinstance(self.name, str)):
             raise InvalidArgumentError("name", self.name, "a string that is not empty")
-        start = number("start", self.start, unit="rad")
-        end = number("end", self.end, unit="rad")
-        in_range("end", end, start, LARGEST, closed="right", unit="rad")
-        found = self._turns(start, end)
-        given = _numbers("stationary", self.stationary, unit="rad")
+        start = checked_number("start", self.start, unit="rad")
+        end = checked_number("end", self.end, unit="rad")
+        in_range("end", end, start, MAX_MAGNITUDE, closed="right", unit="rad")
+        found = self._stationary_phases(start, end)
+        given = _checked_numbers("stationary", self.stationary, unit="rad")
         if given and not (len(given) == len(found) and np.allclose(given, found, rtol=0.0, atol=1e-10 * (end - start))):
             raise InvalidArgumentError(
                 "stationary", given, f"(), or all phases inside where f' changes its sign: {found}"
@@ -74,7 +74,7 @@ class AbstractPulse(ABC):
             raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
         for name, value in (("start", start), ("end", end), ("stationary", given or found)):
             object.__setattr__(self, name, value)
-        peak = peak_of(self.shape, start, end, found)
+        peak = peak_amplitude(self.shape, start, end, found)
         if not abs(peak - 1.0) <= PEAK_TOLERANCE:
             raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
 
@@ -87,7 +87,7 @@ class AbstractPulse(ABC):
         """The pulse of opposite sign, -f(phi)."""
 
     @abstractmethod
-    def _turns(self, start: float, end: float) -> tuple[float, ...]:
+    def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         """The phases strictly inside the window at which f' changes its sign [rad]."""
 
     def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
@@ -110,27 +110,27 @@ class SinusoidalPulse(AbstractPulse):
     Attributes
     ----------
     terms : tuple of (float, float, float)
-        c [-], w >= 0 [-] and d [rad] of 1 to `MAX_SINUSOIDS` sinusoids, within +-`LARGEST`.
+        c [-], w >= 0 [-] and d [rad] of 1 to `MAX_SINUSOIDS` sinusoids, within +-`MAX_MAGNITUDE`.
     """
 
     terms: Terms
 
     def __post_init__(self) -> None:
-        terms = in_range("terms", self.terms, -LARGEST, LARGEST)
+        terms = in_range("terms", self.terms, -MAX_MAGNITUDE, MAX_MAGNITUDE)
         if terms.ndim != 2 or not 1 <= len(terms) <= MAX_SINUSOIDS or terms.shape[1] != 3 or (terms[:, 1] < 0.0).any():
             raise InvalidArgumentError("terms", self.terms, f"1 to {MAX_SINUSOIDS} triples (c, w, d) with w >= 0")
         object.__setattr__(self, "terms", tuple(map(tuple, terms.tolist())))
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:
-        return sinusoids(self.terms, phi)
+        return sum_of_sinusoids(self.terms, phi)
 
     def mirrored(self) -> SinusoidalPulse:
         terms = tuple((-c, w, d) for c, w, d in self.terms)
         return SinusoidalPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, terms)
 
-    def _turns(self, start: float, end: float) -> tuple[float, ...]:
-        return turns_of_sinusoids(self.terms, start, end)
+    def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
+        return stationary_phases_of_sinusoids(self.terms, start, end)
 
 
 @final
@@ -141,19 +141,19 @@ class WaveletPulse(AbstractPulse):
     Attributes
     ----------
     polynomial : tuple of float
-        c_0, c_1, ... [-], 1 to `MAX_POLYNOMIAL` of them, within +-`LARGEST`.
+        c_0, c_1, ... [-], 1 to `MAX_POLYNOMIAL` of them, within +-`MAX_MAGNITUDE`.
     spread : float
-        Of the Gaussian [rad2], [1e-6, `LARGEST`].
+        Of the Gaussian [rad2], [1e-6, `MAX_MAGNITUDE`].
     """
 
     polynomial: tuple[float, ...]
     spread: float
 
     def __post_init__(self) -> None:
-        polynomial = _numbers("polynomial", self.polynomial)
+        polynomial = _checked_numbers("polynomial", self.polynomial)
         if not 1 <= len(polynomial) <= MAX_POLYNOMIAL:
             raise InvalidArgumentError("polynomial", polynomial, f"1 to {MAX_POLYNOMIAL} coefficients")
-        spread = number("spread", self.spread, low=1e-6, unit="rad2")
+        spread = checked_number("spread", self.spread, low=1e-6, unit="rad2")
         object.__setattr__(self, "polynomial", polynomial)
         object.__setattr__(self, "spread", spread)
         super().__post_init__()
@@ -166,7 +166,7 @@ class WaveletPulse(AbstractPulse):
         polynomial = tuple(-c for c in self.polynomial)
         return WaveletPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
 
-    def _turns(self, start: float, end: float) -> tuple[float, ...]:
+    def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         # f' = (P' - 2 phi/spread P) exp(-phi^2/spread): the sign is that of the polynomial
         shape = np.polynomial.Polynomial(self.polynomial)
         factor = shape.deriv() - shape * np.polynomial.Polynomial([0.0, 2.0 / self.spread])
@@ -177,28 +177,28 @@ class WaveletPulse(AbstractPulse):
         )
 
 
-def number(parameter: str, value: ArrayLike, *, low: float = -LARGEST, unit: str = "-") -> float:
-    """One number from `low` to `LARGEST`."""
-    array = in_range(parameter, value, low, LARGEST, unit=unit)
+def checked_number(parameter: str, value: ArrayLike, *, low: float = -MAX_MAGNITUDE, unit: str = "-") -> float:
+    """One number from `low` to `MAX_MAGNITUDE`."""
+    array = in_range(parameter, value, low, MAX_MAGNITUDE, unit=unit)
     if array.ndim:
         raise InvalidArgumentError(parameter, value, "one number")
     return float(array)
 
 
-def _numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple[float, ...]:
-    array = in_range(parameter, values, -LARGEST, LARGEST, unit=unit)
+def _checked_numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple[float, ...]:
+    array = in_range(parameter, values, -MAX_MAGNITUDE, MAX_MAGNITUDE, unit=unit)
     if array.ndim != 1:
         raise InvalidArgumentError(parameter, values, "a sequence of numbers")
     return tuple(array.tolist())
 
 
-def sinusoids(terms: Terms, phi: ArrayLike) -> Array:
+def sum_of_sinusoids(terms: Terms, phi: ArrayLike) -> Array:
     """The sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
     phi = np.asarray(phi, dtype=np.float64)
     return np.asarray(sum(c * np.cos(w * phi + d) for c, w, d in terms))
 
 
-def turns_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, ...]:
+def stationary_phases_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, ...]:
     """The phases strictly inside the window at which the slope of a sum of sinusoids changes its sign [rad]."""
     c, w, d = np.array(terms).T
 
@@ -209,7 +209,7 @@ def turns_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, .
     return sign_changes(slope, np.abs(c * w).sum(), np.abs(c * w**3).sum(), start, end)
 
 
-def peak_of(shape: Callable[[ArrayLike], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
+def peak_amplitude(shape: Callable[[ArrayLike], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
     """max |f| on the window [-]."""
     return float(np.max(np.abs(shape([start, *turns, end]))))
 

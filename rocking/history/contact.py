@@ -19,16 +19,16 @@ from rocking.history.motion import Motion, overturned
 from rocking.model.reactions import Floats, Reactions, impulse_ratio, reactions
 from rocking.model.response import Outcome
 
-FINE = 0.02
+MAX_STEP = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
 
-BESIDE = 1e-12
+EVENT_OFFSET = 1e-12
 """Relative distance in time of the samples on either side of an event."""
 
 PRACTICAL_FRICTION = 0.7
 """Friction that a dry contact can be trusted with [-]: of rough concrete on concrete in EN 1992-1-1, 6.2.5."""
 
-LARGEST_FRICTION = 1.0
+MAX_FRICTION = 1.0
 """Friction demand beyond which the rocking model is taken not to apply [-]: common dry contacts stay below."""
 
 COLUMNS = {
@@ -49,7 +49,7 @@ ATTRIBUTES = (
 
 
 @dataclass(frozen=True)
-class Extremes:
+class ContactExtremes:
     """Extremes through a motion, impacts excluded; of a block that overturns, until it passes alpha for good.
 
     Attributes
@@ -90,17 +90,17 @@ class Extremes:
     def rocking_applies(self) -> bool:
         """Whether the block rocks without sliding or lifting off, or does not uplift at all.
 
-        False where it lifts off, or where rocking needs a coefficient of friction beyond `LARGEST_FRICTION`.
+        False where it lifts off, or where rocking needs a coefficient of friction beyond `MAX_FRICTION`.
         A block that does not uplift under friction that holds it does not uplift under less either.
         """
-        held = not self.lifts_off and self.largest_friction_demand <= LARGEST_FRICTION
+        held = not self.lifts_off and self.largest_friction_demand <= MAX_FRICTION
         return held or self.outcome == Outcome.NO_UPLIFT
 
     @property
     def sentence(self) -> str:
         """The outcome in words, without a subject; where the rocking model does not apply, that comes first."""
         outcome, demand = self.outcome.sentence, self.largest_friction_demand
-        if self.outcome == Outcome.NO_UPLIFT and demand > LARGEST_FRICTION:
+        if self.outcome == Outcome.NO_UPLIFT and demand > MAX_FRICTION:
             return f"{outcome}, but slides unless the coefficient of friction is at least {demand:.3g}"
         if self.rocking_applies:
             return outcome
@@ -142,7 +142,7 @@ class Extremes:
         return said
 
 
-def with_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Dataset:
+def add_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Dataset:
     """Add the contact to a time history of this motion.
 
     Returns
@@ -152,11 +152,11 @@ def with_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Da
         friction_demand(tau): |H|/N, infinite where N <= 0; friction_demand_over_slope(tau): |H|/(N tan(alpha)), finite
         in the slender limit, where the first and the third are 0; all [-], at an impact after it. Attributes:
         largest_friction_demand, largest_friction_demand_over_slope, smallest_normal_reaction, lifts_off,
-        impulse_ratio, warnings, of `Extremes`: through the motion shown, also between its samples.
+        impulse_ratio, warnings, of `ContactExtremes`: through the motion shown, also between its samples.
     """
     tau, rotation, velocity = (history[name].values for name in ("tau", "rotation", "angular_velocity"))
     found = reactions_of(motion, landings, tau, rotation, velocity)
-    most = extremes_of(motion)
+    most = contact_extremes(motion)
     slope = math.tan(motion.alpha)
     demand = found.friction_demand
     columns = (slope * found.horizontal, found.normal, slope * demand if slope > 0.0 else np.zeros_like(demand), demand)
@@ -192,24 +192,24 @@ def reactions_of(motion: Motion, landings: Floats, tau: Floats, rotation: Floats
     return reactions(rotation, velocity, ground, np.where(still, lifting, side), motion.alpha)
 
 
-def extremes_of(motion: Motion) -> Extremes:
+def contact_extremes(motion: Motion) -> ContactExtremes:
     """Extremes of the contact through the motion, up to its horizon."""
     answer, landings = motion.events()
     tau, rotation = _fine_samples(motion, answer, landings)
-    count = motion.followed(tau, rotation, answer)
+    count = motion.sample_count(tau, rotation, answer)
     tau, rotation = tau[:count], rotation[:count]
     if overturned(answer):
-        tau = _until_it_passes_alpha(motion, tau, rotation)
+        tau = _until_last_crossing_of_alpha(motion, tau, rotation)
 
     def measured(at: Floats) -> Reactions:
         return reactions_of(motion, landings, at, *motion.sample(at))
 
-    normal_time, lowest = _largest(lambda at: -measured(at).normal, tau)
+    normal_time, lowest = _refined_maximum(lambda at: -measured(at).normal, tau)
     time, demand = normal_time, math.inf
     if lowest < 0.0:
-        time, demand = _largest(lambda at: measured(at).friction_demand, tau)
+        time, demand = _refined_maximum(lambda at: measured(at).friction_demand, tau)
     slope = math.tan(motion.alpha)
-    return Extremes(
+    return ContactExtremes(
         largest_friction_demand=slope * demand if slope > 0.0 else 0.0,
         largest_friction_demand_over_slope=demand,
         friction_time=time,
@@ -223,28 +223,30 @@ def extremes_of(motion: Motion) -> Extremes:
 
 def _fine_samples(motion: Motion, answer: Record, landings: Floats) -> tuple[Floats, Floats]:
     """Times and rotations: both sides of every event, and small steps wherever the block moves, until it has fallen."""
-    end, cuts = motion.pulse_end, answer["cut_phase"][: int(answer["count"]) + 1]  # where it can uplift
+    end, cuts = motion.pulse_end, answer["interval_phase"][: int(answer["interval_count"]) + 1]  # where it can uplift
     phases = np.concatenate([cuts, [motion.pulse.start, *motion.pulse.stationary]])
     events = np.concatenate([landings, (phases - motion.pulse.start) / motion.frequency_ratio, [end]])
-    tau = np.concatenate([np.linspace(0.0, motion.horizon, 400), events, events * (1 - BESIDE), events * (1 + BESIDE)])
+    tau = np.concatenate(
+        [np.linspace(0.0, motion.horizon, 400), events, events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET)]
+    )
     tau = np.unique(np.clip(tau, 0.0, motion.horizon))
     while True:
         rotation, velocity = motion.sample(tau)
-        beyond = np.flatnonzero(np.abs(rotation) > motion.farthest)
+        beyond = np.flatnonzero(np.abs(rotation) > motion.max_rotation)
         if overturned(answer) and beyond.size:
             last = int(beyond[0]) + 1
             tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
         moves = (rotation != 0.0) | (velocity != 0.0)
         step = np.diff(tau)
-        allowed = np.where(tau[:-1] < end, FINE / max(1.0, motion.frequency_ratio), FINE)
-        wide = (moves[1:] | moves[:-1]) & (step > np.maximum(allowed, 8 * BESIDE * tau[1:]))
+        allowed = np.where(tau[:-1] < end, MAX_STEP / max(1.0, motion.frequency_ratio), MAX_STEP)
+        wide = (moves[1:] | moves[:-1]) & (step > np.maximum(allowed, 8 * EVENT_OFFSET * tau[1:]))
         if not wide.any():
             return tau, rotation
         between = tau[:-1][wide, None] + step[wide, None] * np.array([0.25, 0.5, 0.75])
         tau = np.sort(np.concatenate([tau, between.ravel()]))
 
 
-def _until_it_passes_alpha(motion: Motion, tau: Floats, rotation: Floats) -> Floats:
+def _until_last_crossing_of_alpha(motion: Motion, tau: Floats, rotation: Floats) -> Floats:
     """The times up to where |theta| passes alpha for the last time: from there the block only falls."""
     below = int(np.flatnonzero(np.abs(rotation) <= 1.0)[-1])
     if below == tau.size - 1:
@@ -257,7 +259,7 @@ def _until_it_passes_alpha(motion: Motion, tau: Floats, rotation: Floats) -> Flo
     return np.append(tau[: below + 1], left) if left > tau[below] else tau[: below + 1]
 
 
-def _largest(measure: Callable[[Floats], Floats], tau: Floats) -> tuple[float, float]:
+def _refined_maximum(measure: Callable[[Floats], Floats], tau: Floats) -> tuple[float, float]:
     """Time and value of the largest of a function, refined around its largest sample."""
     for _ in range(4):
         values = measure(tau)

@@ -7,25 +7,25 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._numba.cancellation import StopFlag, array_of, check
+from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.history.sampling import rock_and_sample, rock_freely, sample_arcs
+from rocking.history.sampling import sample_arcs, sample_free_rocking, solve_and_sample
 from rocking.model.response import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
 from rocking.solver.peak_response import checked_groups
-from rocking.solver.state import SINGLE, has_one_sinusoid, prepared, prepared_steps
+from rocking.solver.state import SINGLE_SINUSOID_STATE, has_one_sinusoid, pulse_state, step_state
 
 Floats = NDArray[np.float64]
 
-FREE_ROCKING = 8.0
+FREE_DURATION = 8.0
 """Free rocking followed by default after the pulse [tau]."""
 
-FREE_IMPACTS = 10_000
+MAX_FREE_IMPACTS = 10_000
 """Most impacts of free rocking that are followed."""
 
-FALLEN = 4.0
+MAX_ROTATION = 4.0
 """|theta|/alpha from which an overturning block is no longer followed [-]; it lies on the ground at pi/2."""
 
 
@@ -37,7 +37,7 @@ class Motion:
     ----------
     pulse : AbstractPulse
     slenderness, frequency_ratio, restitution, alpha : float
-        1/a, omega, eta [-]; alpha [rad], 0 for the slender limit; checked by `motion_of`.
+        1/a, omega, eta [-]; alpha [rad], 0 for the slender limit; checked by `build_motion`.
     horizon : float
         tau at which to stop [-].
     stop : StopFlag, optional
@@ -58,31 +58,31 @@ class Motion:
         return (self.pulse.end - self.pulse.start) / self.frequency_ratio
 
     @property
-    def farthest(self) -> float:
+    def max_rotation(self) -> float:
         """|theta|/alpha up to which a block that overturns is followed [-]."""
-        return min(FALLEN, 0.5 * np.pi / self.alpha) if self.alpha > 0.0 else FALLEN
+        return min(MAX_ROTATION, 0.5 * np.pi / self.alpha) if self.alpha > 0.0 else MAX_ROTATION
 
     def events(self) -> tuple[Record, Floats]:
         """The solver's record with the answer, and the times of the impacts [tau]."""
         nothing = np.empty(0)
-        forced, free = np.empty(IMPACT_LIMIT), np.empty(FREE_IMPACTS)
-        answer, written = self._force(nothing, nothing, nothing, forced)
-        then = self._free(answer, nothing, nothing, nothing, free)
+        forced, free = np.empty(IMPACT_LIMIT), np.empty(MAX_FREE_IMPACTS)
+        answer, written = self._sample_forced(nothing, nothing, nothing, forced)
+        then = self._sample_free(answer, nothing, nothing, nothing, free)
         landings = np.concatenate([forced[:written], free[:then]])
         return answer, landings[landings <= self.horizon]
 
     def sample(self, tau: Floats) -> tuple[Floats, Floats]:
         """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero once it has fallen."""
         rotation, velocity, nothing = np.zeros(tau.size), np.zeros(tau.size), np.empty(0)
-        answer, _ = self._force(tau, rotation, velocity, nothing)
-        self._free(answer, tau, rotation, velocity, np.empty(FREE_IMPACTS))
+        answer, _ = self._sample_forced(tau, rotation, velocity, nothing)
+        self._sample_free(answer, tau, rotation, velocity, np.empty(MAX_FREE_IMPACTS))
         return rotation, velocity
 
-    def followed(self, tau: Floats, rotation: Floats, answer: Record) -> int:
-        """How many of the samples `rotation` at `tau` show it before it has fallen, the first beyond `farthest` too."""
+    def sample_count(self, tau: Floats, rotation: Floats, answer: Record) -> int:
+        """How many of the samples `rotation` at `tau` show it before it has fallen, the first beyond `max_rotation` too."""
         if not overturned(answer):
             return tau.size
-        beyond = np.flatnonzero(np.abs(rotation) > self.farthest)
+        beyond = np.flatnonzero(np.abs(rotation) > self.max_rotation)
         if beyond.size:
             return int(beyond[0]) + 1
         shown = (rotation != 0.0) | (tau <= answer["uplift_time"])
@@ -92,32 +92,32 @@ class Motion:
         """Acceleration of the ground over g tan(alpha), a f [-] (3.2)."""
         return self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau) / self.slenderness
 
-    def _force(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
+    def _sample_forced(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
         groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
-        rest = self.farthest, tau, rotation, velocity, landings, array_of(self.stop)
+        rest = self.max_rotation, tau, rotation, velocity, landings, flag_array(self.stop)
         if has_one_sinusoid(self.pulse) and self.alpha == 0.0:
-            answer = prepared(self.pulse, SINGLE).copy()
+            answer = pulse_state(self.pulse, SINGLE_SINUSOID_STATE).copy()
             written = sample_arcs(*groups, answer, *rest)
         else:
-            answer = prepared(self.pulse).copy()
-            written = rock_and_sample(*groups, answer, prepared_steps(answer), *rest)
-        check(self.stop)
+            answer = pulse_state(self.pulse).copy()
+            written = solve_and_sample(*groups, answer, step_state(answer), *rest)
+        check_stop(self.stop)
         return answer, int(written)
 
-    def _free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
-        state = (*(float(answer[name]) for name in ("end_z", "end_w", "end_sign")), self.alpha)
-        steps = prepared_steps(prepared(self.pulse))
+    def _sample_free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
+        state = (*(float(answer[name]) for name in ("end_rotation", "end_velocity", "end_sign")), self.alpha)
+        steps = step_state(pulse_state(self.pulse))
         end = self.horizon * (1 + 1e-12)  # a step fills the samples before its end: the last one has to lie inside
         samples = tau, rotation, velocity
         times = self.pulse_end, end
-        written = rock_freely(
-            *state, steps, self.restitution, *times, self.farthest, *samples, landings, array_of(self.stop)
+        written = sample_free_rocking(
+            *state, steps, self.restitution, *times, self.max_rotation, *samples, landings, flag_array(self.stop)
         )
-        check(self.stop)
+        check_stop(self.stop)
         return int(written)
 
 
-def motion_of(
+def build_motion(
     pulse: str | AbstractPulse,
     *,
     slenderness: float,
@@ -132,7 +132,7 @@ def motion_of(
         in_range("duration", duration, 0.0, np.inf, closed="neither")
     made = as_pulse(pulse)
     s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
-    horizon = (made.end - made.start) / omega + FREE_ROCKING if duration is None else float(duration)
+    horizon = (made.end - made.start) / omega + FREE_DURATION if duration is None else float(duration)
     return Motion(made, s, omega, eta, angle, horizon, stop)
 
 

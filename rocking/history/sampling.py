@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 
-from rocking._numba.cancellation import stopped
-from rocking._numba.compilation import Record, Vector, entry, kernel
-from rocking.solver.arcs.flight import state, turn
-from rocking.solver.kernels.event_loop import advance, advance_by_arc, begin
-from rocking.solver.taylor.events import evaluate
+from rocking._numba.cancellation import is_stopped
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking.solver.arcs.flight import set_angles, state_at
+from rocking.solver.kernels.event_loop import advance, advance_by_arc, init_state
+from rocking.solver.taylor.events import evaluate_series
 from rocking.solver.taylor.flight import impact_in_step, start_steps
-from rocking.solver.taylor.step import set_block, take_step
+from rocking.solver.taylor.step import init_block, take_step
 
-INVISIBLE = 1e-7
+REST_VELOCITY = 1e-7
 """Velocity after an impact [-] below which free rocking is shown as rest: a rotation of 5e-15 alpha."""
 
 
@@ -22,17 +22,17 @@ def sample_step(
     sign: float,
     start: float,
     end: float,
-    tau: Vector,
+    tau: FloatArray,
     filled: int,
-    rotation: Vector,
-    velocity: Vector,
+    rotation: FloatArray,
+    velocity: FloatArray,
 ) -> int:
     """Evaluate the Taylor step that began at time `start` at the samples before `end`; the samples passed."""
     order = steps.order
     while filled < len(tau) and tau[filled] < end:
         h = max(tau[filled] - start, 0.0)  # sums of steps round differently
-        rotation[filled] = sign * evaluate(steps.z, 0, order, h)
-        velocity[filled] = sign * evaluate(steps.rate, 0, order - 1, h)
+        rotation[filled] = sign * evaluate_series(steps.z, 0, order, h)
+        velocity[filled] = sign * evaluate_series(steps.rate, 0, order - 1, h)
         filled += 1
     return filled
 
@@ -44,13 +44,13 @@ def sample_steps(
     start: float,
     end: float,
     farthest: float,
-    tau: Vector,
+    tau: FloatArray,
     filled: int,
-    rotation: Vector,
-    velocity: Vector,
+    rotation: FloatArray,
+    velocity: FloatArray,
 ) -> tuple[int, float, float]:
     """Step through the last flight of `advance` once more, at most to z = `farthest`; the samples passed, last z, w."""
-    set_block(steps, 0, flight.alpha, flight.omega)
+    init_block(steps, 0, flight.alpha, flight.omega)
     start_steps(flight, steps, 0)
     elapsed, z, w = 0.0, 0.0, flight.w0
     while elapsed < flight.length and z < farthest:
@@ -70,24 +70,24 @@ def sample_steps(
         )
         elapsed += h
         z, w = steps.z1[0], steps.w1[0]
-        steps.z0[0], steps.w0[0], steps.lifted[0] = z, w, 0.0
+        steps.z0[0], steps.w0[0], steps.starts_at_uplift[0] = z, w, 0.0
         steps.phase[0] += flight.omega * h
     return filled, z, w
 
 
 @kernel
 def sample_arc(
-    flight: Record, start: float, end: float, tau: Vector, filled: int, rotation: Vector, velocity: Vector
+    flight: Record, start: float, end: float, tau: FloatArray, filled: int, rotation: FloatArray, velocity: FloatArray
 ) -> tuple[int, float, float]:
     """Evaluate the arc of the last flight of `advance`; the samples passed, last z, w."""
     while filled < len(tau) and tau[filled] < end:
         h = max(tau[filled] - start, 0.0)
-        turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
-        z, w = state(flight, h, flight.cosine1, flight.sine1)
+        set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
+        z, w = state_at(flight, h, flight.cosine1, flight.sine1)
         rotation[filled], velocity[filled] = flight.sign * z, flight.sign * w
         filled += 1
-    turn(flight, flight.phase + flight.omega * flight.length, flight.cosine1, flight.sine1)
-    z, w = state(flight, flight.length, flight.cosine1, flight.sine1)
+    set_angles(flight, flight.phase + flight.omega * flight.length, flight.cosine1, flight.sine1)
+    z, w = state_at(flight, flight.length, flight.cosine1, flight.sine1)
     return filled, z, w
 
 
@@ -100,17 +100,17 @@ def sample_pulse(
     flight: Record,
     steps: Record | None,
     farthest: float,
-    tau: Vector,
-    rotation: Vector,
-    velocity: Vector,
-    landings: Vector,
-    stop: Vector,
+    tau: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    landings: FloatArray,
+    stop: FloatArray,
 ) -> int:
-    """`rock_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
-    begin(slenderness, omega, alpha, flight)
+    """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
+    init_state(slenderness, omega, alpha, flight)
     pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
-    filled, written, going = 0, 0, flight.count > 0
-    while going and not stopped(stop):
+    filled, written, going = 0, 0, flight.interval_count > 0
+    while going and not is_stopped(stop):
         flight.length = math.nan
         going = advance_by_arc(flight, eta) if steps is None else advance(flight, steps, eta)
         if math.isnan(flight.length):
@@ -127,21 +127,21 @@ def sample_pulse(
         while filled < len(tau) and tau[filled] < start:
             filled += 1  # at rest
         # `advance` has prepared the next flight: its angles must not stand in for this one's
-        turn(flight, flight.phase, flight.cosine0, flight.sine0)
+        set_angles(flight, flight.phase, flight.cosine0, flight.sine0)
         if steps is None or flight.by_arcs == 1:
             filled, z, w = sample_arc(flight, start, end, tau, filled, rotation, velocity)
         else:
             reach = math.inf if going else farthest
             filled, z, w = sample_steps(flight, steps, start, end, reach, tau, filled, rotation, velocity)
         if going:
-            turn(flight, flight.next_phase, flight.cosine0, flight.sine0)
+            set_angles(flight, flight.next_phase, flight.cosine0, flight.sine0)
         else:
-            flight.end_z, flight.end_w = z, w
+            flight.end_rotation, flight.end_velocity = z, w
     return written
 
 
 @entry
-def rock_and_sample(
+def solve_and_sample(
     slenderness: float,
     omega: float,
     eta: float,
@@ -149,11 +149,11 @@ def rock_and_sample(
     flight: Record,
     steps: Record,
     farthest: float,
-    tau: Vector,
-    rotation: Vector,
-    velocity: Vector,
-    landings: Vector,
-    stop: Vector,
+    tau: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    landings: FloatArray,
+    stop: FloatArray,
 ) -> int:
     """One block from rest to its final fate, sampled at the times `tau` during the pulse.
 
@@ -192,13 +192,13 @@ def sample_arcs(
     alpha: float,
     flight: Record,
     farthest: float,
-    tau: Vector,
-    rotation: Vector,
-    velocity: Vector,
-    landings: Vector,
-    stop: Vector,
+    tau: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    landings: FloatArray,
+    stop: FloatArray,
 ) -> int:
-    """`rock_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE`.
+    """`solve_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE`.
 
     Compiled as `rock_arcs`, it has the same bits.
     """
@@ -206,7 +206,7 @@ def sample_arcs(
 
 
 @entry
-def rock_freely(
+def sample_free_rocking(
     z: float,
     w: float,
     sign: float,
@@ -216,18 +216,18 @@ def rock_freely(
     start: float,
     horizon: float,
     farthest: float,
-    tau: Vector,
-    rotation: Vector,
-    velocity: Vector,
-    landings: Vector,
-    stop: Vector,
+    tau: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    landings: FloatArray,
+    stop: FloatArray,
 ) -> int:
     """Continue from the state that the solver left at the end of the pulse.
 
     Parameters
     ----------
     z, w, sign : float
-        |theta|/alpha, its rate, and sgn(theta) there: the fields `end_z`, `end_w` and `end_sign` of a record.
+        |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and `end_sign` of a record.
     alpha : float
         Slenderness angle [rad], 0: slender.
     steps
@@ -250,15 +250,15 @@ def rock_freely(
     int
         Impacts written down.
     """
-    set_block(steps, 0, alpha, 1.0)
-    steps.strength[0], steps.lifted[0], steps.phase[0] = 0.0, 0.0, 0.0
+    init_block(steps, 0, alpha, 1.0)
+    steps.strength[0], steps.starts_at_uplift[0], steps.phase[0] = 0.0, 0.0, 0.0
     filled, written = 0, 0
     while filled < len(tau) and tau[filled] < start:
         filled += 1
     time = start
     steps.z0[0], steps.w0[0] = z, w
     grounded = False
-    while sign != 0.0 and time < horizon and steps.z0[0] < farthest and not stopped(stop):
+    while sign != 0.0 and time < horizon and steps.z0[0] < farthest and not is_stopped(stop):
         steps.limit[0] = horizon - time
         take_step(steps)
         impact = impact_in_step(steps, 0, False, grounded)
@@ -273,8 +273,8 @@ def rock_freely(
             landings[written] = time
             written += 1
         steps.z0[0] = 0.0
-        steps.w0[0] = -eta * evaluate(steps.rate, 0, steps.order - 1, h)  # (2.3)
+        steps.w0[0] = -eta * evaluate_series(steps.rate, 0, steps.order - 1, h)  # (2.3)
         sign = -sign
-        if steps.w0[0] <= INVISIBLE or written == len(landings):
+        if steps.w0[0] <= REST_VELOCITY or written == len(landings):
             break
     return written

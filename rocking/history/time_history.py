@@ -8,8 +8,8 @@ import xarray as xr
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse
-from rocking.history.contact import with_contact
-from rocking.history.motion import motion_of, overturned
+from rocking.history.contact import add_contact
+from rocking.history.motion import build_motion, overturned
 from rocking.model.response import Outcome
 
 
@@ -47,7 +47,7 @@ def time_history(
         tau(tau): time p t from the start of the pulse [-]; rotation(tau): theta/alpha [-]; angular_velocity(tau):
         theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(tau): a f [-];
         impact_time(impact) [-]. Attributes: the question, outcome, overturned, peak_rotation, impacts. With
-        `contact`, what `history_contact.with_contact` adds.
+        `contact`, what `history_contact.add_contact` adds.
 
     Raises
     ------
@@ -58,13 +58,13 @@ def time_history(
     """
     in_range("samples", samples, 2, 1_000_000)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
-    motion = motion_of(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
+    motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
     answer, landings = motion.events()  # they are among the samples
     events = [0.0, motion.pulse_end, float(np.nan_to_num(answer["uplift_time"]))]
     tau = np.concatenate([np.linspace(0.0, motion.horizon, int(samples)), landings, events])
     tau = np.unique(tau[tau <= motion.horizon])
     rotation, velocity = motion.sample(tau)
-    last = motion.followed(tau, rotation, answer)
+    last = motion.sample_count(tau, rotation, answer)
     tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
     history = xr.Dataset(
         {
@@ -86,9 +86,9 @@ def time_history(
             "alpha": motion.alpha,
             "outcome": Outcome(int(answer["outcome"])).name,
             "overturned": int(overturned(answer)),
-            "peak_rotation": float(answer["peak"]),
+            "peak_rotation": float(answer["peak_rotation"]),
             "impacts": int(answer["impacts"]),
             "pulse_end": motion.pulse_end,
         },
     )
-    return with_contact(history, motion, landings) if contact else history
+    return add_contact(history, motion, landings) if contact else history

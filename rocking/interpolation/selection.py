@@ -4,33 +4,42 @@ from __future__ import annotations
 
 import math
 
-from rocking._numba.compilation import Vector, entry
-from rocking.interpolation.stencils import SHIFTS, SQUARED, Mesh, in_cell
+from rocking._numba.compilation import FloatArray, entry
+from rocking.interpolation.stencils import SQUARED, STENCIL_SHIFTS, Mesh, interpolate_in_cell
 
-_SHIFTS = len(SHIFTS)
+_SHIFTS = len(STENCIL_SHIFTS)
 
 
 @entry
 def interpolate_cells(
-    peaks: Vector, i: Vector, j: Vector, codes: Vector, x: Vector, y: Vector, mesh: Mesh, values: Vector
+    peaks: FloatArray,
+    i: FloatArray,
+    j: FloatArray,
+    codes: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
+    mesh: Mesh,
+    values: FloatArray,
 ) -> None:
     """Fill `values` (cells,) with what `codes` interpolate, the peak or (1 - peak)^2, at a point of each cell."""
     for c in range(len(i)):
         squared = codes[c] >= SQUARED
-        values[c] = in_cell(peaks, i[c], j[c], codes[c] - SQUARED if squared else codes[c], squared, x[c], y[c], mesh)
+        values[c] = interpolate_in_cell(
+            peaks, i[c], j[c], codes[c] - SQUARED if squared else codes[c], squared, x[c], y[c], mesh
+        )
 
 
 @entry
 def choose_stencils(
-    peaks: Vector,
-    i: Vector,
-    j: Vector,
-    x: Vector,
-    y: Vector,
-    truth: Vector,
+    peaks: FloatArray,
+    i: FloatArray,
+    j: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
+    truth: FloatArray,
     mesh: Mesh,
-    codes: Vector,
-    errors: Vector,
+    codes: FloatArray,
+    errors: FloatArray,
 ) -> None:
     """For each cell the code of least largest error at some points of it, where the one it has is not the best.
 
@@ -54,12 +63,12 @@ def choose_stencils(
             code = codes[c] if k < 0 else k
             squared = code >= SQUARED
             shift = code - SQUARED if squared else code
-            row, column = i[c] - SHIFTS[shift][0], j[c] - SHIFTS[shift][1]
+            row, column = i[c] - STENCIL_SHIFTS[shift][0], j[c] - STENCIL_SHIFTS[shift][1]
             if row < 0 or column < 0 or row + 4 > n or column + 4 > m:
                 continue
             largest = 0.0
             for point in range(len(truth)):
-                value = in_cell(peaks, i[c], j[c], shift, squared, x[point, c], y[point, c], mesh)
+                value = interpolate_in_cell(peaks, i[c], j[c], shift, squared, x[point, c], y[point, c], mesh)
                 if math.isnan(value + truth[point, c]):  # a block overturns, at a node or at the point
                     largest = math.inf
                     break

@@ -13,24 +13,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._numba.compilation import Vector, entry, kernel, plain
+from rocking._numba.compilation import FloatArray, contiguous_array, entry, kernel
 from rocking.errors import InvalidArgumentError
 
-STENCIL = 4
+STENCIL_SIZE = 4
 """Nodes of a stencil in one direction: the interpolant is exact for cubics."""
 
-SHIFTS = ((1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2))
+STENCIL_SHIFTS = ((1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2))
 """Rows and columns by which a stencil may start before its cell, the best first."""
 
 SQUARED, OVERTURNS, NO_STENCIL = 9, 18, -1
 """Values of `stencil`: from 9 on (1 - peak)^2 is interpolated; all overturn alike; not interpolated."""
 
-LEVELS = ((4, 1), (4, 2), (4, 0), (3, 1), (3, 0), (2, 0))
+SLICE_STENCILS = ((4, 1), (4, 2), (4, 0), (3, 1), (3, 0), (2, 0))
 """How many levels may serve the gap between two, and how many of them lie below the lower of these; the best first."""
 
 Array = NDArray[np.float64]
 
-_ROW_SHIFT, _COLUMN_SHIFT = np.array(SHIFTS).T.copy()
+_ROW_SHIFT, _COLUMN_SHIFT = np.array(STENCIL_SHIFTS).T.copy()
 
 
 class Mesh(NamedTuple):
@@ -59,10 +59,10 @@ class Mesh(NamedTuple):
             If an axis has fewer than four nodes.
         """
         shape = slenderness.size, frequency_ratio.size
-        if min(shape) < STENCIL:
-            raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL} nodes")
+        if min(shape) < STENCIL_SIZE:
+            raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL_SIZE} nodes")
         logs = np.log(frequency_ratio)
-        return cls(plain(slenderness), logs, _products(slenderness), _products(logs))
+        return cls(contiguous_array(slenderness), logs, _node_products(slenderness), _node_products(logs))
 
     def within(self, cells: tuple[NDArray[np.intp], ...], place: tuple[float, float]) -> tuple[Array, Array]:
         """Row and column coordinates of a place in [0, 1]^2 within each of several cells."""
@@ -73,15 +73,16 @@ class Mesh(NamedTuple):
         )
 
 
-def _products(axis: Array) -> Array:
+def _node_products(axis: Array) -> Array:
     """Products of (x_k - x_m), m != k, for the four nodes from each on."""
-    nodes = [axis[k : axis.size - 3 + k] for k in range(STENCIL)]
+    nodes = [axis[k : axis.size - 3 + k] for k in range(STENCIL_SIZE)]
     return np.stack(
-        [np.prod([nodes[k] - nodes[m] for m in range(STENCIL) if m != k], axis=0) for k in range(STENCIL)], axis=-1
+        [np.prod([nodes[k] - nodes[m] for m in range(STENCIL_SIZE) if m != k], axis=0) for k in range(STENCIL_SIZE)],
+        axis=-1,
     )
 
 
-def cell_of(axis: Array, value: ArrayLike) -> NDArray[np.intp]:
+def cell_index(axis: Array, value: ArrayLike) -> NDArray[np.intp]:
     """Cell along an ascending axis that holds each value; the last node ends the last cell, -1 is outside."""
     value = np.asarray(value, dtype=np.float64)
     inside = (value >= axis[0]) & (value <= axis[-1])
@@ -89,7 +90,7 @@ def cell_of(axis: Array, value: ArrayLike) -> NDArray[np.intp]:
 
 
 @kernel
-def weights(axis: Vector, products: Vector, first: int, x: float) -> tuple[float, float, float, float]:
+def lagrange_weights(axis: FloatArray, products: FloatArray, first: int, x: float) -> tuple[float, float, float, float]:
     """Lagrange's weights at x of the four nodes of an axis from `first` on."""
     d0, d1, d2, d3 = x - axis[first], x - axis[first + 1], x - axis[first + 2], x - axis[first + 3]
     below = products[first]
@@ -97,11 +98,13 @@ def weights(axis: Vector, products: Vector, first: int, x: float) -> tuple[float
 
 
 @kernel
-def in_cell(values: Vector, i: int, j: int, shift: int, squared: bool, x: float, y: float, mesh: Mesh) -> float:
+def interpolate_in_cell(
+    values: FloatArray, i: int, j: int, shift: int, squared: bool, x: float, y: float, mesh: Mesh
+) -> float:
     """Interpolated within cell (i, j), at the coordinates x and y: node values, or (1 - value)^2 if `squared`."""
     row, column = i - _ROW_SHIFT[shift], j - _COLUMN_SHIFT[shift]
-    by_row = weights(mesh.rows, mesh.row_products, row, x)
-    by_column = weights(mesh.columns, mesh.column_products, column, y)
+    by_row = lagrange_weights(mesh.rows, mesh.row_products, row, x)
+    by_column = lagrange_weights(mesh.columns, mesh.column_products, column, y)
     total = 0.0
     for p in range(4):
         along = 0.0
@@ -112,7 +115,7 @@ def in_cell(values: Vector, i: int, j: int, shift: int, squared: bool, x: float,
     return total
 
 
-def level_of(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+def slice_index(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """The level at or below each value, -1 outside of them; and whether the value is that level."""
     value = np.asarray(value, dtype=np.float64)
     below = np.searchsorted(levels, value, side="right") - 1
@@ -121,7 +124,7 @@ def level_of(levels: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray
 
 
 @entry
-def level_weight(levels: Vector, first: int, count: int, k: int, x: float) -> float:
+def lagrange_weight(levels: FloatArray, first: int, count: int, k: int, x: float) -> float:
     """Lagrange's weight at x of the k-th of `count` levels from `first` on."""
     weight = 1.0
     for m in range(count):
@@ -130,8 +133,8 @@ def level_weight(levels: Vector, first: int, count: int, k: int, x: float) -> fl
     return weight
 
 
-def stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:
-    """For each cell the first of `SHIFTS` whose 4 x 4 nodes all serve, -1 if there is none.
+def first_valid_stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """For each cell the first of `STENCIL_SHIFTS` whose 4 x 4 nodes all serve, -1 if there is none.
 
     Parameters
     ----------
@@ -147,8 +150,8 @@ def stencils(serves: NDArray[np.bool_]) -> NDArray[np.int8]:
     whole = rows[:-3] & rows[1:-2] & rows[2:-1] & rows[3:]
     i, j = np.arange(n - 1)[:, None], np.arange(m - 1)
     found = np.full((n - 1, m - 1), -1, dtype=np.int8)
-    for code in reversed(range(len(SHIFTS))):
-        row, column = i - SHIFTS[code][0], j - SHIFTS[code][1]
+    for code in reversed(range(len(STENCIL_SHIFTS))):
+        row, column = i - STENCIL_SHIFTS[code][0], j - STENCIL_SHIFTS[code][1]
         inside = (row >= 0) & (row < n - 3) & (column >= 0) & (column < m - 3)
         fits = inside & whole[np.clip(row, 0, n - 4), np.clip(column, 0, m - 4)]
         found[fits] = code

@@ -1,6 +1,6 @@
 """All cubes of a results folder as one source of answers; each is opened when first asked.
 
-A missing, damaged or unreadable cube never gives a wrong answer: the solver answers in its place, and `Atlas.problems`
+A missing, damaged or unreadable cube never gives a wrong answer: the solver answers in its place, and `CubeCollection.problems`
 says so. Files that change are read again.
 """
 
@@ -18,15 +18,15 @@ from rocking.datasets.cube import decode_dataset
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import get_pulse
 from rocking.lookup.cube import Cube
-from rocking.lookup.cube_slice import Level, decode_level
+from rocking.lookup.cube_slice import CubeSlice, decode_slice
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse
 
-Opened = tuple[Path, FileVersion, Level | DatasetError]
+LoadedCube = tuple[Path, FileVersion, CubeSlice | DatasetError]
 """The file of a cube, the version of it that was read, and the cube or what is wrong with it."""
 
 
-class Atlas:
+class CubeCollection:
     """The spectrum cubes below a results folder.
 
     Parameters
@@ -42,7 +42,7 @@ class Atlas:
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
-        self._cubes: dict[tuple[str, float], Opened] = {}
+        self._cubes: dict[tuple[str, float], LoadedCube] = {}
         self._levels: dict[str, tuple[Path, FileVersion, list[float]]] = {}
         self._checked: dict[str, tuple[FileVersion, str | None]] = {}
 
@@ -56,12 +56,12 @@ class Atlas:
             return []
         if known is not None and known[1] == version:
             return known[2]
-        found = sorted(_level(path.stem) for path in folder.glob("eta-?.??.nc"))
+        found = sorted(_restitution_of(path.stem) for path in folder.glob("eta-?.??.nc"))
         if version.is_settled:
             self._levels[key] = folder, version, found
         return found
 
-    def level(self, pulse: str, restitution: float) -> Level | None:
+    def level(self, pulse: str, restitution: float) -> CubeSlice | None:
         """The cube of a pulse and a restitution, None if there is none.
 
         A mirrored pulse has the same peaks and fates, and is answered by the same cube.
@@ -82,12 +82,12 @@ class Atlas:
             raise known[2]
         return known[2]
 
-    def _current(self, key: tuple[str, float]) -> Opened | None:
+    def _current(self, key: tuple[str, float]) -> LoadedCube | None:
         """The cube of a pulse and a restitution, if it is open and its file is the same still."""
         known = self._cubes.get(key)
         return known if known is not None and known[1] == version_of(known[0]) else None
 
-    def _read(self, key: tuple[str, float]) -> Opened:
+    def _read(self, key: tuple[str, float]) -> LoadedCube:
         """The cube of a pulse and a restitution, from its file unless another thread has just read it."""
         with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
             known = self._cubes.get(key)
@@ -104,7 +104,7 @@ class Atlas:
         restitutions = np.array(self.levels(pulse))
 
         @cache  # one answer comes from one version of each file
-        def level(k: int) -> Level | None:
+        def level(k: int) -> CubeSlice | None:
             try:
                 return self.level(pulse, float(restitutions[k]))
             except DatasetError:
@@ -222,7 +222,7 @@ def _cube_name(pulse: str, restitution: float) -> str:
     return f"spectra/{pulse.removeprefix('-')}/eta-{restitution:.2f}"
 
 
-def _level(stem: str) -> float:
+def _restitution_of(stem: str) -> float:
     """Restitution in the name of a file; nan, which equals no restitution, if it is none."""
     try:
         return float(stem.removeprefix("eta-"))
@@ -230,9 +230,9 @@ def _level(stem: str) -> float:
         return np.nan
 
 
-def _open(file: DataFile, pulse: str, restitution: float) -> Level | DatasetError:
+def _open(file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
     try:
-        cube = decode_level(file.content(), file.name)
+        cube = decode_slice(file.content(), file.name)
     except DatasetError as error:
         return error
     if (cube.pulse, cube.restitution) != (pulse, restitution):
@@ -244,7 +244,7 @@ def _check(file: DataFile) -> str | None:
     """Read a data set; what is wrong with it, None if nothing is."""
     kind, *rest = file.name.split("/")
     if kind == "spectra" and len(rest) == 2:
-        found = _open(file, rest[0], _level(rest[1]))
+        found = _open(file, rest[0], _restitution_of(rest[1]))
         return str(found) if isinstance(found, DatasetError) else None
     try:
         decode_dataset(file.content(), file.name)

@@ -18,9 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
-from rocking.interpolation.stencils import cell_of, level_of
-from rocking.lookup.cube_slice import FIELDS, Level
-from rocking.lookup.kernel import AROUND, LOWER, interpolate_many
+from rocking.interpolation.stencils import cell_index, slice_index
+from rocking.lookup.cube_slice import FIELDS, CubeSlice
+from rocking.lookup.kernel import LOWER_PLACE, SLICE_COUNT, interpolate_many
 from rocking.lookup.points import Points
 from rocking.solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 
@@ -30,7 +30,7 @@ METHODS: tuple[str, ...] = get_args(Method)
 SAFETY = 6.0
 """Factor from the measured errors to the error bound [-]: the probes are five points of a cell, not all."""
 
-FOUND = np.dtype(
+FOUND_RECORD = np.dtype(
     [
         ("known", np.bool_),
         ("overturned", np.bool_),
@@ -66,7 +66,7 @@ class Cube:
 
     pulse: str
     restitutions: Array
-    level: Callable[[int], Level | None]
+    level: Callable[[int], CubeSlice | None]
 
     def response(
         self,
@@ -127,17 +127,19 @@ class Cube:
 
     def used(self, restitution: Array) -> list[int]:
         """Indices of the cubes that may serve some of the restitutions: first those at or below one, then others."""
-        lower, on_level = level_of(self.restitutions, restitution)
+        lower, on_level = slice_index(self.restitutions, restitution)
         below = lower >= 0
         serve = dict.fromkeys(np.flatnonzero(np.bincount(lower[below])).tolist())
         for k in np.flatnonzero(np.bincount(lower[below & ~on_level])).tolist():
-            serve |= dict.fromkeys(range(max(0, k - LOWER), min(self.restitutions.size, k - LOWER + AROUND)))
+            serve |= dict.fromkeys(
+                range(max(0, k - LOWER_PLACE), min(self.restitutions.size, k - LOWER_PLACE + SLICE_COUNT))
+            )
         return list(serve)
 
     def promised(self, points: Points, limit: float) -> tuple[Flags, BoundedResponse]:
         """Where the cubes keep to the limit (points,), and what they answer there."""
-        found = np.zeros(points.slenderness.size, FOUND)
-        lower, on_level = level_of(self.restitutions, points.restitution)
+        found = np.zeros(points.slenderness.size, FOUND_RECORD)
+        lower, on_level = slice_index(self.restitutions, points.restitution)
         for label, index in _parts(np.where(lower < 0, -1, 2 * lower + on_level)):
             serving = self._around(*divmod(label, 2)) if label >= 0 else None
             if serving is not None:
@@ -159,20 +161,20 @@ class Cube:
             np.full(kept.size, "cube"),
         )
 
-    def _around(self, k: int, on_level: int) -> tuple[list[Level], Flags] | None:
-        """`AROUND` cubes, the k-th in place `LOWER`, and which of them there are; the others are the k-th once more.
+    def _around(self, k: int, on_level: int) -> tuple[list[CubeSlice], Flags] | None:
+        """`SLICE_COUNT` cubes, the k-th in place `LOWER_PLACE`, and which of them there are; the others are the k-th once more.
 
         A gap needs those next to it that were made together: the errors between restitutions were measured with them.
         """
         own = self.level(k)
         if own is None:
             return None
-        levels, usable = [own] * AROUND, np.zeros(AROUND, dtype=np.bool_)
-        usable[LOWER] = True
+        levels, usable = [own] * SLICE_COUNT, np.zeros(SLICE_COUNT, dtype=np.bool_)
+        usable[LOWER_PLACE] = True
         if not on_level:
-            for places, step in ((range(LOWER + 1, AROUND), 1), (range(LOWER - 1, -1, -1), -1)):
+            for places, step in ((range(LOWER_PLACE + 1, SLICE_COUNT), 1), (range(LOWER_PLACE - 1, -1, -1), -1)):
                 for place in places:
-                    index, last = k + place - LOWER, levels[place - step]
+                    index, last = k + place - LOWER_PLACE, levels[place - step]
                     one = self.level(index) if 0 <= index < self.restitutions.size else None
                     if one is None or not one.fits(own):
                         break
@@ -216,13 +218,13 @@ def _parts(labels: NDArray[np.intp]) -> Iterator[tuple[int, Index]]:
             yield int(label), np.flatnonzero(labels == label)
 
 
-def _interpolate(levels: list[Level], usable: Flags, points: Points, found: NDArray[np.void]) -> None:
-    """Fill `found` (points,) from `AROUND` cubes, for restitutions that lie in one gap, or are one level."""
-    own = levels[LOWER]
-    angle_level, on_angle = level_of(own.alpha, points.alpha)
+def _interpolate(levels: list[CubeSlice], usable: Flags, points: Points, found: NDArray[np.void]) -> None:
+    """Fill `found` (points,) from `SLICE_COUNT` cubes, for restitutions that lie in one gap, or are one level."""
+    own = levels[LOWER_PLACE]
+    angle_level, on_angle = slice_index(own.alpha, points.alpha)
     interpolate_many(
-        cell_of(own.slenderness, points.slenderness),
-        cell_of(own.frequency_ratio, points.frequency_ratio),
+        cell_index(own.slenderness, points.slenderness),
+        cell_index(own.frequency_ratio, points.frequency_ratio),
         points.slenderness,
         np.log(points.frequency_ratio),
         own.mesh,

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import plain
+from rocking._numba.compilation import contiguous_array
 from rocking.datasets.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.interpolation.stencils import Mesh
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Level:
+class CubeSlice:
     """The cube of one restitution; the fields (angles, n, m) as in `cube`.
 
     Attributes
@@ -63,12 +63,12 @@ class Level:
     restitution_error: NDArray[np.float32]
     alpha_error: NDArray[np.float32]
 
-    def fits(self, other: Level) -> bool:
+    def fits(self, other: CubeSlice) -> bool:
         """Whether the two stand on the same axes."""
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)
 
 
-def open_level(path: Path | str) -> Level:
+def open_slice(path: Path | str) -> CubeSlice:
     """Read a spectrum cube into memory.
 
     Raises
@@ -76,10 +76,10 @@ def open_level(path: Path | str) -> Level:
     DatasetError
         If the file is missing, damaged, or not a spectrum cube.
     """
-    return decode_level(read_content(path), path)
+    return decode_slice(read_content(path), path)
 
 
-def decode_level(content: bytes, path: Path | str) -> Level:
+def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
     """The same from the bytes of such a file; messages name `path`.
 
     Raises
@@ -89,12 +89,12 @@ def decode_level(content: bytes, path: Path | str) -> Level:
     """
     cube = decode_spectrum(content, path)
     try:
-        return level_of(cube, hashlib.sha256(content).hexdigest())
+        return slice_of(cube, hashlib.sha256(content).hexdigest())
     except InvalidArgumentError as error:
         raise DatasetError(f"{path}: {error}; build it again") from error
 
 
-def level_of(cube: xr.Dataset, sha256: str = "") -> Level:
+def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
     """A spectrum cube in memory; `sha256` of its file, if there is one.
 
     Raises
@@ -103,8 +103,8 @@ def level_of(cube: xr.Dataset, sha256: str = "") -> Level:
         If an axis has fewer than four nodes.
     """
     axes: dict[str, Any] = {name: cube[name].values for name in AXES}
-    fields: dict[str, Any] = {name: plain(cube[name].values) for name in FIELDS}
-    return Level(
+    fields: dict[str, Any] = {name: contiguous_array(cube[name].values) for name in FIELDS}
+    return CubeSlice(
         pulse=str(cube["pulse"].attrs["pulse_name"]),
         restitution=float(cube["restitution"]),
         next_restitution=float(cube.attrs.get("next_restitution", np.nan)),
@@ -115,13 +115,13 @@ def level_of(cube: xr.Dataset, sha256: str = "") -> Level:
     )
 
 
-def fetch_level(address: str) -> Level:
+def fetch_slice(address: str) -> CubeSlice:
     """The same from an http or https address.
 
     Raises
     ------
     DatasetError
-        As `open_level`; also if the address does not answer.
+        As `open_slice`; also if the address does not answer.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.nc"
@@ -129,4 +129,4 @@ def fetch_level(address: str) -> Level:
             urllib.request.urlretrieve(address, path)
         except OSError as error:
             raise DatasetError(f"{address}: cannot be fetched, {error}") from error
-        return open_level(path)
+        return open_slice(path)

@@ -4,24 +4,32 @@ from __future__ import annotations
 
 import numpy as np
 
-from rocking._numba.compilation import Record, Vector, entry, kernel
-from rocking.interpolation.stencils import LEVELS, OVERTURNS, SQUARED, STENCIL, Mesh, in_cell, level_weight
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking.interpolation.stencils import (
+    OVERTURNS,
+    SLICE_STENCILS,
+    SQUARED,
+    STENCIL_SIZE,
+    Mesh,
+    interpolate_in_cell,
+    lagrange_weight,
+)
 from rocking.model.response import Outcome
 
-UNKNOWN = -1
+UNKNOWN_IMPACTS = -1
 """Impacts where the nodes around a point differ in them."""
 
-LOWER = STENCIL - 2
+LOWER_PLACE = STENCIL_SIZE - 2
 """Of the cubes that `interpolate_many` takes: the one at or below the restitutions asked for."""
 
-AROUND = LOWER + STENCIL
+SLICE_COUNT = LOWER_PLACE + STENCIL_SIZE
 """How many these are: all that may serve a gap."""
 
-GAP_SHARE = 0.7
+INTERVAL_WEIGHT = 0.7
 """Weight of the errors between levels beside those within cells [-]: they are measured where they are largest, in the
 middle of the gap, and the safety factor is made for those within cells, which creases can pass by."""
 
-WORST_SHARE = 0.5
+WORST_CELL_WEIGHT = 0.5
 """Share of the largest of the errors within cells that counts, however little the cell weighs [-]: what makes it large,
 as a crease does, may lie closer at the levels between."""
 
@@ -36,25 +44,25 @@ def common_impacts(cubes: Record, layer: int, e: int, i: int, j: int, before: in
     for p in range(2):
         for q in range(2):
             if impacts[layer, i + p, j + q] != first:
-                return UNKNOWN
-    return first if before == -2 or before == first else UNKNOWN
+                return UNKNOWN_IMPACTS
+    return first if before == -2 or before == first else UNKNOWN_IMPACTS
 
 
 @entry
 def interpolate_many(
-    row: Vector,
-    column: Vector,
-    x: Vector,
-    y: Vector,
+    row: FloatArray,
+    column: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
     mesh: Mesh,
-    eta: Vector,
+    eta: FloatArray,
     on_eta: bool,
-    etas: Vector,
-    usable: Vector,
-    angle_level: Vector,
-    on_angle: Vector,
-    angle: Vector,
-    angles: Vector,
+    etas: FloatArray,
+    usable: FloatArray,
+    angle_level: FloatArray,
+    on_angle: FloatArray,
+    angle: FloatArray,
+    angles: FloatArray,
     cubes: Record,
     answers: Record,
 ) -> None:
@@ -69,7 +77,7 @@ def interpolate_many(
     mesh : Mesh
         The nodes.
     eta, on_eta : float array (points,), bool
-        Restitutions, all above that of cube `LOWER`, and below that of the next; or all equal to it.
+        Restitutions, all above that of cube `LOWER_PLACE`, and below that of the next; or all equal to it.
     etas, usable : float array (AROUND,), bool array (AROUND,)
         Restitutions of the cubes, and whether there is one.
     angle_level, on_angle : int array, bool array (points,)
@@ -77,7 +85,7 @@ def interpolate_many(
     angle, angles : float arrays (points,), (layers,)
         Squares of the angles, and of those of the layers.
     cubes : named tuple of `lookup.FIELDS`
-        Each a tuple of `AROUND` arrays (layers, n, m), one for each cube.
+        Each a tuple of `SLICE_COUNT` arrays (layers, n, m), one for each cube.
     answers : array (points,) of `lookup.FOUND`
         `known` is set where there is an answer.
     """
@@ -91,15 +99,15 @@ def interpolate_many(
         in_cells, worst, between_etas, between_angles = 0.0, 0.0, 0.0, 0.0
         first_angle, count_angles = layer, 1
         if not on_angle[point]:
-            choice = cubes.alpha_levels[LOWER][layer, i, j]
+            choice = cubes.alpha_levels[LOWER_PLACE][layer, i, j]
             if choice < 0:
                 continue
-            count_angles, first_angle = LEVELS[choice][0], layer - LEVELS[choice][1]
-            between_angles = cubes.alpha_error[LOWER][layer, i, j]
+            count_angles, first_angle = SLICE_STENCILS[choice][0], layer - SLICE_STENCILS[choice][1]
+            between_angles = cubes.alpha_error[LOWER_PLACE][layer, i, j]
             if not on_eta:
                 # measured on both sides of the gap between restitutions, with the same layers
-                other = cubes.alpha_error[LOWER + 1][layer, i, j]
-                if cubes.alpha_levels[LOWER + 1][layer, i, j] != choice or np.isnan(other):
+                other = cubes.alpha_error[LOWER_PLACE + 1][layer, i, j]
+                if cubes.alpha_levels[LOWER_PLACE + 1][layer, i, j] != choice or np.isnan(other):
                     continue
                 between_angles = max(between_angles, other)
         agree = not np.isnan(between_angles)
@@ -107,16 +115,16 @@ def interpolate_many(
             if not agree:
                 break
             layer = first_angle + a
-            by_angle = level_weight(angles, first_angle, count_angles, a, angle[point])
+            by_angle = lagrange_weight(angles, first_angle, count_angles, a, angle[point])
             layer_peak, layer_value, layer_squared = 0.0, 0.0, True
-            first_eta, count_etas = LOWER, 1
+            first_eta, count_etas = LOWER_PLACE, 1
             if not on_eta:
-                choice = cubes.restitution_levels[LOWER][layer, i, j]
-                error = cubes.restitution_error[LOWER][layer, i, j]
+                choice = cubes.restitution_levels[LOWER_PLACE][layer, i, j]
+                error = cubes.restitution_error[LOWER_PLACE][layer, i, j]
                 if choice < 0 or np.isnan(error):
                     agree = False
                     break
-                count_etas, first_eta = LEVELS[choice][0], LOWER - LEVELS[choice][1]
+                count_etas, first_eta = SLICE_STENCILS[choice][0], LOWER_PLACE - SLICE_STENCILS[choice][1]
                 between_etas += abs(by_angle) * error
             for b in range(count_etas):
                 e = first_eta + b
@@ -131,14 +139,16 @@ def interpolate_many(
                 agree = here != 0 and (kind == 0 or kind == here) and not np.isnan(error)
                 if not agree:
                     break
-                kind, weight = here, level_weight(etas, first_eta, count_etas, b, eta[point])
+                kind, weight = here, lagrange_weight(etas, first_eta, count_etas, b, eta[point])
                 in_cells += abs(by_angle * weight) * error
                 worst = max(worst, error)
                 impacts = common_impacts(cubes, layer, e, i, j, impacts)
                 if kind > 0:
                     squared = code >= SQUARED
                     shift = code - SQUARED if squared else code
-                    here_value = in_cell(cubes.peak_rotation[e][layer], i, j, shift, squared, x[point], y[point], mesh)
+                    here_value = interpolate_in_cell(
+                        cubes.peak_rotation[e][layer], i, j, shift, squared, x[point], y[point], mesh
+                    )
                     layer_value += weight * here_value
                     layer_peak += weight * (1.0 - np.sqrt(max(here_value, 0.0)) if squared else here_value)
                     layer_squared = layer_squared and squared
@@ -150,7 +160,7 @@ def interpolate_many(
             continue
         found = answers[point]
         found.known = True
-        found.error = max(in_cells, WORST_SHARE * worst) + GAP_SHARE * (between_etas + between_angles)
+        found.error = max(in_cells, WORST_CELL_WEIGHT * worst) + INTERVAL_WEIGHT * (between_etas + between_angles)
         found.impacts = impacts
         found.overturned = kind < 0
         found.outcome = (-kind) % 4 if kind < 0 else _OVERTURNED - 1

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.errors import DatasetError
 from rocking.lookup.cube import Cube
-from rocking.lookup.cube_slice import fetch_level, open_level
+from rocking.lookup.cube_slice import fetch_slice, open_slice
 
 
 def open_cube(source: Path | str) -> Cube:
@@ -26,13 +26,13 @@ def open_cube(source: Path | str) -> Cube:
         If a file is missing, damaged, or not a spectrum cube, or if the files of a folder do not belong together.
     """
     if str(source).startswith(("http://", "https://")):
-        levels = [fetch_level(str(source))]
+        levels = [fetch_slice(str(source))]
     elif Path(source).is_dir():
-        levels = [open_level(path) for path in sorted(Path(source).glob("eta-?.??.nc"))]
+        levels = [open_slice(path) for path in sorted(Path(source).glob("eta-?.??.nc"))]
         if not levels:
             raise DatasetError(f"{source}: holds no spectrum cubes; `make reproduce` builds them")
     else:
-        levels = [open_level(source)]
+        levels = [open_slice(source)]
     for level in levels:
         if level.pulse != levels[0].pulse or not level.fits(levels[0]):
             raise DatasetError(f"{source}: cubes of different pulses or grids; build them again")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._numba.compilation import plain
+from rocking._numba.compilation import contiguous_array
 from rocking.errors import broadcast, in_range
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class Points:
         )
         given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
         full = broadcast(given | {"restitution": restitution, "alpha": alpha}, groups)
-        return cls(*(plain(group).ravel() for group in full)), full[0].shape
+        return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
     def __getitem__(self, index: Any) -> Points:
         return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))

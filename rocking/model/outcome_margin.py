@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def fate_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
+def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     """By how much the energy at the end of the pulse, or after the next impact, passes that of the barrier [-].
 
     Parameters

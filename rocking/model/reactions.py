@@ -16,7 +16,7 @@ from rocking.errors import in_range
 
 Floats = NDArray[np.float64]
 
-SHARE = 0.75
+INERTIA_RATIO = 0.75
 """R p^2/g = 3/4: of a rectangle that rocks about its corner, below (2.2)."""
 
 
@@ -74,8 +74,8 @@ def reactions(
     else:
         slope, q, e, c = 0.0, np.zeros_like(angular_velocity), lean, np.ones_like(lean)
     turn = -e - u * c  # (2.2): theta''/(p^2 tan(alpha))
-    horizontal = u + SHARE * (c * turn + e * q * q)
-    normal = 1.0 + SHARE * (slope * slope * e * turn - c * q * q)
+    horizontal = u + INERTIA_RATIO * (c * turn + e * q * q)
+    normal = 1.0 + INERTIA_RATIO * (slope * slope * e * turn - c * q * q)
     moving = side != 0.0
     return Reactions(np.where(moving, horizontal, u), np.where(moving, normal, 1.0))
 

@@ -12,60 +12,67 @@ from itertools import repeat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._numba.cancellation import StopFlag, array_of, check
-from rocking._numba.compilation import Record, plain
+from rocking._numba.cancellation import StopFlag, check_stop, flag_array
+from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, in_range
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking.model.outcome_margin import fate_margin
+from rocking.model.outcome_margin import outcome_margin
 from rocking.model.response import Response
-from rocking.solver.kernels.batch import rock_arcs, rock_many
-from rocking.solver.state import ANSWER, FINEST, SINGLE, has_one_sinusoid, prepared, prepared_steps
+from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
+from rocking.solver.state import (
+    FULL_PRECISION,
+    RESPONSE_RECORD,
+    SINGLE_SINUSOID_STATE,
+    has_one_sinusoid,
+    pulse_state,
+    step_state,
+)
 
-SMALLEST_SHARE, LARGEST_SHARE = 2048, 4096
+MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells handed to one thread at a time: at least a millisecond of work, as long as a thread takes to start."""
 
-SMALLEST_SLENDERNESS = 1e-12
+MIN_SLENDERNESS = 1e-12
 """Smallest 1/a answered [-]: an acceleration of 10^12 g tan(alpha)."""
 
-FREQUENCY_RATIOS = (1e-9, 1e9)
+FREQUENCY_RATIO_RANGE = (1e-9, 1e9)
 """Frequency ratios answered [-]."""
 
-ALPHAS = (1e-12, 1.57)
+ALPHA_RANGE = (1e-12, 1.57)
 """Slenderness angles of (2.2) answered [rad]; 0 is the slender limit. At pi/2 tan(alpha) leaves all measure."""
 
-TOLERANCES = (1e-13, 1e-3)
+TOLERANCE_RANGE = (1e-13, 1e-3)
 """Tolerances that can be asked for [-]."""
 
-RESERVE = 1e-4
+TRUNCATION_FRACTION = 1e-4
 """Share of the tolerance that the truncated terms of one Taylor step may have [-]: steps and impacts magnify it."""
 
-CLOSE = 1e-3
+NEAR_BOUNDARY_MARGIN = 1e-3
 """Margin of the fate [-] below which a block is solved as accurately as doubles allow, whatever the tolerance."""
 
 
-CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+AVAILABLE_CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 """Cores that this process may use [-]."""
 
 
-class Scratch(threading.local):
+class SolverState(threading.local):
     """Memory of the kernels for the pulses last asked for, each thread its own: to make it costs more than a block."""
 
     def __init__(self) -> None:
-        self.of = lru_cache(maxsize=16)(_scratch_of)
-        self.single = lru_cache(maxsize=16)(_single_scratch_of)
+        self.of = lru_cache(maxsize=16)(_new_state)
+        self.single = lru_cache(maxsize=16)(_new_single_sinusoid_state)
 
 
-def _single_scratch_of(pulse: AbstractPulse) -> Record:
-    return prepared(pulse, SINGLE).copy()
+def _new_single_sinusoid_state(pulse: AbstractPulse) -> Record:
+    return pulse_state(pulse, SINGLE_SINUSOID_STATE).copy()
 
 
-def _scratch_of(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void], Record]:
-    flight = prepared(pulse)
-    return np.repeat(flight, LANES), prepared_steps(flight, precision)
+def _new_state(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void], Record]:
+    flight = pulse_state(pulse)
+    return np.repeat(flight, LANES), step_state(flight, precision)
 
 
-scratch = Scratch()
+solver_state = SolverState()
 
 
 def checked_groups(
@@ -73,13 +80,13 @@ def checked_groups(
 ) -> list[NDArray[np.float64]]:
     """The groups, checked and broadcast against each other; alpha = None is the slender limit, 0."""
     groups = (
-        in_range("slenderness", slenderness, SMALLEST_SLENDERNESS, math.inf),
-        in_range("frequency_ratio", frequency_ratio, *FREQUENCY_RATIOS),
+        in_range("slenderness", slenderness, MIN_SLENDERNESS, math.inf),
+        in_range("frequency_ratio", frequency_ratio, *FREQUENCY_RATIO_RANGE),
         in_range("restitution", restitution, 0.0, 1.0),
-        in_range("alpha", 0.0 if alpha is None else alpha, 0.0, ALPHAS[1], unit="rad"),
+        in_range("alpha", 0.0 if alpha is None else alpha, 0.0, ALPHA_RANGE[1], unit="rad"),
     )
     angles = groups[3]
-    in_range("alpha", angles[angles > 0.0], *ALPHAS, unit="rad")
+    in_range("alpha", angles[angles > 0.0], *ALPHA_RANGE, unit="rad")
     given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
     return broadcast(given, groups)
 
@@ -137,17 +144,17 @@ def peak_response(
     made = as_pulse(pulse)
     groups = checked_groups(slenderness, frequency_ratio, restitution, alpha)
     shape = groups[0].shape
-    cells = [plain(group).ravel() for group in groups]
-    allowed = 0.0 if tolerance is None else float(in_range("tolerance", tolerance, *TOLERANCES))
+    cells = [contiguous_array(group).ravel() for group in groups]
+    allowed = 0.0 if tolerance is None else float(in_range("tolerance", tolerance, *TOLERANCE_RANGE))
     by_arcs = isinstance(made, SinusoidalPulse) and not cells[3].any()  # which have nothing to leave out
-    precision = FINEST if by_arcs else max(FINEST, RESERVE * allowed)
-    answers = _rock(made, cells, precision, threads, stop)
-    if precision > FINEST:
-        margin = fate_margin(answers["end_z"], answers["end_w"], cells[2], cells[3])
-        near = np.flatnonzero(np.abs(margin) < CLOSE + 100.0 * allowed)
-        answers[near] = _rock(made, [cell[near] for cell in cells], FINEST, threads, stop)
-    found = {name: answers[name].reshape(shape) for name in ANSWER.names or ()}
-    peak = found["peak"]
+    precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * allowed)
+    answers = _solve_cells(made, cells, precision, threads, stop)
+    if precision > FULL_PRECISION:
+        margin = outcome_margin(answers["end_rotation"], answers["end_velocity"], cells[2], cells[3])
+        near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * allowed)
+        answers[near] = _solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
+    found = {name: answers[name].reshape(shape) for name in RESPONSE_RECORD.names or ()}
+    peak = found["peak_rotation"]
     return Response(
         peak_rotation=peak,
         outcome=found["outcome"],
@@ -155,15 +162,15 @@ def peak_response(
         chatter=found["chatter"],
         exceeded_alpha=np.asarray(np.isnan(peak) | (peak > 1.0)),
         uplift_time=found["uplift_time"],
-        first_impact_time=found["first_time"],
-        first_impact_velocity=found["first_velocity"],
-        peak_mode=found["mode"],
-        end_rotation=found["end_z"],
-        end_velocity=found["end_w"],
+        first_impact_time=found["first_impact_time"],
+        first_impact_velocity=found["first_impact_velocity"],
+        peak_mode=found["peak_mode"],
+        end_rotation=found["end_rotation"],
+        end_velocity=found["end_velocity"],
     )
 
 
-def _rock(
+def _solve_cells(
     pulse: AbstractPulse,
     cells: list[NDArray[np.float64]],
     precision: float,
@@ -172,36 +179,36 @@ def _rock(
 ) -> NDArray[np.void]:
     """The answers (size,) to questions of four arrays (size,), shared out among threads."""
     size = cells[0].size
-    answers = np.empty(size, ANSWER)
+    answers = np.empty(size, RESPONSE_RECORD)
     single, rigid = has_one_sinusoid(pulse), bool(cells[3].any())
     if single and rigid and not cells[3].all():
         for kind in (cells[3] > 0.0, cells[3] == 0.0):
-            answers[kind] = _rock(pulse, [cell[kind] for cell in cells], precision, threads, stop)
+            answers[kind] = _solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
         return answers
     by_arcs = single and not rigid
-    cores = int(threads) if threads else CORES
-    share = min(max(math.ceil(size / cores), SMALLEST_SHARE), LARGEST_SHARE)
+    cores = int(threads) if threads else AVAILABLE_CORES
+    share = min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK)
 
     def fill(start: int, flag: NDArray[np.uint8]) -> None:
         part = slice(start, start + share)
         questions = [cell[part] for cell in cells]
         if by_arcs:
-            rock_arcs(*questions, scratch.single(pulse), flag, answers[part])
+            solve_by_arcs(*questions, solver_state.single(pulse), flag, answers[part])
         else:
-            rock_many(*questions, *scratch.of(pulse, precision), flag, answers[part])
+            solve_batch(*questions, *solver_state.of(pulse, precision), flag, answers[part])
 
     starts = range(0, size, share)
     workers = min(cores, len(starts))
     if workers <= 1:
         for start in starts:
-            fill(start, array_of(stop))
-            check(stop)
+            fill(start, flag_array(stop))
+            check_stop(stop)
     else:
-        with (stop or StopFlag()).part() as own, ThreadPoolExecutor(workers) as pool:
+        with (stop or StopFlag()).child() as own, ThreadPoolExecutor(workers) as pool:
             try:
                 list(pool.map(fill, starts, repeat(own.array)))
             except BaseException:  # an interrupt from the keyboard among them: the pool waits for its threads
                 own.set()
                 raise
-        check(stop)
+        check_stop(stop)
     return answers

@@ -12,24 +12,24 @@ from functools import lru_cache
 import numpy as np
 
 from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import BYTES, LANES
+from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
 
-COEFFICIENTS = 17
+SERIES_LENGTH = 17
 """Length of the series of the slender arcs: degree 16 in z."""
 
-ORDER = 22
+MAX_ORDER = 22
 """Largest degree of the Taylor steps."""
 
-FINEST = 1e-17
+FULL_PRECISION = 1e-17
 """Smallest share of the motion during a Taylor step that its last terms may have: far below rounding [-]."""
 
-UNDERWAY, IMPACT, PULSE_END, FALLEN = -1, 0, 1, 2
+IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
 """What ends a flight, if it has; it has fallen when nothing can bring it back, known before the pulse ends."""
 
 
-def _layout(most_terms: int) -> np.dtype[np.void]:
+def _flight_layout(most_terms: int) -> np.dtype[np.void]:
     per_term = (most_terms,)
     ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
     return np.dtype(
@@ -46,28 +46,32 @@ def _layout(most_terms: int) -> np.dtype[np.void]:
             ("end_shape", np.float64, ends),
             ("end_cosine", np.float64, (*ends, most_terms)),
             ("end_sine", np.float64, (*ends, most_terms)),
-            ("half_turn", np.float64, ends),  # single sinusoid: phase at which the piece's half-turn of it starts,
-            ("upright", np.float64, ends),  # and its cosine there, +1 or -1
+            (
+                "half_period_phase",
+                np.float64,
+                ends,
+            ),  # single sinusoid: phase at which the piece's half-turn of it starts,
+            ("half_period_cosine", np.float64, ends),  # and its cosine there, +1 or -1
             # the cell
             ("a", np.float64),  # 1/slenderness
             ("omega", np.float64),  # frequency ratio
             ("rate", np.float64, per_term),  # Omega = omega w
-            ("fastest", np.float64),  # largest of 1 and the rates
+            ("max_rate", np.float64),  # largest of 1 and the rates
             ("alpha", np.float64),  # slenderness angle [rad], 0: slender limit
-            ("cut_phase", np.float64, cuts),  # see `cuts`
-            ("cut_level", np.float64, cuts),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
-            ("cut_rise", np.float64, cuts),  # sign of f' there
-            ("cut_cosine", np.float64, (*cuts, most_terms)),
-            ("cut_sine", np.float64, (*cuts, most_terms)),
+            ("interval_phase", np.float64, cuts),  # see `cuts`
+            ("interval_level", np.float64, cuts),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
+            ("interval_slope", np.float64, cuts),  # sign of f' there
+            ("interval_cosine", np.float64, (*cuts, most_terms)),
+            ("interval_sine", np.float64, (*cuts, most_terms)),
             # where `rock` stands
             ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
             ("cell", np.int64),  # its place among the questions, -1: none
-            ("last", np.int64),  # the last of the questions about it that differ in eta alone
-            ("count", np.int64),  # intervals between cuts
+            ("last_cell", np.int64),  # the last of the questions about it that differ in eta alone
+            ("interval_count", np.int64),  # intervals between cuts
             ("interval", np.int64),  # the one that holds the start of the next flight
             ("at_rest", np.int64),  # whether that starts with an uplift
             ("uplifts", np.int64),  # uplifts from rest so far
-            ("before_uplift", np.int64),  # impacts before the last of them
+            ("impacts_before_uplift", np.int64),  # impacts before the last of them
             ("next_phase", np.float64),  # its start
             ("next_w", np.float64),
             ("next_sign", np.float64),
@@ -77,66 +81,66 @@ def _layout(most_terms: int) -> np.dtype[np.void]:
             ("phase", np.float64),  # phi at its start
             ("w0", np.float64),  # velocity there
             ("length", np.float64),  # its duration [tau]
-            ("lifted", np.int64),  # whether it starts with an uplift through |a f| = 1, where q is exactly 0
+            ("starts_at_uplift", np.int64),  # whether it starts with an uplift through |a f| = 1, where q is exactly 0
             ("q0", np.float64),  # pull there
-            ("share", np.float64, per_term),  # coefficients of its arc, see `slender_arcs.anchor`
+            ("particular", np.float64, per_term),  # coefficients of its arc, see `slender_arcs.anchor`
             ("x0", np.float64),
             ("y0", np.float64),
-            ("below", np.float64),
-            ("slope", np.float64),
+            ("offset_z", np.float64),
+            ("offset_w", np.float64),
             ("cosine0", np.float64, per_term),  # of the angles there
             ("sine0", np.float64, per_term),
             ("cosine1", np.float64, per_term),  # at the point last turned to
             ("sine1", np.float64, per_term),
-            ("coef", np.float64, (COEFFICIENTS,)),  # Taylor coefficients of z about the point last expanded at
+            ("coef", np.float64, (SERIES_LENGTH,)),  # Taylor coefficients of z about the point last expanded at
             # its Taylor steps
-            ("until", np.int64),  # cut at which they must end next
-            ("pushed", np.int64),  # whether the ground pushes all the way there
-            ("pull_phase", np.float64),  # else, where it begins to pull
+            ("segment_end", np.int64),  # cut at which they must end next
+            ("destabilised", np.int64),  # whether the ground pushes all the way there
+            ("restoring_phase", np.float64),  # else, where it begins to pull
             ("elapsed", np.float64),  # time since the flight's start
-            ("largest", np.float64),  # largest z so far
+            ("largest_z", np.float64),  # largest z so far
             # how the first flight ended, which does not depend on eta
-            ("known", np.int64),  # whether it has
-            ("known_end", np.int64),
-            ("known_w", np.float64),
-            ("known_z", np.float64),
-            ("known_top", np.float64),
-            ("known_length", np.float64),
-            ("known_phase", np.float64),
-            ("known_sign", np.float64),
-            ("known_interval", np.int64),
+            ("first_flight_known", np.int64),  # whether it has
+            ("first_flight_end", np.int64),
+            ("first_flight_w", np.float64),
+            ("first_flight_z", np.float64),
+            ("first_flight_peak", np.float64),
+            ("first_flight_length", np.float64),
+            ("first_flight_phase", np.float64),
+            ("first_flight_sign", np.float64),
+            ("first_flight_interval", np.int64),
             # the answer, as in `response.Response`
             ("outcome", np.int64),
-            ("peak", np.float64),
-            ("mode", np.int64),
+            ("peak_rotation", np.float64),
+            ("peak_mode", np.int64),
             ("impacts", np.int64),
             ("chatter", np.int64),
             ("uplift_time", np.float64),
-            ("first_time", np.float64),
-            ("first_velocity", np.float64),
-            ("end_z", np.float64),  # state at the end of the pulse, in the mirror image of the flight,
-            ("end_w", np.float64),
+            ("first_impact_time", np.float64),
+            ("first_impact_velocity", np.float64),
+            ("end_rotation", np.float64),  # state at the end of the pulse, in the mirror image of the flight,
+            ("end_velocity", np.float64),
             ("end_sign", np.float64),  # and sgn(theta), 0 at rest
         ],
         align=True,
     )
 
 
-FLIGHT = _layout(MAX_SINUSOIDS)
+FLIGHT_STATE = _flight_layout(MAX_SINUSOIDS)
 """Fields of the record of a pulse and a cell."""
 
-SINGLE = _layout(1)
+SINGLE_SINUSOID_STATE = _flight_layout(1)
 """The same for a pulse of one sinusoid: loops over the sinusoids are gone when it is compiled."""
 
 
 @kernel
-def terms_of(flight: Record) -> int:
-    """Number of sinusoids of the pulse; known when compiled for a record `SINGLE`."""
+def term_count(flight: Record) -> int:
+    """Number of sinusoids of the pulse; known when compiled for a record `SINGLE_SINUSOID_STATE`."""
     return flight.terms if len(flight.force) > 1 else 1
 
 
 def _steps_layout() -> np.dtype[np.void]:
-    per_term, lanes, series = (MAX_SINUSOIDS,), (LANES,), (ORDER + 1, LANES)
+    per_term, lanes, series = (MAX_SINUSOIDS,), (LANES,), (MAX_ORDER + 1, LANES)
     return np.dtype(
         [
             ("z", np.float64, series),  # coefficients of z,
@@ -149,7 +153,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("phase", np.float64, lanes),
             ("z0", np.float64, lanes),
             ("w0", np.float64, lanes),
-            ("lifted", np.float64, lanes),  # 1 where it begins with an uplift through |a f| = 1, else 0
+            ("starts_at_uplift", np.float64, lanes),  # 1 where it begins with an uplift through |a f| = 1, else 0
             ("limit", np.float64, lanes),  # longest step [tau]
             # the block and the strength of the pulse
             ("strength", np.float64, lanes),  # sgn(theta) a
@@ -158,15 +162,15 @@ def _steps_layout() -> np.dtype[np.void]:
             ("alpha", np.float64, lanes),  # any number in the slender limit
             ("sine_alpha", np.float64, lanes),
             ("cosine_alpha", np.float64, lanes),
-            ("pull", np.float64, lanes),  # sin(alpha)/alpha
+            ("restoring_factor", np.float64, lanes),  # sin(alpha)/alpha
             ("s_rate", np.float64, lanes),  # -alpha/tan(alpha)
             ("c_rate", np.float64, lanes),  # alpha tan(alpha)
             # the step
             ("h", np.float64, lanes),  # its length [tau]
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
-            ("bend", np.float64, lanes),  # bound of |w''| on it
-            # the pulse, as in `FLIGHT`
+            ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
+            # the pulse, as in `FLIGHT_STATE`
             ("terms", np.int64),
             ("amplitude", np.float64, per_term),
             ("multiple", np.float64, per_term),
@@ -174,27 +178,27 @@ def _steps_layout() -> np.dtype[np.void]:
             ("spread", np.float64),
             ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
             # what is asked
-            ("order", np.int64),  # degree of the steps, 6 to `ORDER`
+            ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
             ("log_precision", np.float64),  # log2 of the share of the motion that the last terms may have
         ]
     )
 
 
-STEPS = _steps_layout()
+STEP_STATE = _steps_layout()
 """Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
 
-ANSWER = np.dtype(
+RESPONSE_RECORD = np.dtype(
     [
         ("outcome", np.int8),
         ("chatter", np.bool_),
         ("impacts", np.int32),
-        ("mode", np.int32),
-        ("peak", np.float64),
+        ("peak_mode", np.int32),
+        ("peak_rotation", np.float64),
         ("uplift_time", np.float64),
-        ("first_time", np.float64),
-        ("first_velocity", np.float64),
-        ("end_z", np.float64),  # state at the end of the pulse
-        ("end_w", np.float64),
+        ("first_impact_time", np.float64),
+        ("first_impact_velocity", np.float64),
+        ("end_rotation", np.float64),  # state at the end of the pulse
+        ("end_velocity", np.float64),
     ],
     align=True,
 )
@@ -202,13 +206,13 @@ ANSWER = np.dtype(
 
 
 def has_one_sinusoid(pulse: AbstractPulse) -> bool:
-    """Whether a record `SINGLE` holds the pulse."""
+    """Whether a record `SINGLE_SINUSOID_STATE` holds the pulse."""
     return isinstance(pulse, SinusoidalPulse) and len(pulse.terms) == 1
 
 
 @lru_cache(maxsize=256)
-def prepared(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT) -> Record:
-    """The record of a pulse, `FLIGHT` or `SINGLE`, to be copied before use."""
+def pulse_state(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT_STATE) -> Record:
+    """The record of a pulse, `FLIGHT_STATE` or `SINGLE_SINUSOID_STATE`, to be copied before use."""
     wavelet = isinstance(pulse, WaveletPulse)
     terms = ((0.0, 1.0, 0.0),) if wavelet else pulse.terms if isinstance(pulse, SinusoidalPulse) else ()
     count = len(terms)
@@ -228,30 +232,30 @@ def prepared(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT) -> Record
     record["end_cosine"][:ends, :count] = np.cos(angles)
     record["end_sine"][:ends, :count] = np.sin(angles)
     half_turn = np.floor((0.5 * (angles[:-1, 0] + angles[1:, 0])) / np.pi)
-    record["half_turn"][: ends - 1] = half_turn * np.pi - shift[0]
-    record["upright"][: ends - 1] = 1.0 - 2.0 * (half_turn % 2.0)
+    record["half_period_phase"][: ends - 1] = half_turn * np.pi - shift[0]
+    record["half_period_cosine"][: ends - 1] = 1.0 - 2.0 * (half_turn % 2.0)
     return record
 
 
-def prepared_steps(flight: Record, precision: float = FINEST) -> Record:
-    """Taylor steps for the pulse of a record of `prepared`.
+def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
+    """Taylor steps for the pulse of a record of `pulse_state`.
 
     Parameters
     ----------
     flight
         The record.
     precision : float
-        Share of the motion during a step that the last terms of its series may have [-], from `FINEST` to 1e-4. The
+        Share of the motion during a step that the last terms of its series may have [-], from `FULL_PRECISION` to 1e-4. The
         degree follows from it: 1 - log(precision)/2 makes the steps longest for the work, Jorba and Zou (2005).
     """
-    memory = np.zeros(STEPS.itemsize + BYTES, np.uint8)
-    start = -memory.ctypes.data % BYTES
-    steps: Record = memory[start : start + STEPS.itemsize].view(STEPS)[0]
+    memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
+    start = -memory.ctypes.data % VECTOR_BYTES
+    steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
     for name in ("terms", "amplitude", "multiple", "shift", "spread", "polynomial"):
         steps[name] = flight[name]
-    steps["order"] = min(ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
+    steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)
     # idle lanes hold a block at rest, so that they meet no infinities
-    for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "pull", "omega"):
+    for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "restoring_factor", "omega"):
         steps[name] = 1.0
     return steps

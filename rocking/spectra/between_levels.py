@@ -12,17 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.interpolation.stencils import LEVELS, NO_STENCIL, SQUARED, STENCIL, level_weight
-from rocking.spectra.layer import Cells, Layer, peak_of
+from rocking.interpolation.stencils import NO_STENCIL, SLICE_STENCILS, SQUARED, STENCIL_SIZE, lagrange_weight
+from rocking.spectra.layer import Cells, GridLayer, peak_of
 
 Array = NDArray[np.float64]
-Place = tuple[tuple[float, float], float]
-Probe = tuple[Place, Array]
+ProbePoint = tuple[tuple[float, float], float]
+Probe = tuple[ProbePoint, Array]
 """Where in the cells and how far into the gap, and the solver's peak there for each of some cells."""
 
 
 @dataclass(frozen=True)
-class Gap:
+class LevelInterval:
     """A gap and the layers around it.
 
     Attributes
@@ -36,14 +36,14 @@ class Gap:
     lower : int
         The layer below the gap.
     kind : int array (n - 1, m - 1)
-        What is known of each cell on both sides of the gap, as `Layer.kinds`; 0 also where these differ.
+        What is known of each cell on both sides of the gap, as `GridLayer.kinds`; 0 also where these differ.
     serves : bool array (choices, n - 1, m - 1)
-        For each of `interpolation.LEVELS`: whether these layers exist and are all of that kind.
+        For each of `interpolation.SLICE_STENCILS`: whether these layers exist and are all of that kind.
     choice : int8 array (n - 1, m - 1)
         The index of the levels that serve, -1 where none do.
     """
 
-    layers: Sequence[Layer]
+    layers: Sequence[GridLayer]
     levels: Array
     power: int
     lower: int
@@ -53,16 +53,16 @@ class Gap:
 
     @classmethod
     def of(
-        cls, layers: Sequence[Layer], kinds: Sequence[NDArray[np.int64]], levels: Array, power: int, lower: int
-    ) -> Gap:
+        cls, layers: Sequence[GridLayer], kinds: Sequence[NDArray[np.int64]], levels: Array, power: int, lower: int
+    ) -> LevelInterval:
         """Of all layers, whose kinds are known."""
         kind = np.where(kinds[lower] == kinds[lower + 1], kinds[lower], 0)
-        serves = np.zeros((len(LEVELS), *kind.shape), dtype=np.bool_)
-        for code, (count, below) in enumerate(LEVELS):
+        serves = np.zeros((len(SLICE_STENCILS), *kind.shape), dtype=np.bool_)
+        for code, (count, below) in enumerate(SLICE_STENCILS):
             first = lower - below
             if first >= 0 and first + count <= len(layers):
                 serves[code] = (kind != 0) & np.all([one == kind for one in kinds[first : first + count]], axis=0)
-            if count < min(STENCIL, len(layers)):
+            if count < min(STENCIL_SIZE, len(layers)):
                 serves[code] &= kind > 0  # no fate is told from fewer
         choice = np.where(serves.any(axis=0), serves.argmax(axis=0), NO_STENCIL).astype(np.int8)
         return cls(layers, levels, power, lower, np.where(choice >= 0, kind, 0), serves, choice)
@@ -83,7 +83,7 @@ class Gap:
     def choose(self, cells: Cells, probes: Sequence[Probe]) -> Array:
         """Give such cells the levels whose largest error at some probes is least; that error, inf if none serve."""
         least = np.full(cells[0].size, np.inf)
-        for code in range(len(LEVELS)):
+        for code in range(len(SLICE_STENCILS)):
             mine = np.flatnonzero(self.serves[code][cells])
             if not mine.size:
                 continue  # there may be no such layers
@@ -95,10 +95,10 @@ class Gap:
             self.choice[cells[0][better], cells[1][better]] = code
         return least
 
-    def _errors(self, code: int, cells: Cells, place: Place, peak: Array) -> Array:
-        (count, below), (within, share) = LEVELS[code], place
+    def _errors(self, code: int, cells: Cells, place: ProbePoint, peak: Array) -> Array:
+        (count, below), (within, share) = SLICE_STENCILS[code], place
         first, x, levels = self.lower - below, self.at(share) ** self.power, self.levels**self.power
-        weights = [level_weight(levels, first, count, k, x) for k in range(count)]
+        weights = [lagrange_weight(levels, first, count, k, x) for k in range(count)]
         found = [
             (layer.at(cells, within), layer.stencil[cells] >= SQUARED) for layer in self.layers[first : first + count]
         ]

@@ -14,54 +14,54 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking._numba.compilation import plain
+from rocking._numba.compilation import contiguous_array
 from rocking.datasets.cube import build_spectrum_dataset
 from rocking.errors import in_range
 from rocking.interpolation.selection import choose_stencils
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking.model.response import Response
 from rocking.solver.peak_response import peak_response
-from rocking.spectra.between_levels import Gap, Place
-from rocking.spectra.layer import CENTRE, DIRECT, Cells, Layer, fate_codes, largest_around
+from rocking.spectra.between_levels import LevelInterval, ProbePoint
+from rocking.spectra.layer import CELL_CENTRE, DIRECT, Cells, GridLayer, largest_in_neighbourhood, outcome_codes
 
 Array = NDArray[np.float64]
 
-PROBES = (CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
+PROBES = (CELL_CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
 """Rows and columns within a cell where interpolation is compared with the solver [-]. No two share a row or a column,
 so that no crease along one passes between them, and errors of rows and of columns cannot cancel at all of them."""
 
-HALFWAY = (CENTRE, 0.5)
+HALFWAY = (CELL_CENTRE, 0.5)
 """Place in every cell, and share of the gap between two levels, where interpolation between them is compared."""
 
-ELSEWHERE = (((0.65, 0.15), 0.25), ((0.35, 0.85), 0.75))
+EXTRA_PROBES = (((0.65, 0.15), 0.25), ((0.35, 0.85), 0.75))
 """The same where it is not tame."""
 
-FIRST = 2
+FIRST_PROBES = 2
 """Probes in every cell: the error of a smooth function has one shape along rows and one along columns."""
 
-TAME = 1e-6
+REFINE_TOL = 1e-6
 """Error at the first probes above which the others and other stencils or levels are tried, there and next to it [-]."""
 
-FAIR = 1e-5
+LEVEL_TOL = 1e-5
 """The same between levels, where errors are larger and other levels help most beside creases [-]."""
 
-WORTH = 5e-5
+MAX_ERROR = 5e-5
 """Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
 
-CHOSEN = 2.0
+SELECTION_FACTOR = 2.0
 """Factor on the errors of levels that were chosen by them [-]: the best of six at three points flatters itself."""
 
-NEIGHBOURS = {"interpolation_error": 0.3, "restitution_error": 1.0, "alpha_error": 1.0}
+NEIGHBOUR_WEIGHT = {"interpolation_error": 0.3, "restitution_error": 1.0, "alpha_error": 1.0}
 """How much the errors of the cells around count [-]: a crease in one of them that reaches into a cell parts one of its
 corners, which are nodes of its stencil, from the others, and shows at its own probes; between levels it may not."""
 
 PROBE_TOLERANCE = 1e-8
 """Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
 
-APART = {"restitution": 0.1, "alpha": np.radians(25.0)}
+MAX_SPACING = {"restitution": 0.1, "alpha": np.radians(25.0)}
 """Levels farther apart are not interpolated between: one look in the middle would not tell enough [-, rad]."""
 
-TOGETHER = 12
+BATCH_SIZE = 12
 """Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
 
 
@@ -112,29 +112,29 @@ def spectra(
     angles = in_range("alpha", alpha, 0.0, np.pi / 2, closed="left", unit="rad")
     etas = in_range("restitution", restitution, 0.0, 1.0)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
-    layers: list[list[Layer]] = [[] for _ in etas]
+    layers: list[list[GridLayer]] = [[] for _ in etas]
     shape = (etas.size, angles.size, rows.size - 1, columns.size - 1)
     errors = {name: np.full(shape, np.nan) for name in ("interpolation_error", "restitution_error", "alpha_error")}
     levels = {name: np.full(shape, NO_STENCIL, np.int8) for name in ("restitution_levels", "alpha_levels")}
     for a, angle in enumerate(angles):
-        for first in range(0, etas.size, TOGETHER):
-            some = etas[first : first + TOGETHER]
+        for first in range(0, etas.size, BATCH_SIZE):
+            some = etas[first : first + BATCH_SIZE]
             nodes = grid.nodes(some, angle)
             for k in range(some.size):
                 bars = None if barred is None else barred[first + k, a]
-                layers[first + k].append(Layer.of(grid.mesh, nodes, k, bars))
+                layers[first + k].append(GridLayer.of(grid.mesh, nodes, k, bars))
             made = [layers[first + k][a] for k in range(some.size)]
             errors["interpolation_error"][first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
     kinds = [[layer.kinds() for layer in row] for row in layers]
     for a, angle in enumerate(angles):
         along = [row[a] for row in layers], [row[a] for row in kinds]
-        gaps = [Gap.of(*along, etas, 1, int(k)) for k in _close(etas, APART["restitution"])]
+        gaps = [LevelInterval.of(*along, etas, 1, int(k)) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
         found = grid.errors_between(gaps, _between_restitutions(gaps, angle), known=DIRECT)
         for gap, error in zip(gaps, found, strict=True):
             errors["restitution_error"][gap.lower, a], levels["restitution_levels"][gap.lower, a] = error, gap.choice
-    for a in _close(angles, APART["alpha"]):
+    for a in _interval_starts(angles, MAX_SPACING["alpha"]):
         # the equation of motion knows the sign of alpha only in its square
-        gaps = [Gap.of(*row, angles, 2, int(a)) for row in zip(layers, kinds, strict=True)]
+        gaps = [LevelInterval.of(*row, angles, 2, int(a)) for row in zip(layers, kinds, strict=True)]
         found = grid.errors_between(gaps, _between_angles(gaps, etas))
         for k, (gap, error) in enumerate(zip(gaps, found, strict=True)):
             errors["alpha_error"][k, a], levels["alpha_levels"][k, a] = error, gap.choice
@@ -147,20 +147,20 @@ def spectra(
         yield cube.assign_attrs(next_restitution=float(above))
 
 
-def _close(levels: Array, apart: float) -> list[int]:
+def _interval_starts(levels: Array, apart: float) -> list[int]:
     """The levels with the next one not farther than `apart` above."""
     return [int(k) for k in np.flatnonzero(np.diff(levels) <= apart * (1.0 + 1e-9))]
 
 
-Asked = Callable[[float], tuple[Array, float]]
+GroupsAt = Callable[[float], tuple[Array, float]]
 """From a share of some gaps to the restitution there of each [-], and the angle [rad]."""
 
 
-def _between_restitutions(gaps: Sequence[Gap], angle: float) -> Asked:
+def _between_restitutions(gaps: Sequence[LevelInterval], angle: float) -> GroupsAt:
     return lambda share: (np.array([gap.at(share) for gap in gaps]), angle)
 
 
-def _between_angles(gaps: Sequence[Gap], etas: Array) -> Asked:
+def _between_angles(gaps: Sequence[LevelInterval], etas: Array) -> GroupsAt:
     return lambda share: (etas, gaps[0].at(share))
 
 
@@ -178,7 +178,7 @@ class _Grid:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
         return self._solve(self.mesh.rows[:, None], self.columns, etas, angle)
 
-    def errors_between(self, gaps: Sequence[Gap], asked: Asked, known: int | None = None) -> list[Array]:
+    def errors_between(self, gaps: Sequence[LevelInterval], asked: GroupsAt, known: int | None = None) -> list[Array]:
         """Largest errors at the probes of each cell, for each of some gaps.
 
         nan where the layers of a gap differ; 0 without asking the solver where their kind is `known` to hold between.
@@ -192,7 +192,7 @@ class _Grid:
         within, share = HALFWAY
         x, y = self.mesh.within(cells, within)
         found = self._solve(x, np.exp(y), *asked(share), PROBE_TOLERANCE)
-        fates = fate_codes(found.outcome, found.impacts)
+        fates = outcome_codes(found.outcome, found.impacts)
         for k, gap in enumerate(gaps):
             mine = wanted[k][cells]
             own = cells[0][mine], cells[1][mine]
@@ -203,24 +203,24 @@ class _Grid:
             own = own[0][stand], own[1][stand]
             halfway = HALFWAY, found.peak_rotation[mine, k][stand]
             errors[k][own] = gap.errors(own, halfway)
-            wild = ~(largest_around(errors[k])[own] <= FAIR)
+            wild = ~(largest_in_neighbourhood(errors[k])[own] <= LEVEL_TOL)
             own, halfway = (own[0][wild], own[1][wild]), (HALFWAY, halfway[1][wild])
             errors[k][own] = gap.choose(own, [halfway])
-            promising = errors[k][own] <= WORTH
+            promising = errors[k][own] <= MAX_ERROR
             gap.choice[own[0][~promising], own[1][~promising]] = NO_STENCIL
             own, halfway = (own[0][promising], own[1][promising]), (HALFWAY, halfway[1][promising])
-            more = [(place, self._peaks_at(place, own, k, asked)) for place in ELSEWHERE]
-            errors[k][own] = CHOSEN * gap.choose(own, [halfway, *more])
+            more = [(place, self._peaks_at(place, own, k, asked)) for place in EXTRA_PROBES]
+            errors[k][own] = SELECTION_FACTOR * gap.choose(own, [halfway, *more])
         return errors
 
-    def _peaks_at(self, place: Place, cells: Cells, k: int, asked: Asked) -> Array:
+    def _peaks_at(self, place: ProbePoint, cells: Cells, k: int, asked: GroupsAt) -> Array:
         """The solver's peaks at a place of some cells of the k-th gap."""
         within, share = place
         x, y = self.mesh.within(cells, within)
         etas, angle = asked(share)
         return self._solve(x, np.exp(y), etas[k : k + 1], angle, PROBE_TOLERANCE).peak_rotation[:, 0]
 
-    def errors_in_cells(self, layers: Sequence[Layer], etas: Array, angle: float) -> Array:
+    def errors_in_cells(self, layers: Sequence[GridLayer], etas: Array, angle: float) -> Array:
         """Largest error at the probes of each cell, for each restitution; 0 where it overturns alike, or nan.
 
         Where it is large the layers are given the stencil that has the least.
@@ -228,33 +228,40 @@ class _Grid:
         errors = np.array([np.where(layer.stencil == OVERTURNS, 0.0, np.nan) for layer in layers])
         smooth = np.array([layer.smooth for layer in layers])
         cells = np.nonzero(smooth.any(axis=0))
-        peaks = self._probe(PROBES[:FIRST], cells, etas, angle)
+        peaks = self._probe(PROBES[:FIRST_PROBES], cells, etas, angle)
         for k, layer in enumerate(layers):
             mine = smooth[k][cells]
             own = cells[0][mine], cells[1][mine]
-            found = [layer.peak_at(own, place) - peaks[p, mine, k] for p, place in enumerate(PROBES[:FIRST])]
+            found = [layer.peak_at(own, place) - peaks[p, mine, k] for p, place in enumerate(PROBES[:FIRST_PROBES])]
             errors[k][own] = np.abs(found).max(axis=0)
         errors[smooth & np.isnan(errors)] = np.inf  # a block overturns inside the cell
-        wild = smooth & ~(largest_around(errors) <= TAME)
+        wild = smooth & ~(largest_in_neighbourhood(errors) <= REFINE_TOL)
         for k, layer in enumerate(layers):
             mine = wild[k][cells]
             own = cells[0][mine], cells[1][mine]
             self._choose(layer, own, peaks[:, mine, k], errors[k])
-            promising = errors[k][own] <= WORTH
+            promising = errors[k][own] <= MAX_ERROR
             layer.stencil[own[0][~promising], own[1][~promising]] = NO_STENCIL
             good = own[0][promising], own[1][promising]
             # one restitution at a time: these blocks strike often, and hardly two layers have them in the same cells
-            more = self._probe(PROBES[FIRST:], good, etas[k : k + 1], angle)[..., 0]
+            more = self._probe(PROBES[FIRST_PROBES:], good, etas[k : k + 1], angle)[..., 0]
             self._choose(layer, good, np.concatenate([peaks[:, mine, k][:, promising], more]), errors[k])
         return errors
 
-    def _choose(self, layer: Layer, cells: Cells, peaks: Array, errors: Array) -> None:
+    def _choose(self, layer: GridLayer, cells: Cells, peaks: Array, errors: Array) -> None:
         """Give some cells the stencil that comes closest to the peaks (probes, cells) at the first probes."""
         places = PROBES[: len(peaks)]
         x, y = (np.array(axis) for axis in zip(*(self.mesh.within(cells, place) for place in places), strict=True))
         codes, least = layer.stencil[cells], np.empty(cells[0].size)
         choose_stencils(
-            layer.peak_rotation, *map(plain, cells), x, y, np.ascontiguousarray(peaks), self.mesh, codes, least
+            layer.peak_rotation,
+            *map(contiguous_array, cells),
+            x,
+            y,
+            np.ascontiguousarray(peaks),
+            self.mesh,
+            codes,
+            least,
         )
         layer.stencil[cells], errors[cells] = codes, least
 
@@ -285,7 +292,7 @@ def _cube(
     pulse: str,
     eta: float,
     axes: Mapping[str, Array],
-    layers: Sequence[Layer],
+    layers: Sequence[GridLayer],
     errors: Mapping[str, Array],
     levels: Mapping[str, NDArray[np.int8]],
 ) -> xr.Dataset:
@@ -299,7 +306,7 @@ def _cube(
     codes = {"stencil": np.stack([layer.stencil for layer in layers]), **levels}
     for (name, code), (measured, error) in zip(codes.items(), errors.items(), strict=True):
         variables[name] = at_corner(code, NO_STENCIL)
-        largest = largest_around(error, NEIGHBOURS[measured])
+        largest = largest_in_neighbourhood(error, NEIGHBOUR_WEIGHT[measured])
         largest[(code == NO_STENCIL) | np.isinf(largest)] = np.nan
         single = largest.astype(np.float32)
         # up to the next single: what is stored is still a bound

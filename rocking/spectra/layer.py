@@ -11,16 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import plain
+from rocking._numba.compilation import contiguous_array
 from rocking.interpolation.selection import interpolate_cells
-from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, Mesh, stencils
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, Mesh, first_valid_stencils
 from rocking.model.response import Outcome, Response
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Cells = tuple[NDArray[np.intp], ...]
 
-CENTRE = (0.5, 0.5)
+CELL_CENTRE = (0.5, 0.5)
 
 DIRECT = -int(Outcome.OVERTURNED_DIRECTLY)
 """Kind of a cell in which all overturn without an impact: they do so for every restitution."""
@@ -30,7 +30,7 @@ FEW_IMPACTS = 1
 
 
 @dataclass(frozen=True)
-class Layer:
+class GridLayer:
     """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `cube`."""
 
     mesh: Mesh
@@ -42,13 +42,13 @@ class Layer:
     stencil: NDArray[np.int8]
 
     @classmethod
-    def of(cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None) -> Layer:
+    def of(cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None) -> GridLayer:
         """The k-th restitution of solved nodes (n, m, restitutions); `barred` cells (n - 1, m - 1) are not used."""
         outcome, impacts, mode = nodes.outcome[..., k], nodes.impacts[..., k], nodes.peak_mode[..., k]
         safe = outcome == Outcome.SAFE
-        squared = stencils(safe & (mode % 2 == 1))
-        codes = np.where(squared >= 0, squared + SQUARED, stencils(safe))
-        codes = np.where(_overturn_alike(fate_codes(outcome, impacts), impacts), OVERTURNS, codes)
+        squared = first_valid_stencils(safe & (mode % 2 == 1))
+        codes = np.where(squared >= 0, squared + SQUARED, first_valid_stencils(safe))
+        codes = np.where(_same_overturning(outcome_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
         peak = np.ascontiguousarray(nodes.peak_rotation[..., k])
@@ -64,7 +64,7 @@ class Layer:
         values = np.empty(cells[0].size)
         interpolate_cells(
             self.peak_rotation,
-            *map(plain, cells),
+            *map(contiguous_array, cells),
             self.stencil[cells],
             *self.mesh.within(cells, place),
             self.mesh,
@@ -78,11 +78,11 @@ class Layer:
 
     def kinds(self) -> NDArray[np.int64]:
         """What is known of each cell: 0 nothing, 1 a peak, below 0 the way in which it overturns."""
-        ways = fate_codes(self.outcome, self.impacts)[:-1, :-1]
+        ways = outcome_codes(self.outcome, self.impacts)[:-1, :-1]
         return np.where(self.stencil == OVERTURNS, ways, self.smooth.astype(np.int64))
 
 
-def fate_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDArray[np.int64]:
+def outcome_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDArray[np.int64]:
     """1 where the block stands, else a number below 0 for the way in which it overturns."""
     return np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, -(4 * impacts.astype(np.int64) + outcome), 1)
 
@@ -92,7 +92,7 @@ def peak_of(value: Array, squared: Flags) -> Array:
     return np.where(squared, 1.0 - np.sqrt(np.maximum(value, 0.0)), value)
 
 
-def largest_around(errors: Array, share: float = 1.0) -> Array:
+def largest_in_neighbourhood(errors: Array, share: float = 1.0) -> Array:
     """The largest of the errors (..., n, m) of a cell and a share of those of the eight around it.
 
     nan stays nan, and only there. A crease of the peak that only cuts a corner of a cell passes the points of its
@@ -108,7 +108,7 @@ def largest_around(errors: Array, share: float = 1.0) -> Array:
     return largest
 
 
-def _overturn_alike(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Flags:
+def _same_overturning(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Flags:
     """Cells whose four corners overturn in one way, and the twelve nodes around them too if any has several impacts.
 
     Where the ways of many impacts meet they lie in layers, with safe bands between them that are thinner than a cell.

@@ -15,7 +15,7 @@ from rocking_api.models.params import ResponseQuestion
 from starlette.requests import ClientDisconnect
 
 import rocking
-from rocking._numba.cancellation import StopFlag, attempt
+from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking.errors import StoppedError
 from tests.api.conftest import assert_problem, client_of
 from tests.api.test_api_observed import metrics_of
@@ -202,7 +202,7 @@ def test_a_search_that_takes_too_long_is_504_and_leaves_its_place(results, path)
 
 def test_a_part_of_the_work_may_have_an_end_of_its_own():
     def both(stop):
-        return attempt(slow_search, 0.05, stop), attempt(lambda part: part.is_set(), 10.0, stop)
+        return run_with_timeout(slow_search, 0.05, stop), run_with_timeout(lambda part: part.is_set(), 10.0, stop)
 
     assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
 
@@ -213,7 +213,7 @@ def test_the_end_of_the_whole_is_no_end_of_a_part():
 
         def work(stop):
             try:
-                return attempt(slow_search, 30.0, stop)
+                return run_with_timeout(slow_search, 30.0, stop)
             except StoppedError:
                 ended.append("the whole")
                 raise

@@ -39,7 +39,7 @@ class ThirdPulse(AbstractPulse):
     def mirrored(self):
         return self
 
-    def _turns(self, *window):  # noqa: ARG002
+    def _stationary_phases(self, *window):  # noqa: ARG002
         return ()
 
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._numba.cancellation import StopFlag, attempt
+from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._numba.simd import LANES
 from rocking.boundary.frequency import critical_frequency_ratio
 from rocking.errors import StoppedError
-from rocking.history.motion import motion_of
-from rocking.solver.kernels.batch import rock_arcs, rock_many
-from rocking.solver.state import ANSWER, FLIGHT, SINGLE, prepared, prepared_steps
+from rocking.history.motion import build_motion
+from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
+from rocking.solver.state import FLIGHT_STATE, RESPONSE_RECORD, SINGLE_SINUSOID_STATE, pulse_state, step_state
 from rocking.spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
@@ -85,10 +85,10 @@ def test_a_kernel_reads_the_flag_within_one_cell():
     """One block with 200,000 impacts: the load of the flag must not be moved out of the loop."""
     s, w, eta = (np.array([x]) for x in (MANY[-1], 0.05, 1.0))
     for alpha in (0.0, 0.2):
-        flag, answers = np.zeros(1, np.uint8), np.zeros(1, ANSWER)
-        pulse = prepared(rocking.get_pulse("c2"), FLIGHT if alpha else SINGLE)
-        scratch = (np.repeat(pulse, LANES), prepared_steps(pulse)) if alpha else (pulse.copy(),)
-        kernel = rock_many if alpha else rock_arcs
+        flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
+        pulse = pulse_state(rocking.get_pulse("c2"), FLIGHT_STATE if alpha else SINGLE_SINUSOID_STATE)
+        scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse.copy(),)
+        kernel = solve_batch if alpha else solve_by_arcs
         timer = threading.Timer(0.003, flag.fill, [1])
         timer.start()
         kernel(s, w, eta, np.array([alpha]), *scratch, flag, answers)
@@ -103,7 +103,7 @@ def test_a_flag_that_is_set_before_ends_the_work_at_once():
     with pytest.raises(StoppedError):
         rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop)
     with pytest.raises(StoppedError):
-        motion_of("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop).events()
+        build_motion("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop).events()
 
 
 def test_a_flag_that_is_not_set_changes_no_answer():
@@ -114,20 +114,20 @@ def test_a_flag_that_is_not_set_changes_no_answer():
 
 def test_a_part_stops_with_the_whole_and_not_the_other_way_round():
     whole = StopFlag()
-    with whole.part() as part:
+    with whole.child() as part:
         part.set()
         assert not whole.is_set()
-    with whole.part() as part:
+    with whole.child() as part:
         whole.set()
         assert part.is_set()
-    with whole.part() as part:
+    with whole.child() as part:
         assert part.is_set()
 
 
 def test_what_is_not_done_in_its_time_is_given_up():
     stop = StopFlag()
     began = time.process_time()
-    assert attempt(WORK["amplitude"], 0.1, stop) is None
+    assert run_with_timeout(WORK["amplitude"], 0.1, stop) is None
     assert time.process_time() - began < 0.1 + SOON
     assert not stop.is_set()
-    assert attempt(lambda part: part.is_set(), 10.0, stop) is False
+    assert run_with_timeout(lambda part: part.is_set(), 10.0, stop) is False

@@ -13,7 +13,7 @@ import pytest
 import rocking
 import rocking._numba.compilation
 from rocking import precompile
-from rocking._numba.compilation import entry, kernel, plain
+from rocking._numba.compilation import contiguous_array, entry, kernel
 from rocking.datasets.cube import write_dataset
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import SinusoidalPulse
@@ -24,16 +24,22 @@ from rocking.interpolation import stencils as interpolation
 from rocking.lookup import kernel as lookup_kernel
 from rocking.lookup.open import open_cube
 from rocking.solver import peak_response as solve
-from rocking.solver.arcs.arc import hyperbolic
+from rocking.solver.arcs.arc import cosh_minus_one_and_sinh
 from rocking.solver.kernels import batch as rock_many
-from rocking.solver.state import FLIGHT, LANES, SINGLE, prepared, prepared_steps
+from rocking.solver.state import FLIGHT_STATE, LANES, SINGLE_SINUSOID_STATE, pulse_state, step_state
 from rocking.spectra.cubes import spectra
 
 ROOT = Path(__file__).parents[2]
 
 ENTRIES = (
-    *(rock_many.rock_many, rock_many.rock_arcs, sampling.rock_and_sample, sampling.sample_arcs, sampling.rock_freely),
-    *(interpolation.level_weight, lookup_kernel.interpolate_many),
+    *(
+        rock_many.solve_batch,
+        rock_many.solve_by_arcs,
+        sampling.solve_and_sample,
+        sampling.sample_arcs,
+        sampling.sample_free_rocking,
+    ),
+    *(interpolation.lagrange_weight, lookup_kernel.interpolate_many),
     *(stencil_choice.choose_stencils, stencil_choice.interpolate_cells),
 )
 
@@ -69,12 +75,12 @@ def test_records_of_one_sinusoid_and_of_many_differ_by_rounding_only():
     cells = [rng.uniform(0.02, 1, 20_000), np.exp(rng.uniform(-1, 2.5, 20_000)), rng.uniform(0.3, 0.8, 20_000)]
     for name in ("-sine", "c2", "rectangular"):
         pulse = rocking.get_pulse(name)
-        answers = [np.zeros(20_000, solve.ANSWER) for _ in range(2)]
+        answers = [np.zeros(20_000, solve.RESPONSE_RECORD) for _ in range(2)]
         flag, slender = np.zeros(1, np.uint8), np.zeros(20_000)
-        rock_many.rock_arcs(*cells, slender, prepared(pulse, SINGLE).copy(), flag, answers[0])
-        many = prepared(pulse, FLIGHT)
-        rock_many.rock_many(*cells, slender, np.repeat(many, LANES), prepared_steps(many), flag, answers[1])
-        for field in solve.ANSWER.names:
+        rock_many.solve_by_arcs(*cells, slender, pulse_state(pulse, SINGLE_SINUSOID_STATE).copy(), flag, answers[0])
+        many = pulse_state(pulse, FLIGHT_STATE)
+        rock_many.solve_batch(*cells, slender, np.repeat(many, LANES), step_state(many), flag, answers[1])
+        for field in solve.RESPONSE_RECORD.names:
             if answers[0][field].dtype.kind == "f":
                 np.testing.assert_allclose(answers[0][field], answers[1][field], rtol=1e-9, atol=1e-13)
             else:
@@ -95,9 +101,9 @@ def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
 
 def test_plain_arrays_are_taken_as_they_are_and_others_are_copied():
     array = np.ones((3, 4))
-    assert plain(array) is array
+    assert contiguous_array(array) is array
     for other in (array[:, ::2], array.T, np.broadcast_to(1.0, (3,)), read_only(1.0), *np.broadcast_arrays(1.0, array)):
-        made = plain(other)
+        made = contiguous_array(other)
         assert made.flags.carray
         np.testing.assert_array_equal(made, other)
 
@@ -209,11 +215,11 @@ print(len([one for one in said if "NUMBA_CACHE_DIR" in str(one.message)]), found
 
 
 def test_kernels_release_the_interpreter_and_do_not_reorder_sums():
-    for compiled in (*ENTRIES, hyperbolic):
+    for compiled in (*ENTRIES, cosh_minus_one_and_sinh):
         options = compiled.targetoptions
         assert options["nogil"]
         assert options["fastmath"] == {"contract"}  # nothing that would assume away nan or rounding
-    assert rock_many.rock_many.nopython_signatures is not None
+    assert rock_many.solve_batch.nopython_signatures is not None
 
 
 def test_division_by_zero_is_arithmetic_and_no_exception():
@@ -227,5 +233,5 @@ def test_division_by_zero_is_arithmetic_and_no_exception():
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system binds no process to a core")
 def test_only_the_cores_of_this_process_are_used():
     bind = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})"
-    code = f"{bind}; import rocking.solver.peak_response; print(rocking.solver.peak_response.CORES)"
+    code = f"{bind}; import rocking.solver.peak_response; print(rocking.solver.peak_response.AVAILABLE_CORES)"
     assert script(code) == "1\n"

@@ -70,7 +70,7 @@ def test_counting_sees_every_cell() -> None:
     cells = {"slenderness": np.linspace(0.1, 0.9, 7)[:, None], "frequency_ratio": np.arange(1.0, 4.0)}
     ask: Callable[[], object] = lambda: peak_response("sine", restitution=0.9, **cells)  # noqa: E731
     assert skip_grids.cells_solved(ask) == 21
-    again = skip_grids.with_settings(solve, lambda: skip_grids.cells_solved(ask), CLOSE=np.inf)
+    again = skip_grids.with_settings(solve, lambda: skip_grids.cells_solved(ask), NEAR_BOUNDARY_MARGIN=np.inf)
     assert again == 21
 
 

@@ -12,7 +12,7 @@ import rocking.datasets.catalogue
 from rocking.datasets.catalogue import Catalogue, FileVersion, UnknownDatasetError, version_of
 from rocking.datasets.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking.spectra.cubes import spectrum
 
 NAME = "spectra/sine/eta-0.85"
@@ -46,7 +46,7 @@ def path(contents, tmp_path):
 
 @pytest.fixture
 def atlas(path):
-    return Atlas(path.parents[2])
+    return CubeCollection(path.parents[2])
 
 
 def written(path, content):
@@ -83,7 +83,7 @@ def test_a_file_that_has_just_changed_is_given_a_tick(path, monkeypatch):
     monkeypatch.setattr(time, "sleep", waited.append)
     path.touch()
     with Catalogue(path.parents[2]).open(NAME):
-        assert waited == [rocking.datasets.catalogue.TICK / 1e9]
+        assert waited == [rocking.datasets.catalogue.CLOCK_TICK / 1e9]
     assert not version_of(path).is_settled
     assert FileVersion(1, 2, 3, 4, changed=time.time_ns() - 10**9).is_settled
 

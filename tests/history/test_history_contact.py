@@ -8,8 +8,8 @@ import xarray as xr
 
 import rocking
 from rocking.excitation.pulses import PULSE_NAMES
-from rocking.history.contact import LARGEST_FRICTION, PRACTICAL_FRICTION, extremes_of
-from rocking.history.motion import motion_of
+from rocking.history.contact import MAX_FRICTION, PRACTICAL_FRICTION, contact_extremes
+from rocking.history.motion import build_motion
 
 QUESTIONS = (
     {"slenderness": 0.45, "frequency_ratio": 4.0, "restitution": 0.85},
@@ -95,7 +95,7 @@ def test_warnings_name_what_is_needed():
 
 
 def contact_of(**question):
-    return extremes_of(motion_of("sine", **question))
+    return contact_extremes(build_motion("sine", **question))
 
 
 def test_the_sentence_puts_first_that_the_rocking_model_does_not_apply():
@@ -103,7 +103,7 @@ def test_the_sentence_puts_first_that_the_rocking_model_does_not_apply():
     assert (upright.rocking_applies, upright.sentence) == (True, "rocks and comes to rest")
     squat = {"restitution": 0.25, "alpha": math.radians(45)}
     slides = contact_of(slenderness=0.9, frequency_ratio=4.0, **squat)
-    assert LARGEST_FRICTION < slides.largest_friction_demand < math.inf
+    assert MAX_FRICTION < slides.largest_friction_demand < math.inf
     assert not slides.rocking_applies
     assert slides.sentence.startswith("would slide: the rocking model does not apply")
     assert slides.sentence.endswith("rocks and comes to rest")

@@ -17,7 +17,7 @@ from rocking.model.response import Outcome
 from rocking.solver.bounded_response import SOLVER_ERROR, solve_with_bound
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectrum
-from rocking.spectra.layer import largest_around
+from rocking.spectra.layer import largest_in_neighbourhood
 from tests.lookup_grid import GRID, crossed, questions
 
 ETA = 0.85
@@ -68,7 +68,7 @@ def test_no_cell_that_a_boundary_crosses_is_interpolated(path):
 def test_largest_around_spreads_errors_and_keeps_what_is_unknown():
     errors = np.zeros((1, 5, 6))
     errors[0, 2, 3], errors[0, 2, 4] = 7.0, np.nan
-    found = largest_around(errors)[0]
+    found = largest_in_neighbourhood(errors)[0]
     assert np.isnan(found[2, 4])
     assert np.isnan(found).sum() == 1
     expected = np.zeros((5, 6))

@@ -7,7 +7,7 @@ import pytest
 
 from rocking.datasets.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.interpolation.stencils import LEVELS, NO_STENCIL
+from rocking.interpolation.stencils import NO_STENCIL, SLICE_STENCILS
 from rocking.lookup.open import open_cube
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectra, spectrum
@@ -129,7 +129,7 @@ def test_cubes_say_which_levels_serve(folder):
         assert len(np.unique(codes)) > 4  # boundaries and creases leave now these and now those
         for lower, gap in enumerate(codes):
             for code in set(gap[gap >= 0].tolist()):
-                count, below = LEVELS[code]
+                count, below = SLICE_STENCILS[code]
                 assert 0 <= lower - below <= axis.size - count
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
 import rocking
-from rocking.model.outcome_margin import fate_margin
+from rocking.model.outcome_margin import outcome_margin
 
 ALPHAS = st.sampled_from([0.0, 1e-6, 0.1, 0.4, 1.2])
 EXACT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
@@ -43,7 +43,7 @@ def next_impact(z, w, alpha):
 
 
 def margin(z, w, eta, alpha):
-    return float(fate_margin(*(np.asarray(x, dtype=np.float64) for x in (z, w, eta, alpha))))
+    return float(outcome_margin(*(np.asarray(x, dtype=np.float64) for x in (z, w, eta, alpha))))
 
 
 @given(z=st.floats(0.01, 1.4), w=st.floats(-1.6, 1.2), eta=st.floats(0.3, 1.0), alpha=ALPHAS)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 import rocking
 from rocking import Outcome
 from rocking.excitation.pulses import PULSE_NAMES
-from rocking.solver.arcs.events import fly
-from rocking.solver.kernels.chatter import settles
-from rocking.solver.state import IMPACT, prepared_steps
-from rocking.solver.taylor.flight import fly_steps
+from rocking.solver.arcs.events import long_flight
+from rocking.solver.kernels.chatter import chatter_ends_in_rest
+from rocking.solver.state import IMPACT, step_state
+from rocking.solver.taylor.flight import flight_by_steps
 from tests.kernels import cell, flight_from
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))
@@ -32,14 +32,14 @@ WANTED = st.tuples(
 
 def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
     """Impact by impact until next to nothing is left: the phase then, and the highest peak [z]."""
-    highest, first, steps = 0.0, w, prepared_steps(flight)
+    highest, first, steps = 0.0, w, step_state(flight)
     while w > 1e-7 * first:
         flight_from(flight, phase, w, sign)
         if flight["by_arcs"]:
-            ended, h, landing, _, peak = fly(flight)
+            ended, h, landing, _, peak = long_flight(flight)
         else:
-            ended, landing, _ = fly_steps(flight, steps)
-            h, peak = float(flight["elapsed"]), float(flight["largest"])
+            ended, landing, _ = flight_by_steps(flight, steps)
+            h, peak = float(flight["elapsed"]), float(flight["largest_z"])
         highest = max(highest, peak)
         if ended != IMPACT:
             return math.inf, highest
@@ -52,14 +52,14 @@ def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
 def test_settles_never_promises_what_the_impacts_do_not_keep(wanted):
     pulse, slenderness, omega, eta, alpha, where, within, w, sign = wanted
     flight = cell(pulse, slenderness, omega, alpha)
-    quiet = np.flatnonzero(flight["cut_level"][: int(flight["count"])] == 0.0)
+    quiet = np.flatnonzero(flight["interval_level"][: int(flight["interval_count"])] == 0.0)
     interval = int(quiet[min(int(where * len(quiet)), len(quiet) - 1)])
     flight["interval"] = interval
-    start, end = (float(x) for x in flight["cut_phase"][interval : interval + 2])
+    start, end = (float(x) for x in flight["interval_phase"][interval : interval + 2])
     phase = start + within * (end - start)
     assume(start < phase < end)
     peak = 0.5 * w  # what a chattering block has reached before
-    if settles(flight, w, eta, phase, end, peak):
+    if chatter_ends_in_rest(flight, w, eta, phase, end, peak):
         rest, highest = follow(flight, w, eta, phase, sign)
         assert rest <= end
         assert highest <= peak
@@ -67,13 +67,13 @@ def test_settles_never_promises_what_the_impacts_do_not_keep(wanted):
 
 def test_settles_says_yes_where_chatter_is_far_from_everything():
     flight = cell("sine", 0.9, 1.0)
-    end = float(flight["cut_phase"][1])
+    end = float(flight["interval_phase"][1])
     for eta in (0.0, 0.3, 0.9, 0.99):
-        assert settles(flight, 1e-7, eta, 0.1, end, 0.5)
-    assert not settles(flight, 1e-7, 1.0, 0.1, end, 0.5)  # nothing is lost: no rest
-    assert not settles(flight, 1e-7, 0.9, 0.1, end, 1e-15)  # a flight may pass the peak
-    assert not settles(flight, 0.5, 0.9, 0.1, end, 0.5)  # the window is too short
-    assert not settles(flight, 1e-3, 0.9, end - 1e-6, end, 0.5)
+        assert chatter_ends_in_rest(flight, 1e-7, eta, 0.1, end, 0.5)
+    assert not chatter_ends_in_rest(flight, 1e-7, 1.0, 0.1, end, 0.5)  # nothing is lost: no rest
+    assert not chatter_ends_in_rest(flight, 1e-7, 0.9, 0.1, end, 1e-15)  # a flight may pass the peak
+    assert not chatter_ends_in_rest(flight, 0.5, 0.9, 0.1, end, 0.5)  # the window is too short
+    assert not chatter_ends_in_rest(flight, 1e-3, 0.9, end - 1e-6, end, 0.5)
 
 
 @pytest.mark.parametrize("alpha", [None, 0.25])

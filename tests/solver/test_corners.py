@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.solver.peak_response import ALPHAS, FREQUENCY_RATIOS, SMALLEST_SLENDERNESS
+from rocking.solver.peak_response import ALPHA_RANGE, FREQUENCY_RATIO_RANGE, MIN_SLENDERNESS
 
-SLENDERNESS = (SMALLEST_SLENDERNESS, 1e-3, 0.5, 0.999, 1 - 1e-15)
-FREQUENCY_RATIO = (FREQUENCY_RATIOS[0], 1e-3, 1.0, 1e3, FREQUENCY_RATIOS[1])
+SLENDERNESS = (MIN_SLENDERNESS, 1e-3, 0.5, 0.999, 1 - 1e-15)
+FREQUENCY_RATIO = (FREQUENCY_RATIO_RANGE[0], 1e-3, 1.0, 1e3, FREQUENCY_RATIO_RANGE[1])
 RESTITUTION = (0.0, 0.9, 1 - 1e-12, 1.0)
-ALPHA = (0.0, ALPHAS[0], 1e-3, 1.2, ALPHAS[1])
+ALPHA = (0.0, ALPHA_RANGE[0], 1e-3, 1.2, ALPHA_RANGE[1])
 
 
 @pytest.mark.slow

@@ -20,9 +20,9 @@ SLENDERNESS = st.one_of(st.floats(1e-4, 1 - 1e-6), st.floats(-12, -2).map(lambda
 
 def check_cuts(pulse: AbstractPulse, slenderness: float) -> None:
     flight = cell(pulse, slenderness, 1.0)
-    count = int(flight["count"])
-    phase = flight["cut_phase"][: count + 1]
-    level, rise = flight["cut_level"][:count], flight["cut_rise"][:count]
+    count = int(flight["interval_count"])
+    phase = flight["interval_phase"][: count + 1]
+    level, rise = flight["interval_level"][:count], flight["interval_slope"][:count]
     assert phase[0] == pulse.start
     assert phase[-1] == pulse.end
     assert (np.diff(phase) >= 0).all()
@@ -47,8 +47,8 @@ def check_cuts(pulse: AbstractPulse, slenderness: float) -> None:
         terms = pulse.terms
         for k, (_, w, d) in enumerate(terms):
             angle = w * phase + d
-            np.testing.assert_allclose(flight["cut_cosine"][: count + 1, k], np.cos(angle), rtol=0, atol=1e-14)
-            np.testing.assert_allclose(flight["cut_sine"][: count + 1, k], np.sin(angle), rtol=0, atol=1e-14)
+            np.testing.assert_allclose(flight["interval_cosine"][: count + 1, k], np.cos(angle), rtol=0, atol=1e-14)
+            np.testing.assert_allclose(flight["interval_sine"][: count + 1, k], np.sin(angle), rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("name", SIGNED)
@@ -70,9 +70,9 @@ def test_cuts_of_sums_of_sinusoids(pulse):
 
 def test_number_of_cuts_of_a_sine():
     flight = cell("sine", 0.5, 1.0)
-    assert int(flight["count"]) == 7  # two crests with a cap each: start, 4 crossings, 2 crests, end
+    assert int(flight["interval_count"]) == 7  # two crests with a cap each: start, 4 crossings, 2 crests, end
     np.testing.assert_allclose(
-        flight["cut_phase"][:8] / np.pi, [0, 1 / 6, 1 / 2, 5 / 6, 7 / 6, 3 / 2, 11 / 6, 2], rtol=1e-15, atol=1e-15
+        flight["interval_phase"][:8] / np.pi, [0, 1 / 6, 1 / 2, 5 / 6, 7 / 6, 3 / 2, 11 / 6, 2], rtol=1e-15, atol=1e-15
     )
 
 
@@ -81,7 +81,7 @@ def test_cap_near_onset_keeps_its_digits():
         slenderness = 1 - gap
         exact_gap = 1 - slenderness  # as rounded
         flight = cell("sine", slenderness, 1.0)
-        half = float(flight["cut_phase"][2] - flight["cut_phase"][1])
+        half = float(flight["interval_phase"][2] - flight["interval_phase"][1])
         # cos(half) = 1 - gap; a rounded phase near pi/2 keeps 1e-16 absolute
         assert half == pytest.approx(2 * np.arcsin(np.sqrt(exact_gap / 2)), rel=1e-15, abs=3e-16)
 

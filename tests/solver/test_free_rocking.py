@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rocking
-from rocking.solver.kernels.free_rocking import free_fate, highest_rotation
+from rocking.solver.kernels.free_rocking import free_outcome, highest_rotation
 
 ALPHAS = st.one_of(st.just(0.0), st.floats(-8, 0.19).map(lambda x: 10**x))
 
@@ -24,7 +24,7 @@ def left_to_climb(z, alpha):
 @given(z=st.floats(0, 0.999), w=st.floats(1e-6, 3), eta=st.floats(0, 1), alpha=ALPHAS)
 def test_a_rising_block_turns_where_its_energy_is_spent(z, w, eta, alpha):
     assume(z < math.pi / 2 / alpha if alpha > 0 else True)
-    escapes, peak, after = free_fate(z, w, eta, alpha)
+    escapes, peak, after = free_outcome(z, w, eta, alpha)
     with mpmath.workprec(160):
         energy = left_to_climb(z, alpha) ** 2 - mpmath.mpf(w) ** 2  # of X, conserved
         assert (escapes == 1) == (energy <= 0)
@@ -40,7 +40,7 @@ def test_a_rising_block_turns_where_its_energy_is_spent(z, w, eta, alpha):
 @given(z=st.floats(0, 1.5), w=st.floats(-3, 0), eta=st.floats(0, 1), alpha=ALPHAS)
 def test_a_falling_block_comes_through_at_most_one_impact(z, w, eta, alpha):
     assume(z < math.pi / 2 / alpha if alpha > 0 else True)
-    escapes, peak, after = free_fate(z, w, eta, alpha)
+    escapes, peak, after = free_outcome(z, w, eta, alpha)
     with mpmath.workprec(160):
         barrier = left_to_climb(0.0, alpha)
         x = left_to_climb(z, alpha)
@@ -79,20 +79,20 @@ def test_small_rotations_keep_their_digits(alpha, velocity):
 @given(z=st.floats(1e-6, 0.9), w=st.floats(-0.4, 0.05), alpha=ALPHAS)
 def test_no_restitution_no_rotation_after_the_impact(z, w, alpha):
     assume(z + abs(w) < 0.95)
-    escapes, peak, after = free_fate(z, w, 0.0, alpha)
+    escapes, peak, after = free_outcome(z, w, 0.0, alpha)
     assert (escapes, after) == (0, 0)
     assert peak >= z * (1 - 2e-16)
 
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-6, 0.4])
 def test_fate_is_monotone_in_restitution_and_continuous_in_alpha(alpha):
-    fates = [free_fate(1.2, -1.9, eta, alpha) for eta in np.linspace(0, 1, 101)]
+    fates = [free_outcome(1.2, -1.9, eta, alpha) for eta in np.linspace(0, 1, 101)]
     escapes = [fate[0] for fate in fates]
     assert escapes == sorted(escapes)
     peaks = [fate[1] for fate in fates if fate[0] == 0]
     assert peaks == sorted(peaks)
     for z, w in ((0.4, 0.3), (0.4, -0.3), (1e-9, 0.6), (0.9, 0.05)):
-        slender, nearly = free_fate(z, w, 0.95, 0.0), free_fate(z, w, 0.95, 1e-8)
+        slender, nearly = free_outcome(z, w, 0.95, 0.0), free_outcome(z, w, 0.95, 1e-8)
         assert slender[0] == nearly[0]
         assert slender[1] == pytest.approx(nearly[1], rel=1e-14)
 

@@ -6,11 +6,11 @@ import pytest
 import rocking
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
-from rocking.solver.kernels.event_loop import IMPACT_LIMIT, land
-from rocking.solver.peak_response import Scratch
-from rocking.solver.state import prepared_steps
+from rocking.solver.kernels.event_loop import IMPACT_LIMIT, on_impact
+from rocking.solver.peak_response import SolverState
+from rocking.solver.state import step_state
 from rocking.solver.taylor.events import first_crossing
-from rocking.solver.taylor.flight import fly_steps
+from rocking.solver.taylor.flight import flight_by_steps
 from tests.kernels import first_flight
 
 ALPHA = 0.3
@@ -54,27 +54,27 @@ def test_zeros_beyond_the_end_are_not_found(beyond):
 
 def test_a_flight_ends():
     flight = first_flight("sine", 0.5, 3.0, ALPHA)
-    steps = prepared_steps(flight)
+    steps = step_state(flight)
     steps["log_precision"] = -3000.0  # steps of no length
     with pytest.raises(SearchError, match="flight"):
-        fly_steps(flight, steps)
+        flight_by_steps(flight, steps)
 
 
 def test_flights_side_by_side_end(monkeypatch):
     def without_length(flight, precision):
-        steps = prepared_steps(flight, precision)
+        steps = step_state(flight, precision)
         steps["log_precision"] = -3000.0
         return steps
 
-    monkeypatch.setattr("rocking.solver.peak_response.prepared_steps", without_length)
-    monkeypatch.setattr("rocking.solver.peak_response.scratch", Scratch())
+    monkeypatch.setattr("rocking.solver.peak_response.step_state", without_length)
+    monkeypatch.setattr("rocking.solver.peak_response.solver_state", SolverState())
     with pytest.raises(SearchError, match="flight"):
         rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.9, alpha=ALPHA)
 
 
 def test_impacts_end():
     flight = first_flight("sine", 0.5, 3.0)
-    flight["length"], flight["impacts"] = 0.1, IMPACT_LIMIT + 3 * flight["count"] - 1
-    land(flight, -0.1, 0.9)
+    flight["length"], flight["impacts"] = 0.1, IMPACT_LIMIT + 3 * flight["interval_count"] - 1
+    on_impact(flight, -0.1, 0.9)
     with pytest.raises(SearchError, match="impacts"):
-        land(flight, -0.1, 0.9)
+        on_impact(flight, -0.1, 0.9)

@@ -6,11 +6,19 @@ import pytest
 
 import rocking
 from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
-from rocking.solver.arcs.arc import LARGEST_EXPONENT, RADIUS, arc, expand, hyperbolic, rotation, velocity
-from rocking.solver.arcs.events import fly, hop
-from rocking.solver.arcs.flight import state, turn
-from rocking.solver.state import IMPACT, prepared_steps
-from rocking.solver.taylor.flight import fly_steps
+from rocking.solver.arcs.arc import (
+    MAX_EXPONENT,
+    SERIES_RADIUS,
+    arc_state,
+    cosh_minus_one_and_sinh,
+    expand_series,
+    rotation,
+    velocity,
+)
+from rocking.solver.arcs.events import long_flight, short_flight
+from rocking.solver.arcs.flight import set_angles, state_at
+from rocking.solver.state import IMPACT, step_state
+from rocking.solver.taylor.flight import flight_by_steps
 from tests.kernels import first_flight, flight_from
 
 SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(get_pulse(name), SinusoidalPulse))
@@ -18,7 +26,7 @@ SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(get_pulse(name), Si
 
 @pytest.mark.parametrize("h", [0.0, 1e-300, 1e-9, 1e-3, 0.3, 0.5 - 1e-16, 0.5, 0.7, 3.0, 40.0, 300.0])
 def test_hyperbolic_functions_lose_no_digit(h):
-    cosh1, sinh = hyperbolic(float(h))
+    cosh1, sinh = cosh_minus_one_and_sinh(float(h))
     with mpmath.workprec(200):
         exact = mpmath.mpf(h)
         true = float(mpmath.cosh(exact) - 1), float(mpmath.sinh(exact))
@@ -26,20 +34,20 @@ def test_hyperbolic_functions_lose_no_digit(h):
 
 
 def test_hyperbolic_functions_are_continuous_where_the_series_ends_and_never_overflow():
-    below, above = hyperbolic(np.nextafter(0.5, 0.0)), hyperbolic(0.5)
+    below, above = cosh_minus_one_and_sinh(np.nextafter(0.5, 0.0)), cosh_minus_one_and_sinh(0.5)
     np.testing.assert_allclose(below, above, rtol=1.5e-15)
-    assert np.isfinite(hyperbolic(1e9)).all()
-    np.testing.assert_allclose(hyperbolic(1e9), np.exp(LARGEST_EXPONENT) / 2)
+    assert np.isfinite(cosh_minus_one_and_sinh(1e9)).all()
+    np.testing.assert_allclose(cosh_minus_one_and_sinh(1e9), np.exp(MAX_EXPONENT) / 2)
 
 
 @pytest.mark.parametrize("name", SINUSOIDS)
 @pytest.mark.parametrize("omega", [1e-2, 0.4, 3.0, 30.0])
 def test_series_and_arc_agree_where_one_takes_over(name, omega):
     flight = first_flight(name, 0.5, omega)
-    reach = RADIUS / float(flight["fastest"])
-    turn(flight, float(flight["phase"]) + omega * reach, flight["cosine1"], flight["sine1"])
-    z_arc, w_arc = arc(flight, reach, flight["cosine1"], flight["sine1"])
-    expand(flight, 0.0, float(flight["w0"]), float(flight["q0"]), flight["cosine0"], flight["sine0"])
+    reach = SERIES_RADIUS / float(flight["max_rate"])
+    set_angles(flight, float(flight["phase"]) + omega * reach, flight["cosine1"], flight["sine1"])
+    z_arc, w_arc = arc_state(flight, reach, flight["cosine1"], flight["sine1"])
+    expand_series(flight, 0.0, float(flight["w0"]), float(flight["q0"]), flight["cosine0"], flight["sine0"])
     z, w = rotation(flight, reach), velocity(flight, reach)
     # the arc is a difference of terms of the size of a h^2 or smaller; the series is exact to rounding
     size = 1.0 / 0.5 * reach * reach
@@ -63,26 +71,26 @@ def test_series_is_the_solution_in_many_digits(name):
         for h in (0.05, 0.2, 0.6, 1.1):
             z_true = -mpmath.quad(lambda s, h=h: mpmath.sinh(h - s) * pulled(s), [0, h])
             w_true = -mpmath.quad(lambda s, h=h: mpmath.cosh(h - s) * pulled(s), [0, h])
-            turn(flight, phase + omega * h, flight["cosine1"], flight["sine1"])
-            z, w = state(flight, h, flight["cosine1"], flight["sine1"])
+            set_angles(flight, phase + omega * h, flight["cosine1"], flight["sine1"])
+            z, w = state_at(flight, h, flight["cosine1"], flight["sine1"])
             assert abs(z - float(z_true)) <= 4e-15 * max(abs(float(z_true)), h * 1e-1)
             assert abs(w - float(w_true)) <= 4e-15 * max(abs(float(w_true)), 1e-1)
 
 
 @pytest.mark.parametrize("omega", [0.3, 3.0])
 def test_a_short_flight_is_the_same_hopped_or_flown(omega):
-    # landing speeds about the largest that `hop` takes on: 2.5 w0 = reach q0
+    # landing speeds about the largest that `short_flight` takes on: 2.5 w0 = reach q0
     flight = first_flight("sine", 0.8, omega)
     phase = 0.3
     flight["interval"] = 0
     flight_from(flight, phase, 1.0, 1.0)
-    q0, reach = float(flight["q0"]), RADIUS / float(flight["fastest"])
-    to_cut = (float(flight["cut_phase"][1]) - phase) / omega
+    q0, reach = float(flight["q0"]), SERIES_RADIUS / float(flight["max_rate"])
+    to_cut = (float(flight["interval_phase"][1]) - phase) / omega
     taken = 0
     for share in (1e-6, 1e-3, 0.1, 0.5, 0.9, 0.99, 1.01):
         flight_from(flight, phase, share * reach * q0 / 2.5, 1.0)
-        hopped = hop(flight, to_cut, 0.0)
-        ended, h, w, _, peak = fly(flight)
+        hopped = short_flight(flight, to_cut, 0.0)
+        ended, h, w, _, peak = long_flight(flight)
         if hopped[0] >= 0.0:
             taken += 1
             assert ended == IMPACT
@@ -97,9 +105,9 @@ def test_flights_by_arcs_and_by_taylor_steps(name):
     for _ in range(60):
         slenderness, omega = float(rng.uniform(0.1, 0.95)), float(np.exp(rng.uniform(-1, 2.5)))
         arcs, steps = first_flight(name, slenderness, omega), first_flight(name, slenderness, omega)
-        ended, h, w, z, peak = fly(arcs)
-        ended_steps, w_steps, z_steps = fly_steps(steps, prepared_steps(steps))
-        h_steps, peak_steps = float(steps["elapsed"]), float(steps["largest"])
+        ended, h, w, z, peak = long_flight(arcs)
+        ended_steps, w_steps, z_steps = flight_by_steps(steps, step_state(steps))
+        h_steps, peak_steps = float(steps["elapsed"]), float(steps["largest_z"])
         if ended == IMPACT:
             compared += 1
             assert ended_steps == IMPACT

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import rocking
 from rocking import PULSE_NAMES, Outcome, get_pulse
-from rocking.solver.peak_response import LARGEST_SHARE, peak_response
+from rocking.solver.peak_response import MAX_CHUNK, peak_response
 
 FIELDS = tuple(rocking.Response.__dataclass_fields__)
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
@@ -68,7 +68,7 @@ def test_any_memory_layout_and_number_type():
 
 @pytest.mark.parametrize("alpha", [None, 0.3])
 def test_threads_and_order_change_nothing(alpha):
-    question = cells(2 * LARGEST_SHARE + 17 if alpha is None else LARGEST_SHARE + 17, seed=1)
+    question = cells(2 * MAX_CHUNK + 17 if alpha is None else MAX_CHUNK + 17, seed=1)
     one = peak_response("sine", **question, alpha=alpha, threads=1)
     assert_identical(one, peak_response("sine", **question, alpha=alpha, threads=2))
     assert_identical(one, peak_response("sine", **question, alpha=alpha))

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 import rocking
 from rocking._numba.simd import LANES
 from rocking.excitation.pulses import PULSE_NAMES
-from rocking.solver.peak_response import Scratch
-from rocking.solver.state import FINEST, ORDER, prepared, prepared_steps
-from rocking.solver.taylor.events import evaluate, first_crossing, polish, value_and_slope
-from rocking.solver.taylor.step import set_block, take_step
+from rocking.solver.peak_response import SolverState
+from rocking.solver.state import FULL_PRECISION, MAX_ORDER, pulse_state, step_state
+from rocking.solver.taylor.events import evaluate_series, first_crossing, refine_root, value_and_slope
+from rocking.solver.taylor.step import init_block, take_step
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
@@ -28,28 +28,28 @@ def step_from(
     alpha: float,
     sign: float = -1.0,
     lane: int = 3,
-    precision: float = FINEST,
+    precision: float = FULL_PRECISION,
     limit: float = np.inf,
 ):
-    steps = prepared_steps(prepared(rocking.get_pulse(pulse)), precision)
-    set_block(steps, lane, alpha, omega)
+    steps = step_state(pulse_state(rocking.get_pulse(pulse)), precision)
+    init_block(steps, lane, alpha, omega)
     for name, value in {"z0": z, "w0": w, "phase": phase, "strength": sign / 0.4, "limit": limit}.items():
         steps[name][lane] = value
     take_step(steps)
     return steps
 
 
-def rotation(steps, h: float, degree: int = ORDER, lane: int = 3) -> float:
-    return evaluate(steps["z"], lane, degree, h)
+def rotation(steps, h: float, degree: int = MAX_ORDER, lane: int = 3) -> float:
+    return evaluate_series(steps["z"], lane, degree, h)
 
 
 def velocity(steps, h: float, lane: int = 3) -> float:
-    return evaluate(steps["rate"], lane, ORDER - 1, h)
+    return evaluate_series(steps["rate"], lane, MAX_ORDER - 1, h)
 
 
 def one_lane(coefficients: np.ndarray) -> np.ndarray:
     """A series in the second of all lanes."""
-    series = np.full((ORDER + 1, LANES), np.nan)
+    series = np.full((MAX_ORDER + 1, LANES), np.nan)
     series[:, 1] = coefficients
     return series
 
@@ -66,10 +66,10 @@ def test_coefficients_satisfy_the_equation_of_motion(name, alpha):
     steps = step_from(name, 0.2, 0.3, phase, omega, alpha, sign)
     pulse = rocking.get_pulse(name)
     for h in (0.0, 0.02, 0.06):
-        z, slope = value_and_slope(steps["z"], 3, ORDER, h)
+        z, slope = value_and_slope(steps["z"], 3, MAX_ORDER, h)
         assert z == pytest.approx(rotation(steps, h), rel=1e-14)
         assert velocity(steps, h) == pytest.approx(slope, rel=1e-14)
-        _, bend = value_and_slope(steps["rate"], 3, ORDER - 1, h)
+        _, bend = value_and_slope(steps["rate"], 3, MAX_ORDER - 1, h)
         force = sign * float(pulse.shape(phase + omega * h)) / 0.4
         if alpha == 0.0:
             true = z - 1 - force  # (3.1)
@@ -118,14 +118,14 @@ def test_the_error_of_a_step_follows_the_precision_asked(name):
             z, w = float(part["z1"][3]), float(part["w1"][3])
         error = abs(float(coarse["z1"][3]) - z) / z
         assert 1e-4 * precision < error + 1e-15 < 10 * precision + 1e-15
-        assert int(coarse["order"]) < ORDER
+        assert int(coarse["order"]) < MAX_ORDER
 
 
 def test_lanes_do_not_know_of_each_other():
     alone = [step_from("c1", 0.2, 0.3, 0.7, 1.9, alpha, lane=lane) for lane, alpha in enumerate((0.0, 0.3, 1e-6))]
-    together = prepared_steps(prepared(rocking.get_pulse("c1")))
+    together = step_state(pulse_state(rocking.get_pulse("c1")))
     for lane, one in enumerate(alone):
-        set_block(together, lane, (0.0, 0.3, 1e-6)[lane], 1.9)
+        init_block(together, lane, (0.0, 0.3, 1e-6)[lane], 1.9)
         for name in ("z0", "w0", "phase", "strength", "limit"):
             together[name][lane] = one[name][lane]
     take_step(together)
@@ -137,9 +137,9 @@ def test_lanes_do_not_know_of_each_other():
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-9, 0.3, 1.5])
 def test_uplift_starts_with_no_acceleration_at_all(alpha):
-    steps = prepared_steps(prepared(rocking.get_pulse("sine")))
-    set_block(steps, 0, alpha, 2.0)
-    steps["lifted"][0], steps["phase"][0], steps["strength"][0], steps["limit"][0] = 1.0, 0.4, -2.5, 1.0
+    steps = step_state(pulse_state(rocking.get_pulse("sine")))
+    init_block(steps, 0, alpha, 2.0)
+    steps["starts_at_uplift"][0], steps["phase"][0], steps["strength"][0], steps["limit"][0] = 1.0, 0.4, -2.5, 1.0
     take_step(steps)
     assert steps["z"][2, 0] == 0.0
     assert steps["z"][3, 0] > 0.0
@@ -148,9 +148,9 @@ def test_uplift_starts_with_no_acceleration_at_all(alpha):
 def test_the_bound_of_the_bend_holds_on_the_step():
     steps = step_from("c2", 0.2, 0.3, 0.7, 1.9, 0.4)
     h = np.linspace(0, float(steps["h"][3]), 200)
-    second = np.polynomial.polynomial.polyval(h, np.polynomial.polynomial.polyder(steps["rate"][:ORDER, 3], 2))
-    assert np.abs(second).max() <= steps["bend"][3] * (1 + 1e-12)
-    assert steps["bend"][3] < 20 * np.abs(second).max()
+    second = np.polynomial.polynomial.polyval(h, np.polynomial.polynomial.polyder(steps["rate"][:MAX_ORDER, 3], 2))
+    assert np.abs(second).max() <= steps["second_derivative_bound"][3] * (1 + 1e-12)
+    assert steps["second_derivative_bound"][3] < 20 * np.abs(second).max()
 
 
 @given(
@@ -162,11 +162,11 @@ def test_first_crossing_is_the_first_of_all_roots(roots, scale, falling):
     roots = sorted(roots)
     assume(all(b - a > 1e-3 for a, b in pairwise(roots)))
     assume(all(abs(root) > 1e-6 and abs(root - 1) > 1e-6 for root in roots))
-    series = np.zeros(ORDER + 1)
+    series = np.zeros(MAX_ORDER + 1)
     series[: len(roots) + 1] = scale * np.polynomial.polynomial.polyfromroots(roots)
     rising_first = (scale > 0) == (len(roots) % 2 == 1)  # the leftmost root is crossed upwards
     wanted = [r for i, r in enumerate(roots) if 0 < r < 1 and ((i % 2 == 0) == rising_first) != falling]
-    found = first_crossing(one_lane(series), 1, ORDER, 0.0, 1.0, falling, bend_of(series, 1.0))
+    found = first_crossing(one_lane(series), 1, MAX_ORDER, 0.0, 1.0, falling, bend_of(series, 1.0))
     if wanted:
         assert found == pytest.approx(wanted[0], abs=1e-9)
     else:
@@ -176,10 +176,10 @@ def test_first_crossing_is_the_first_of_all_roots(roots, scale, falling):
 @given(root=st.floats(1e-6, 1.0), curve=st.floats(-0.4, 0.4), falling=st.booleans())
 def test_polish_finds_the_zero_and_leaves_out_the_one_at_the_start(root, curve, falling):
     side = -1.0 if falling else 1.0
-    series = np.zeros(ORDER + 1)
+    series = np.zeros(MAX_ORDER + 1)
     series[1:4] = -side * root, side * (1 - curve * root), side * curve  # side h (h - root)(1 + curve h)
     upper = min(1.3 * root, 1.2)
-    found, slope = polish(one_lane(series), 1, ORDER, 0.0, upper, falling, True, 0.7 * upper)
+    found, slope = refine_root(one_lane(series), 1, MAX_ORDER, 0.0, upper, falling, True, 0.7 * upper)
     assert (slope < 0.0) == falling
     with mpmath.workprec(100):
         a, b, c = (mpmath.mpf(float(x)) for x in series[1:4])
@@ -239,15 +239,15 @@ def test_terms_beyond_the_degree_do_not_count(pulse, monkeypatch):
     clean = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
 
     def spoilt(flight, precision):
-        steps = prepared_steps(flight, precision)
+        steps = step_state(flight, precision)
         order = int(steps["order"])
         for name in ("z", "f", "gauss", "s", "c"):
             steps[name][order + 1 :] = np.nan
         steps["rate"][order:] = np.nan
         return steps
 
-    monkeypatch.setattr("rocking.solver.peak_response.prepared_steps", spoilt)
-    monkeypatch.setattr("rocking.solver.peak_response.scratch", Scratch())
+    monkeypatch.setattr("rocking.solver.peak_response.step_state", spoilt)
+    monkeypatch.setattr("rocking.solver.peak_response.solver_state", SolverState())
     found = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
     for name in ("peak_rotation", "outcome", "impacts", "end_rotation", "end_velocity"):
         np.testing.assert_array_equal(getattr(found, name), getattr(clean, name))

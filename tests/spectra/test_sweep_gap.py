@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rocking.interpolation.stencils import LEVELS, NO_STENCIL, OVERTURNS, SQUARED, Mesh
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SLICE_STENCILS, SQUARED, Mesh
 from rocking.model.response import Outcome
-from rocking.spectra.between_levels import Gap
-from rocking.spectra.layer import CENTRE, Layer, fate_codes
+from rocking.spectra.between_levels import LevelInterval
+from rocking.spectra.layer import CELL_CENTRE, GridLayer, outcome_codes
 
 MESH = Mesh.of(np.linspace(0.3, 0.4, 6), np.geomspace(5.0, 6.0, 6))
 ETAS = np.array([0.80, 0.82, 0.84, 0.86, 0.88, 0.90])
@@ -21,15 +21,15 @@ def layer(peak, kind=None, form=0):
     outcome, impacts = kind or (Outcome.SAFE, 1)
     stencil = np.full(SIDE, OVERTURNS if fallen else form, np.int8)
     whole = {"outcome": np.full((6, 6), outcome, np.int8), "impacts": np.full((6, 6), impacts, np.int32)}
-    return Layer(MESH, nodes, whole["outcome"], whole["impacts"], nodes > 1.0, whole["impacts"], stencil)
+    return GridLayer(MESH, nodes, whole["outcome"], whole["impacts"], nodes > 1.0, whole["impacts"], stencil)
 
 
 def gap_of(layers, lower, levels=ETAS, power=1):
-    return Gap.of(layers, [one.kinds() for one in layers], levels, power, lower)
+    return LevelInterval.of(layers, [one.kinds() for one in layers], levels, power, lower)
 
 
 def probe(gap, law, share=HALF):
-    return (CENTRE, share), np.full(2, law(gap.at(share)))
+    return (CELL_CENTRE, share), np.full(2, law(gap.at(share)))
 
 
 def creased(eta):
@@ -38,14 +38,14 @@ def creased(eta):
 
 def test_levels_beyond_a_crease_do_not_serve():
     gap = gap_of([layer(creased(eta)) for eta in ETAS], 3)  # the crease lies below the one before the gap
-    assert LEVELS[gap.choice[1, 3]] == (4, 1)
+    assert SLICE_STENCILS[gap.choice[1, 3]] == (4, 1)
     assert gap.errors(CELLS, probe(gap, creased)) == pytest.approx(0.0, abs=1e-14)
     gap = gap_of([layer(creased(eta)) for eta in ETAS], 2)
     assert (gap.errors(CELLS, probe(gap, creased)) > 1e-4).all()
     least = gap.choose(CELLS, [probe(gap, creased), probe(gap, creased, 0.25)])
     assert least == pytest.approx(0.0, abs=1e-14)
-    assert {LEVELS[code] for code in gap.choice[CELLS]} == {(4, 0)}
-    assert LEVELS[gap.choice[0, 0]] == (4, 1)  # no other cell
+    assert {SLICE_STENCILS[code] for code in gap.choice[CELLS]} == {(4, 0)}
+    assert SLICE_STENCILS[gap.choice[0, 0]] == (4, 1)  # no other cell
 
 
 def test_beside_a_change_of_fate_those_of_one_side_serve():
@@ -58,7 +58,7 @@ def test_beside_a_change_of_fate_those_of_one_side_serve():
             assert (gap.choice == NO_STENCIL).all()  # no fate is told from two levels
             assert (gap.kind == 0).all()
         else:
-            assert {LEVELS[code] for code in gap.choice.ravel()} == {choice}
+            assert {SLICE_STENCILS[code] for code in gap.choice.ravel()} == {choice}
             assert gap.errors(CELLS, probe(gap, law)) == pytest.approx(0.0, abs=1e-14)
 
 
@@ -67,18 +67,20 @@ def test_three_and_two_levels_serve_where_there_are_no_more():
     for count, choice in ((3, (3, 1)), (2, (2, 0))):
         layers = [layer(np.nan, fallen)] * (4 - count) + [layer(eta) for eta in ETAS[4 - count : 4]]
         gap = gap_of([*layers, layer(np.nan, fallen)], 2, ETAS[:5])
-        assert {LEVELS[code] for code in gap.choice.ravel()} == {choice}
+        assert {SLICE_STENCILS[code] for code in gap.choice.ravel()} == {choice}
         assert gap.errors(CELLS, probe(gap, float)) == pytest.approx(0.0, abs=1e-14)
 
 
 def test_where_a_block_overturns_at_a_probe_none_serve():
     gap = gap_of([layer(0.3)] * 6, 2)
-    assert np.isinf(gap.choose(CELLS, [((CENTRE, HALF), np.full(2, np.nan))])).all()
+    assert np.isinf(gap.choose(CELLS, [((CELL_CENTRE, HALF), np.full(2, np.nan))])).all()
 
 
 def test_levels_are_judged_by_their_largest_error():
     gap = gap_of([layer(0.3)] * 6, 2)
-    probes = [((CENTRE, share), np.full(2, 0.3 + error)) for share, error in ((0.5, 0.0), (0.25, 0.1), (0.75, -0.02))]
+    probes = [
+        ((CELL_CENTRE, share), np.full(2, 0.3 + error)) for share, error in ((0.5, 0.0), (0.25, 0.1), (0.75, -0.02))
+    ]
     assert gap.choose(CELLS, probes) == pytest.approx(0.1)
 
 
@@ -87,7 +89,7 @@ def test_blocks_that_overturn_in_different_ways_are_of_no_kind():
     gap = gap_of([layer(np.nan, ways[0])] * 3 + [layer(np.nan, ways[1])] * 3, 2)
     assert (gap.kind == 0).all()
     alike = gap_of([layer(np.nan, ways[1])] * 6, 2)
-    assert (alike.kind == fate_codes(np.int8(ways[1][0]), np.int32(1))).all()
+    assert (alike.kind == outcome_codes(np.int8(ways[1][0]), np.int32(1))).all()
 
 
 def test_angles_are_interpolated_in_their_squares():

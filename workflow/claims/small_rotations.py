@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.history.contact import PRACTICAL_FRICTION, Extremes, extremes_of
-from rocking.history.motion import motion_of
+from rocking.history.contact import PRACTICAL_FRICTION, ContactExtremes, contact_extremes
+from rocking.history.motion import build_motion
 from rocking.solver.peak_response import peak_response
 from workflow.claims.claim import Claim, verdict
 
@@ -213,7 +213,7 @@ def pure_rocking(pulses: Sequence[str], restitution: float) -> list[Claim]:
     ]
 
 
-def _contacts(pulse: str, angle: float, restitution: float) -> list[Extremes]:
+def _contacts(pulse: str, angle: float, restitution: float) -> list[ContactExtremes]:
     """Extremes of the contact of the blocks that stand, on a coarse grid of the groups."""
     s, omega = (grid.ravel() for grid in np.meshgrid(np.linspace(0.3, 0.95, 12), np.geomspace(1.0, 8.0, 12)))
     alpha = float(np.radians(angle))
@@ -221,6 +221,6 @@ def _contacts(pulse: str, angle: float, restitution: float) -> list[Extremes]:
         pulse, slenderness=s, frequency_ratio=omega, restitution=restitution, alpha=alpha
     ).overturned
     return [
-        extremes_of(motion_of(pulse, slenderness=a, frequency_ratio=w, restitution=restitution, alpha=alpha))
+        contact_extremes(build_motion(pulse, slenderness=a, frequency_ratio=w, restitution=restitution, alpha=alpha))
         for a, w in zip(s[stands], omega[stands], strict=True)
     ]

@@ -15,7 +15,7 @@ from collections.abc import Hashable, Sequence
 from functools import partial
 
 from rocking._numba.cancellation import StopFlag
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking_api.execution.evaluation import ask
 from rocking_api.execution.executor import BoundedExecutor
 from rocking_api.models.params import ResponseQuestion, check_point
@@ -45,7 +45,7 @@ class Together:
         For what takes too long for the event loop.
     """
 
-    def __init__(self, atlas: Atlas, executor: BoundedExecutor) -> None:
+    def __init__(self, atlas: CubeCollection, executor: BoundedExecutor) -> None:
         self._atlas = atlas
         self._executor = executor
         self._loop: asyncio.AbstractEventLoop
@@ -60,7 +60,7 @@ class Together:
         Raises
         ------
         InvalidArgumentError, DatasetError
-            As `Atlas.response`.
+            As `CubeCollection.response`.
         """
         check_point(question)  # one that is out of range must not spoil the call of the others
         if not self._count:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import LookupOptions, alpha_of, checked
 
@@ -54,7 +54,7 @@ class BatchResult:
 
 
 def ask(
-    atlas: Atlas,
+    atlas: CubeCollection,
     options: LookupOptions,
     *,
     slenderness: ArrayLike,
@@ -69,7 +69,7 @@ def ask(
     Raises
     ------
     InvalidArgumentError, DatasetError
-        As `Atlas.response`, and beyond the border of the service.
+        As `CubeCollection.response`, and beyond the border of the service.
     """
     return atlas.response(
         options.pulse,
@@ -84,7 +84,7 @@ def ask(
 
 
 def ask_many(
-    atlas: Atlas, options: LookupOptions, groups: Mapping[str, NDArray[np.float64]], stop: StopFlag
+    atlas: CubeCollection, options: LookupOptions, groups: Mapping[str, NDArray[np.float64]], stop: StopFlag
 ) -> BatchResult:
     """Responses of the points of three arrays of one length.
 

@@ -13,12 +13,12 @@ from fastapi import Request, Response
 from fastapi.responses import FileResponse
 from starlette.types import Message, Receive, Scope, Send
 
-from rocking.datasets.catalogue import DataFile, Product
+from rocking.datasets.catalogue import DataFile, DatasetFile
 from rocking_api.http.caching import ASK_AGAIN, not_modified, validators
 from rocking_api.http.problems import problem
 
 
-def file_response(request: Request, file: DataFile, product: Product, control: str = ASK_AGAIN) -> Response:
+def file_response(request: Request, file: DataFile, product: DatasetFile, control: str = ASK_AGAIN) -> Response:
     """The open file of a data set, whole or in ranges, closed at the end; `control` says how long it may be kept."""
     unchanged = not_modified(request, product.sha256, control)
     if unchanged is not None:

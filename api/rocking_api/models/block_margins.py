@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rocking._numba.cancellation import StopFlag, attempt
+from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking.boundary.frequency import FrequencyThresholds, critical_frequency_ratio
 from rocking.model.block import Block
 from rocking_api.models.blocks import BlockQuestion, Margins, PeriodThreshold, SizeThreshold
@@ -33,7 +33,7 @@ def margins_of(
     def search(part: StopFlag) -> FrequencyThresholds:
         return critical_frequency_ratio(question.pulse, **groups, window=(low, high), stop=part)
 
-    found = attempt(search, seconds, stop)
+    found = run_with_timeout(search, seconds, stop)
     if found is None:
         return None
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))

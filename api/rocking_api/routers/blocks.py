@@ -9,11 +9,11 @@ from urllib.parse import urlencode
 import numpy as np
 from fastapi import APIRouter, Query, Request
 
-from rocking._numba.cancellation import StopFlag, attempt
+from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking.boundary.amplitude import critical_amplitude
 from rocking.groups import GroupSet, Problem, groups_of
-from rocking.history.contact import Extremes, extremes_of
-from rocking.history.motion import motion_of
+from rocking.history.contact import ContactExtremes, contact_extremes
+from rocking.history.motion import build_motion
 from rocking.model.block import Block
 from rocking.model.response import Outcome
 from rocking_api.execution.evaluation import ask
@@ -56,14 +56,14 @@ def _block(service: Service, question: BlockQuestion, stop: StopFlag) -> BlockAn
     service.metrics.points(point.source, 1)
     found = response_answer(asked, point)
     seconds = SEARCH_SHARE * service.settings.max_seconds
-    found_thresholds = attempt(lambda part: _thresholds(question, block, asked, part), seconds, stop)
+    found_thresholds = run_with_timeout(lambda part: _thresholds(question, block, asked, part), seconds, stop)
     thresholds = found_thresholds or []
     margins = margins_of(question, block, asked, [t.peak_acceleration for t in thresholds], seconds, stop)
     searched = {"peak accelerations": found_thresholds, "periods and sizes": margins}
     below = _contact_below(thresholds[0].peak_acceleration, question, block, asked, stop) if thresholds else None
     safe = below is not None and below.rocking_applies
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
-    contact = extremes_of(motion_of(question.pulse, **points, alpha=block.alpha, stop=stop))
+    contact = contact_extremes(build_motion(question.pulse, **points, alpha=block.alpha, stop=stop))
     return BlockAnswer(
         query=question,
         url="/v1/blocks/response?" + urlencode(question.model_dump()),
@@ -129,7 +129,11 @@ def _thresholds(question: BlockQuestion, block: Block, asked: ResponseQuestion, 
 
 
 def _more_warnings(
-    block: Block, question: BlockQuestion, contact: Extremes, thresholds: list[Threshold], margins: Margins | None
+    block: Block,
+    question: BlockQuestion,
+    contact: ContactExtremes,
+    thresholds: list[Threshold],
+    margins: Margins | None,
 ) -> list[str]:
     """Doubts about the question itself."""
     said = []
@@ -166,9 +170,9 @@ def _notes(found: ResponseAnswer, margins: Margins | None) -> list[str]:
 
 def _contact_below(
     acceleration: float, question: BlockQuestion, block: Block, asked: ResponseQuestion, stop: StopFlag
-) -> Extremes:
+) -> ContactExtremes:
     """Contact of the motion just below a change of outcome."""
-    motion = motion_of(
+    motion = build_motion(
         question.pulse,
         slenderness=block.uplift_acceleration / acceleration * (1.0 + BELOW),
         frequency_ratio=asked.frequency_ratio,
@@ -176,10 +180,10 @@ def _contact_below(
         alpha=block.alpha,
         stop=stop,
     )
-    return extremes_of(motion)
+    return contact_extremes(motion)
 
 
-def _safety_warnings(below: Extremes | None, thresholds: list[Threshold]) -> list[str]:
+def _safety_warnings(below: ContactExtremes | None, thresholds: list[Threshold]) -> list[str]:
     if below is None or below.rocking_applies:
         return []
     needs = f"it needs a coefficient of friction of {below.largest_friction_demand:.3g}"

@@ -11,7 +11,7 @@ import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 from starlette.exceptions import HTTPException
 
-from rocking.datasets.catalogue import DataFile, Product, UnknownDatasetError
+from rocking.datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError
 from rocking.errors import DatasetError
 from rocking_api.http.caching import IMMUTABLE, not_modified, validators
 from rocking_api.http.files import file_response
@@ -25,7 +25,7 @@ router = APIRouter(prefix="/v1/datasets", tags=["datasets"])
 async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
     """All data sets in the results folder that can be read."""
 
-    def work() -> list[Product]:
+    def work() -> list[DatasetFile]:
         catalogue = service.atlas.catalogue
         found = []
         for name in catalogue.names():
@@ -96,7 +96,7 @@ async def get_dataset(name: str, service: ServiceDep) -> DatasetDescription:
     return await service.reading(partial(_description, service, name))
 
 
-def _sound(service: Service, name: str) -> tuple[DataFile, Product]:
+def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
     """The open file of a data set, unless it is damaged: a broken file is refused rather than handed on."""
     file = service.atlas.catalogue.open(name)
     try:
@@ -121,7 +121,7 @@ def _description(service: Service, name: str) -> DatasetDescription:
     )
 
 
-def _summary(product: Product) -> dict[str, Any]:
+def _summary(product: DatasetFile) -> dict[str, Any]:
     path = f"/v1/datasets/{product.name}"
     links = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
     links["version"] = f"{path}.nc?sha256={product.sha256}"

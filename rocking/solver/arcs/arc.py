@@ -13,18 +13,18 @@ from __future__ import annotations
 
 import math
 
-from rocking._numba.compilation import Record, Vector, kernel
-from rocking.solver.state import COEFFICIENTS, terms_of
+from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking.solver.state import SERIES_LENGTH, term_count
 
-LARGEST_EXPONENT = 350.0
+MAX_EXPONENT = 350.0
 """e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""
 
-RADIUS = 0.68
+SERIES_RADIUS = 0.68
 """Largest max(1, Omega) |delta| at which the series below is exact to rounding: 0.68^16/16! = 1e-16."""
 
 
 @kernel
-def hyperbolic(h: float) -> tuple[float, float]:
+def cosh_minus_one_and_sinh(h: float) -> tuple[float, float]:
     """cosh(h) - 1 and sinh(h) for h >= 0 without cancellation."""
     if h < 0.5:
         x = h * h
@@ -33,60 +33,60 @@ def hyperbolic(h: float) -> tuple[float, float]:
         cosh1 = 1 / 3628800 + x * (1 / 479001600 + x / 87178291200.0)
         cosh1 = x * (0.5 + x * (1 / 24 + x * (1 / 720 + x * (1 / 40320 + x * cosh1))))
         return cosh1, sinh
-    grown = math.exp(min(h, LARGEST_EXPONENT))
+    grown = math.exp(min(h, MAX_EXPONENT))
     decayed = 1.0 / grown
     return 0.5 * (grown + decayed) - 1.0, 0.5 * (grown - decayed)
 
 
 @kernel
-def anchor(flight: Record) -> None:
+def init_arc(flight: Record) -> None:
     """Coefficients of the arc from the flight's start, once `force`, `w0`, `cosine0` and `sine0` are set."""
     x0, y0, below, slope = -1.0, flight.w0, 0.0, flight.w0
-    for k in range(terms_of(flight)):
+    for k in range(term_count(flight)):
         share = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
-        flight.share[k] = share
+        flight.particular[k] = share
         below -= share * flight.cosine0[k]
         x0 -= share * flight.cosine0[k]
         y0 += share * flight.rate[k] * flight.sine0[k]
         slope += share * flight.rate[k] * flight.sine0[k]
-    flight.x0, flight.y0, flight.below, flight.slope = x0, y0, below, slope
+    flight.x0, flight.y0, flight.offset_z, flight.offset_w = x0, y0, below, slope
 
 
 @kernel
-def arc(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, float]:
+def arc_state(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) -> tuple[float, float]:
     """State (z, w) a time h after the flight's start (z = 0, w = w0), where the angles have that cosine and sine.
 
-    (3.4) with `share` = F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
+    (3.4) with `particular` = F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
     """
-    moved, slope = flight.below, flight.slope
-    for k in range(terms_of(flight)):
-        moved += flight.share[k] * cosine[k]
-        slope -= flight.share[k] * flight.rate[k] * sine[k]
-    cosh1, sinh = hyperbolic(h)
+    moved, slope = flight.offset_z, flight.offset_w
+    for k in range(term_count(flight)):
+        moved += flight.particular[k] * cosine[k]
+        slope -= flight.particular[k] * flight.rate[k] * sine[k]
+    cosh1, sinh = cosh_minus_one_and_sinh(h)
     return moved + (flight.x0 * cosh1 + flight.y0 * sinh), slope + (flight.x0 * sinh + flight.y0 * cosh1)
 
 
 @kernel
-def pull(flight: Record, cosine: Vector) -> float:
+def restoring_acceleration(flight: Record, cosine: FloatArray) -> float:
     """q = 1 + F [-]: how strongly the block is pulled back towards the ground."""
     q = 1.0
-    for k in range(terms_of(flight)):
+    for k in range(term_count(flight)):
         q += flight.force[k] * cosine[k]
     return q
 
 
 @kernel
-def expand(flight: Record, z: float, w: float, q: float, cosine: Vector, sine: Vector) -> None:
+def expand_series(flight: Record, z: float, w: float, q: float, cosine: FloatArray, sine: FloatArray) -> None:
     """Fill `flight.coef` with the Taylor coefficients of z about a point; q is given since it is exactly 0 at uplift.
 
     z'' = z - 1 - F gives (n + 1)(n + 2) z_{n+2} = z_n - F_n.
     """
     coef = flight.coef
-    for n in range(1, COEFFICIENTS - 2):
+    for n in range(1, SERIES_LENGTH - 2):
         coef[n + 2] = 0.0
-    for k in range(terms_of(flight)):  # coef[n + 2] becomes F_n
+    for k in range(term_count(flight)):  # coef[n + 2] becomes F_n
         scaled, rate, cosine_k, sine_k = flight.force[k], flight.rate[k], cosine[k], sine[k]
-        for n in range(1, COEFFICIENTS - 2):
+        for n in range(1, SERIES_LENGTH - 2):
             scaled *= rate * (1.0 / n)
             turned = n % 4  # derivatives of cos run cos, -sin, -cos, sin
             if turned == 0:
@@ -100,7 +100,7 @@ def expand(flight: Record, z: float, w: float, q: float, cosine: Vector, sine: V
     coef[0] = z
     coef[1] = w
     coef[2] = 0.5 * (z - q)
-    for n in range(1, COEFFICIENTS - 2):
+    for n in range(1, SERIES_LENGTH - 2):
         coef[n + 2] = (coef[n] - coef[n + 2]) * (1.0 / ((n + 1.0) * (n + 2.0)))
 
 

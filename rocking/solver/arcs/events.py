@@ -5,13 +5,20 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking.solver.arcs.arc import RADIUS, acceleration, expand, pull, rotation, velocity
-from rocking.solver.arcs.flight import hermite_root, locate, state
+from rocking.solver.arcs.arc import (
+    SERIES_RADIUS,
+    acceleration,
+    expand_series,
+    restoring_acceleration,
+    rotation,
+    velocity,
+)
+from rocking.solver.arcs.flight import hermite_root, locate_root, state_at
 from rocking.solver.state import IMPACT, PULSE_END
 
 
 @kernel
-def run_peak(
+def peak_in_run(
     flight: Record,
     first: int,
     last: int,
@@ -30,37 +37,37 @@ def run_peak(
     left, h_left, z_left, w_left = first, h_first, z_first, w_first
     while left < last:
         right = left + 1
-        while right < last and flight.cut_rise[right] == flight.cut_rise[left]:
+        while right < last and flight.interval_slope[right] == flight.interval_slope[left]:
             right += 1
-        h_right = (flight.cut_phase[right] - start) / omega
+        h_right = (flight.interval_phase[right] - start) / omega
         if right == last:
             z_right, w_right = z_last, w_last
         else:
-            z_right, w_right = state(flight, h_right, flight.cut_cosine[right], flight.cut_sine[right])
+            z_right, w_right = state_at(flight, h_right, flight.interval_cosine[right], flight.interval_sine[right])
         lo, hi = h_left, h_right
         w_lo, w_hi = w_left, w_right
-        rising_pull = flight.sign * flight.cut_rise[left] >= 0.0
-        q_left = flight.q0 if h_left == 0.0 else pull(flight, flight.cut_cosine[left])
-        q_right = pull(flight, flight.cut_cosine[right])
+        rising_pull = flight.sign * flight.interval_slope[left] >= 0.0
+        q_left = flight.q0 if h_left == 0.0 else restoring_acceleration(flight, flight.interval_cosine[left])
+        q_right = restoring_acceleration(flight, flight.interval_cosine[right])
         d_left, d_right = z_left - q_left, z_right - q_right
         if w_lo > 0.0 and w_hi >= 0.0 and not rising_pull and d_left < 0.0 < d_right:
             # w'' >= w > 0: w may dip below zero and return
-            hi, _, w_hi = locate(flight, 2, False, lo, hi, 0.5 * (lo + hi))
+            hi, _, w_hi = locate_root(flight, 2, False, lo, hi, 0.5 * (lo + hi))
         elif w_lo <= 0.0 and w_hi < 0.0 and rising_pull and d_right < 0.0 < d_left:
-            lo, _, w_lo = locate(flight, 2, True, lo, hi, 0.5 * (lo + hi))
+            lo, _, w_lo = locate_root(flight, 2, True, lo, hi, 0.5 * (lo + hi))
         if w_lo > 0.0 > w_hi:
             if lo == h_left and hi == h_right:
                 guess = lo + hermite_root(w_lo, d_left, w_hi, d_right, hi - lo)
             else:
                 guess = 0.5 * (lo + hi)
-            h_peak, z_peak, _ = locate(flight, 1, True, lo, hi, guess)
+            h_peak, z_peak, _ = locate_root(flight, 1, True, lo, hi, guess)
             largest = max(largest, z_peak)
         left, h_left, z_left, w_left = right, h_right, z_right, w_right
     return largest, h_peak, z_peak
 
 
 @kernel
-def fly(flight: Record) -> tuple[int, float, float, float, float]:
+def long_flight(flight: Record) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start to its impact or to the end of the pulse.
 
     Returns what ended it (`IMPACT`; `PULSE_END` also where the fate is known earlier), time and velocity w there,
@@ -73,53 +80,53 @@ def fly(flight: Record) -> tuple[int, float, float, float, float]:
     known = True
     sign, limit = flight.sign, 1.0 + flight.a
     largest = 0.0
-    left, count = flight.interval, flight.count
+    left, count = flight.interval, flight.interval_count
     while left < count:
-        pushed = flight.cut_level[left] * sign < 0.0
+        pushed = flight.interval_level[left] * sign < 0.0
         right = left + 1
-        while right < count and (flight.cut_level[right] * sign < 0.0) == pushed:
+        while right < count and (flight.interval_level[right] * sign < 0.0) == pushed:
             right += 1
-        h_right = (flight.cut_phase[right] - start) / omega
+        h_right = (flight.interval_phase[right] - start) / omega
         if pushed and (not known or w_left >= 0.0) and right < count:
             known = False  # convex and rising: neither impact nor peak, and w > 0 at the end
             left, h_left = right, h_right
             continue
-        z_right, w_right = state(flight, h_right, flight.cut_cosine[right], flight.cut_sine[right])
+        z_right, w_right = state_at(flight, h_right, flight.interval_cosine[right], flight.interval_sine[right])
         if pushed:
             if known and w_left < 0.0:
                 lo, hi, z_hi, w_hi = h_left, h_right, z_right, w_right
                 if z_hi > 0.0 and w_hi > 0.0:
-                    hi, z_hi, w_hi = locate(flight, 1, False, lo, hi, 0.5 * (lo + hi))
+                    hi, z_hi, w_hi = locate_root(flight, 1, False, lo, hi, 0.5 * (lo + hi))
                 if z_hi <= 0.0:
                     guess = lo + hermite_root(z_left, w_left, z_hi, w_hi, hi - lo)
-                    h, _, w = locate(flight, 0, True, lo, hi, guess)
+                    h, _, w = locate_root(flight, 0, True, lo, hi, guess)
                     return IMPACT, h, w, 0.0, largest
         else:
             if z_right > 0.0 and z_right + w_right >= (1.0 if right == count else limit):  # (3.8) at the end
                 return PULSE_END, h_right, w_right, z_right, largest
             if not known:
-                z_left, w_left = state(flight, h_left, flight.cut_cosine[left], flight.cut_sine[left])
-            top, h_peak, z_peak = run_peak(flight, left, right, h_left, z_left, w_left, z_right, w_right)
+                z_left, w_left = state_at(flight, h_left, flight.interval_cosine[left], flight.interval_sine[left])
+            top, h_peak, z_peak = peak_in_run(flight, left, right, h_left, z_left, w_left, z_right, w_right)
             largest = max(largest, top)
             if z_right <= 0.0:
                 guess = h_peak + hermite_root(z_peak, 0.0, z_right, w_right, h_right - h_peak)
-                h, _, w = locate(flight, 0, True, h_peak, h_right, guess)
+                h, _, w = locate_root(flight, 0, True, h_peak, h_right, guess)
                 return IMPACT, h, w, 0.0, largest
         left, h_left, z_left, w_left, known = right, h_right, z_right, w_right, True
     return PULSE_END, h_left, w_left, z_left, largest
 
 
 @kernel
-def hop(flight: Record, longest: float, peak: float) -> tuple[float, float, float]:
+def short_flight(flight: Record, longest: float, peak: float) -> tuple[float, float, float]:
     """A flight so short that the series at its start holds it all: time of impact (-1 if it does not), w there, peak.
 
     The impact is the first zero of z/h; the peak is only sought if it can pass `peak`.
     """
     w0, q0 = flight.w0, flight.q0
-    reach = min(RADIUS / flight.fastest, longest)
+    reach = min(SERIES_RADIUS / flight.max_rate, longest)
     if q0 <= 0.0 or 2.5 * w0 > reach * q0:
         return -1.0, 0.0, 0.0
-    expand(flight, 0.0, w0, q0, flight.cosine0, flight.sine0)
+    expand_series(flight, 0.0, w0, q0, flight.cosine0, flight.sine0)
     h = 2.0 * w0 / q0
     step = math.inf
     for _ in range(12):

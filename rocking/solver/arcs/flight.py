@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import math
 
-from rocking._numba.compilation import Record, Vector, kernel
-from rocking.solver.arcs.arc import RADIUS, acceleration, anchor, arc, expand, jerk, pull, rotation, velocity
-from rocking.solver.state import terms_of
+from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking.solver.arcs.arc import (
+    SERIES_RADIUS,
+    acceleration,
+    arc_state,
+    expand_series,
+    init_arc,
+    jerk,
+    restoring_acceleration,
+    rotation,
+    velocity,
+)
+from rocking.solver.state import term_count
 
 
 @kernel
-def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
+def set_angles(flight: Record, phase: float, cosine: FloatArray, sine: FloatArray) -> None:
     """Set the cosines and sines of the angles at `phase`."""
-    for k in range(terms_of(flight)):
+    for k in range(term_count(flight)):
         angle = flight.multiple[k] * phase + flight.shift[k]
         cosine[k] = math.cos(angle)
         sine[k] = math.sin(angle)
@@ -21,23 +31,25 @@ def turn(flight: Record, phase: float, cosine: Vector, sine: Vector) -> None:
 @kernel
 def start_arc(flight: Record) -> None:
     """Prepare the flight that begins at `phase`, where `cosine0` and `sine0` are set already."""
-    for k in range(terms_of(flight)):
+    for k in range(term_count(flight)):
         flight.force[k] = flight.sign * flight.a * flight.amplitude[k]
-    flight.q0 = 0.0 if flight.lifted == 1 else pull(flight, flight.cosine0)  # exactly, at uplift through |a f| = 1
-    anchor(flight)
+    flight.q0 = (
+        0.0 if flight.starts_at_uplift == 1 else restoring_acceleration(flight, flight.cosine0)
+    )  # exactly, at uplift through |a f| = 1
+    init_arc(flight)
 
 
 @kernel
-def state(flight: Record, h: float, cosine: Vector, sine: Vector) -> tuple[float, float]:
+def state_at(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) -> tuple[float, float]:
     """(z, w) a time h after the start, where the angles have that cosine and sine."""
-    if flight.fastest * h <= RADIUS:  # the arc would cancel
-        expand(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
+    if flight.max_rate * h <= SERIES_RADIUS:  # the arc would cancel
+        expand_series(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
         return rotation(flight, h), velocity(flight, h)
-    return arc(flight, h, cosine, sine)
+    return arc_state(flight, h, cosine, sine)
 
 
 @kernel
-def nearby_zero(flight: Record, order: int) -> float:
+def series_root(flight: Record, order: int) -> float:
     """Where the local series of z (order 0), w (1) or z'' (2) vanishes, by its reversion to third order."""
     c = flight.coef
     if order == 0:
@@ -52,24 +64,26 @@ def nearby_zero(flight: Record, order: int) -> float:
 
 
 @kernel
-def locate(flight: Record, order: int, falling: bool, lo: float, hi: float, guess: float) -> tuple[float, float, float]:
+def locate_root(
+    flight: Record, order: int, falling: bool, lo: float, hi: float, guess: float
+) -> tuple[float, float, float]:
     """The one zero between times `lo` and `hi` of z (order 0), w (1) or z'' (2), which falls or rises through it.
 
     Exact arc, then Halley's method on the local series; the bracket shrinks at every arc, so that it cannot fail.
     Returns the time after the flight's start, and z and w there.
     """
     h = guess
-    reach = RADIUS / flight.fastest
+    reach = SERIES_RADIUS / flight.max_rate
     for attempt in range(200):
         if h <= reach:  # the series at the start holds, where q is known without cancellation
-            expand(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
+            expand_series(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
             centre, delta = 0.0, h
             z, w, bend = rotation(flight, h), velocity(flight, h), acceleration(flight, h)
         else:
-            turn(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
-            z, w = arc(flight, h, flight.cosine1, flight.sine1)
-            expand(flight, z, w, pull(flight, flight.cosine1), flight.cosine1, flight.sine1)
-            centre, delta = h, nearby_zero(flight, order)
+            set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
+            z, w = arc_state(flight, h, flight.cosine1, flight.sine1)
+            expand_series(flight, z, w, restoring_acceleration(flight, flight.cosine1), flight.cosine1, flight.sine1)
+            centre, delta = h, series_root(flight, order)
             bend = 2.0 * flight.coef[2]
         value = z if order == 0 else (w if order == 1 else bend)
         if (value > 0.0) == falling:

@@ -1,7 +1,7 @@
 """Many blocks: by arcs one after another, by Taylor steps `LANES` of them side by side.
 
 A lane takes the next question as soon as it is done with one. Questions in a row that differ in eta alone are one
-cell: its first flight is followed once. Slender blocks under one sinusoid have an entry of their own, `rock_arcs`:
+cell: its first flight is followed once. Slender blocks under one sinusoid have an entry of their own, `solve_by_arcs`:
 compiled for a single sinusoid, arcs take three quarters of the time.
 """
 
@@ -9,67 +9,74 @@ from __future__ import annotations
 
 import numpy as np
 
-from rocking._numba.cancellation import stopped
-from rocking._numba.compilation import Record, Vector, entry, kernel
+from rocking._numba.cancellation import is_stopped
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
-from rocking.solver.kernels.event_loop import advance_by_arc, begin, first_flight_again, take_off, touch_down
-from rocking.solver.state import UNDERWAY
-from rocking.solver.taylor.flight import MAX_STEPS, follow_step, start_steps
-from rocking.solver.taylor.step import set_block, take_step
+from rocking.solver.kernels.event_loop import advance_by_arc, end_flight, init_state, repeat_first_flight, start_flight
+from rocking.solver.state import IN_FLIGHT
+from rocking.solver.taylor.flight import MAX_STEPS, process_step, start_steps
+from rocking.solver.taylor.step import init_block, take_step
 
 
 @kernel
-def answer(flight: Record, into: Record) -> None:
+def write_response(flight: Record, into: Record) -> None:
     """Write down what became of a cell."""
-    into.outcome, into.chatter, into.impacts, into.mode = flight.outcome, flight.chatter, flight.impacts, flight.mode
-    into.peak, into.uplift_time = flight.peak, flight.uplift_time
-    into.first_time, into.first_velocity = flight.first_time, flight.first_velocity
-    into.end_z, into.end_w = flight.end_z, flight.end_w
+    into.outcome, into.chatter, into.impacts, into.peak_mode = (
+        flight.outcome,
+        flight.chatter,
+        flight.impacts,
+        flight.peak_mode,
+    )
+    into.peak_rotation, into.uplift_time = flight.peak_rotation, flight.uplift_time
+    into.first_impact_time, into.first_impact_velocity = flight.first_impact_time, flight.first_impact_velocity
+    into.end_rotation, into.end_velocity = flight.end_rotation, flight.end_velocity
 
 
 @kernel
-def same_cell(i: int, j: int, slenderness: Vector, omega: Vector, alpha: Vector) -> bool:
+def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> bool:
     """Whether two questions differ in eta at most."""
     return bool(slenderness[i] == slenderness[j] and omega[i] == omega[j] and alpha[i] == alpha[j])
 
 
 @kernel
-def follow_arcs(flight: Record, eta: float, stop: Vector) -> None:
+def follow_arcs(flight: Record, eta: float, stop: FloatArray) -> None:
     """Follow a block by arcs to its end."""
-    while advance_by_arc(flight, eta) and not stopped(stop):
+    while advance_by_arc(flight, eta) and not is_stopped(stop):
         pass
 
 
 @kernel
-def next_eta(flight: Record, eta: Vector, stop: Vector, answers: Record) -> bool:
+def continue_with_next_eta(flight: Record, eta: FloatArray, stop: FloatArray, answers: Record) -> bool:
     """Write down the answer of a cell that is done and go on with its next eta; False if that was the last.
 
     By Taylor steps it stops where the next flight begins, by arcs it runs to the end.
     """
     while True:
-        answer(flight, answers[flight.cell])
-        if flight.cell == flight.last:
+        write_response(flight, answers[flight.cell])
+        if flight.cell == flight.last_cell:
             return False
         flight.cell += 1
-        if flight.known == 0:  # it never took off, whatever eta
+        if flight.first_flight_known == 0:  # it never took off, whatever eta
             continue
-        going = first_flight_again(flight, eta[flight.cell])
+        going = repeat_first_flight(flight, eta[flight.cell])
         if flight.by_arcs == 1:
             if going:
                 follow_arcs(flight, eta[flight.cell], stop)
-        elif going and take_off(flight):
+        elif going and start_flight(flight):
             return True
 
 
 @kernel
-def begin_cell(flight: Record, first: int, slenderness: Vector, omega: Vector, alpha: Vector) -> int:
+def init_cell(flight: Record, first: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> int:
     """Set up the cell of a question; the first question that belongs to another."""
-    flight.cell, flight.last = first, first
-    while flight.last + 1 < len(slenderness) and same_cell(flight.cell, flight.last + 1, slenderness, omega, alpha):
-        flight.last += 1
-    begin(slenderness[first], omega[first], alpha[first], flight)
-    return flight.last + 1
+    flight.cell, flight.last_cell = first, first
+    while flight.last_cell + 1 < len(slenderness) and same_cell(
+        flight.cell, flight.last_cell + 1, slenderness, omega, alpha
+    ):
+        flight.last_cell += 1
+    init_state(slenderness[first], omega[first], alpha[first], flight)
+    return flight.last_cell + 1
 
 
 @kernel
@@ -78,48 +85,54 @@ def next_cell(
     steps: Record,
     lane: int,
     following: int,
-    slenderness: Vector,
-    omega: Vector,
-    eta: Vector,
-    alpha: Vector,
-    stop: Vector,
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    stop: FloatArray,
     answers: Record,
 ) -> int:
     """Put the next cell that needs Taylor steps into a lane and answer those before it; the first question after it."""
-    while following < len(slenderness) and not stopped(stop):
-        following = begin_cell(flight, following, slenderness, omega, alpha)
+    while following < len(slenderness) and not is_stopped(stop):
+        following = init_cell(flight, following, slenderness, omega, alpha)
         if flight.by_arcs == 1:
             follow_arcs(flight, eta[flight.cell], stop)
-        elif take_off(flight):
-            set_block(steps, lane, flight.alpha, flight.omega)
+        elif start_flight(flight):
+            init_block(steps, lane, flight.alpha, flight.omega)
             start_steps(flight, steps, lane)
             return following
-        next_eta(flight, eta, stop, answers)
+        continue_with_next_eta(flight, eta, stop, answers)
     flight.cell = -1
     return following
 
 
 @entry
-def rock_arcs(
-    slenderness: Vector, omega: Vector, eta: Vector, alpha: Vector, flight: Record, stop: Vector, answers: Record
+def solve_by_arcs(
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    flight: Record,
+    stop: FloatArray,
+    answers: Record,
 ) -> None:
-    """`rock_many` for slender blocks under one sinusoid: `alpha` is 0, `flight` a record `SINGLE`."""
+    """`solve_batch` for slender blocks under one sinusoid: `alpha` is 0, `flight` a record `SINGLE`."""
     following = 0
-    while following < len(slenderness) and not stopped(stop):
-        following = begin_cell(flight, following, slenderness, omega, alpha)
+    while following < len(slenderness) and not is_stopped(stop):
+        following = init_cell(flight, following, slenderness, omega, alpha)
         follow_arcs(flight, eta[flight.cell], stop)
-        next_eta(flight, eta, stop, answers)
+        continue_with_next_eta(flight, eta, stop, answers)
 
 
 @entry
-def rock_many(
-    slenderness: Vector,
-    omega: Vector,
-    eta: Vector,
-    alpha: Vector,
+def solve_batch(
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
     flights: Record,
     steps: Record,
-    stop: Vector,
+    stop: FloatArray,
     answers: Record,
 ) -> None:
     """Follow blocks from rest to their final fate.
@@ -140,22 +153,22 @@ def rock_many(
         following = next_cell(flights[lane], steps, lane, following, slenderness, omega, eta, alpha, stop, answers)
         if flights[lane].cell >= 0:
             busy += 1
-    while busy > 0 and not stopped(stop):
+    while busy > 0 and not is_stopped(stop):
         take_step(steps)
         for lane in range(LANES):
             flight = flights[lane]
             if flight.cell < 0:
                 continue
-            ended, w, z = follow_step(flight, steps, lane)
+            ended, w, z = process_step(flight, steps, lane)
             taken[lane] += 1
-            if ended == UNDERWAY:
+            if ended == IN_FLIGHT:
                 if taken[lane] >= MAX_STEPS:
                     raise SearchError("a flight does not end")
                 continue
             taken[lane] = 0
             flight.length = flight.elapsed
-            going = touch_down(flight, eta[flight.cell], ended, w, z, flight.largest) and take_off(flight)
-            if going or next_eta(flight, eta, stop, answers):
+            going = end_flight(flight, eta[flight.cell], ended, w, z, flight.largest_z) and start_flight(flight)
+            if going or continue_with_next_eta(flight, eta, stop, answers):
                 start_steps(flight, steps, lane)
                 continue
             following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, stop, answers)

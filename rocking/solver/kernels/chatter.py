@@ -15,7 +15,7 @@ def ground_acceleration(flight: Record, phase: float) -> float:
 
 
 @kernel
-def settles(flight: Record, w: float, eta: float, phase: float, end: float, peak: float) -> bool:
+def chatter_ends_in_rest(flight: Record, w: float, eta: float, phase: float, end: float, peak: float) -> bool:
     """Whether chatter from velocity w just after an impact at `phase` surely ends in rest before the phase `end`.
 
     f is monotone up to `end` and |a f| < 1 there. Near the ground -z'' lies within q +- k z with the pull

@@ -13,7 +13,7 @@ from rocking._numba.compilation import kernel
 
 
 @kernel
-def free_fate(z: float, w: float, eta: float, alpha: float) -> tuple[int, float, int]:
+def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, float, int]:
     """Fate from rotation z >= 0 and velocity w at the end of the pulse.
 
     Parameters

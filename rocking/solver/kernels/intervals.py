@@ -17,7 +17,7 @@ import math
 
 from rocking._numba.compilation import Record, kernel
 from rocking.excitation.shapes import MAX_POLYNOMIAL
-from rocking.solver.state import terms_of
+from rocking.solver.state import term_count
 
 
 @kernel
@@ -31,7 +31,7 @@ def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
             f = f * phi + flight.polynomial[k]
         bell = math.exp(-phi * phi / flight.spread)
         return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
-    for k in range(terms_of(flight)):
+    for k in range(term_count(flight)):
         angle = flight.multiple[k] * phi + flight.shift[k]
         f += flight.amplitude[k] * math.cos(angle)
         slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
@@ -39,7 +39,7 @@ def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
 
 
 @kernel
-def crossing(level: float, left: float, right: float, rising: bool, flight: Record) -> float:
+def find_crossing(level: float, left: float, right: float, rising: bool, flight: Record) -> float:
     """The phase at which f, monotone on [left, right] with a crossing inside, equals `level`: bracketed Newton."""
     phi = 0.5 * (left + right)
     for _ in range(100):
@@ -60,17 +60,17 @@ def crossing(level: float, left: float, right: float, rising: bool, flight: Reco
 
 
 @kernel
-def place(flight: Record, index: int, phase: float, level: float, rise: float) -> None:
+def set_interval(flight: Record, index: int, phase: float, level: float, rise: float) -> None:
     """Set a cut and what lies to its right."""
-    flight.cut_phase[index] = phase
-    flight.cut_level[index] = level
-    flight.cut_rise[index] = rise
+    flight.interval_phase[index] = phase
+    flight.interval_level[index] = level
+    flight.interval_slope[index] = rise
 
 
 @kernel
-def cut(slenderness: float, flight: Record) -> int:
+def split_into_intervals(slenderness: float, flight: Record) -> int:
     """Fill `flight.cut_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
-    terms = terms_of(flight)
+    terms = term_count(flight)
     single = terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.spread == 0.0
     # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
@@ -81,9 +81,9 @@ def cut(slenderness: float, flight: Record) -> int:
         f_left, f_right = flight.end_shape[piece], flight.end_shape[piece + 1]
         rise = -1.0 if f_left > f_right else 1.0
         level = 1.0 if f_left > slenderness else (-1.0 if f_left < -slenderness else 0.0)
-        place(flight, count, left, level, rise)
+        set_interval(flight, count, left, level, rise)
         for k in range(terms):
-            flight.cut_cosine[count, k], flight.cut_sine[count, k] = (
+            flight.interval_cosine[count, k], flight.interval_sine[count, k] = (
                 flight.end_cosine[piece, k],
                 flight.end_sine[piece, k],
             )
@@ -94,21 +94,21 @@ def cut(slenderness: float, flight: Record) -> int:
                 continue
             level += rise
             if single:
-                upright = flight.upright[piece]  # the cosine falls from +1 here, or rises from -1
+                upright = flight.half_period_cosine[piece]  # the cosine falls from +1 here, or rises from -1
                 value = target * flight.amplitude[0]
                 turned = cap if value * upright > 0.0 else math.pi - cap
-                place(flight, count, flight.half_turn[piece] + turned, level, rise)
-                flight.cut_cosine[count, 0], flight.cut_sine[count, 0] = value, upright * root
+                set_interval(flight, count, flight.half_period_phase[piece] + turned, level, rise)
+                flight.interval_cosine[count, 0], flight.interval_sine[count, 0] = value, upright * root
             else:
-                phi = crossing(target, left, right, rise > 0.0, flight)
-                place(flight, count, phi, level, rise)
+                phi = find_crossing(target, left, right, rise > 0.0, flight)
+                set_interval(flight, count, phi, level, rise)
                 for k in range(terms):
                     angle = flight.multiple[k] * phi + flight.shift[k]
-                    flight.cut_cosine[count, k], flight.cut_sine[count, k] = math.cos(angle), math.sin(angle)
+                    flight.interval_cosine[count, k], flight.interval_sine[count, k] = math.cos(angle), math.sin(angle)
             count += 1
-    place(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
+    set_interval(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
     for k in range(terms):
-        flight.cut_cosine[count, k], flight.cut_sine[count, k] = (
+        flight.interval_cosine[count, k], flight.interval_sine[count, k] = (
             flight.end_cosine[flight.pieces, k],
             flight.end_sine[flight.pieces, k],
         )

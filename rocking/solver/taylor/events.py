@@ -11,7 +11,7 @@ s = 1e-9 is the smallest interval: 3e4 for n = 4, and 3e6 for n = 7."""
 
 
 @kernel
-def evaluate(series: Series, lane: int, top: int, h: float) -> float:
+def evaluate_series(series: Series, lane: int, top: int, h: float) -> float:
     """Value of the series of degree `top` at h."""
     square, last = h * h, top - top % 2
     even, odd = 0.0, 0.0  # two short chains of operations instead of a long one
@@ -39,7 +39,7 @@ def value_and_slope(series: Series, lane: int, top: int, h: float) -> tuple[floa
 
 
 @kernel
-def bend_before(series: Series, lane: int, top: int, h: float) -> float:
+def second_derivative_bound(series: Series, lane: int, top: int, h: float) -> float:
     """Bound of the second derivative of the series of degree `top` on [0, h]."""
     bend = 0.0
     for i in range(top - 1):
@@ -49,7 +49,7 @@ def bend_before(series: Series, lane: int, top: int, h: float) -> float:
 
 
 @kernel
-def polish(
+def refine_root(
     series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, deflated: bool, guess: float
 ) -> tuple[float, float]:
     """The zero of a series that falls or rises through it between lo and hi, by Newton in a shrinking bracket; slope.
@@ -97,9 +97,9 @@ def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, fa
         if clear or single or size <= smallest:
             right = left + size
             if not clear and (rate < 0.0) == falling:
-                at_left, at_right = evaluate(series, lane, top, left), evaluate(series, lane, top, right)
+                at_left, at_right = evaluate_series(series, lane, top, left), evaluate_series(series, lane, top, right)
                 if (at_left > 0.0 >= at_right) if falling else (at_left < 0.0 <= at_right):
-                    found, _ = polish(series, lane, top, left, right, falling, False, left + half - value / rate)
+                    found, _ = refine_root(series, lane, top, left, right, falling, False, left + half - value / rate)
                     return float(found)
             left = right
             size = min(2.0 * size, hi - left) if hi - left > smallest else hi - left

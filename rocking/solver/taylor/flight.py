@@ -12,9 +12,9 @@ import math
 
 from rocking._numba.compilation import Record, kernel
 from rocking.errors import SearchError
-from rocking.solver.state import FALLEN, IMPACT, PULSE_END, UNDERWAY
-from rocking.solver.taylor.events import bend_before, evaluate, first_crossing, polish
-from rocking.solver.taylor.step import set_block, take_step
+from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS, PULSE_END
+from rocking.solver.taylor.events import evaluate_series, first_crossing, refine_root, second_derivative_bound
+from rocking.solver.taylor.step import init_block, take_step
 
 MAX_STEPS = 1_000_000
 """Most Taylor steps of one flight: a hundred times what is needed. A step takes a fair share of 1/max(1, rate); a pulse
@@ -22,36 +22,36 @@ of 84 pieces lasts 264/rate, and where that is long the growing exponential ends
 
 
 @kernel
-def is_pushed(flight: Record, interval: int) -> bool:
+def is_destabilised(flight: Record, interval: int) -> bool:
     """Whether 1 + F <= 0 between the cuts `interval` and `interval` + 1."""
-    return flight.cut_level[interval] * flight.sign < 0.0
+    return flight.interval_level[interval] * flight.sign < 0.0
 
 
 @kernel
-def next_stretch(flight: Record, steps: Record, lane: int) -> None:
+def next_segment(flight: Record, steps: Record, lane: int) -> None:
     """Find where the steps of this lane must end next."""
-    until, count = flight.interval, flight.count
-    flight.pull_phase = steps.phase[lane]
+    until, count = flight.interval, flight.interval_count
+    flight.restoring_phase = steps.phase[lane]
     if steps.w0[lane] >= 0.0:
-        while until < count and is_pushed(flight, until):
+        while until < count and is_destabilised(flight, until):
             until += 1
         if until > flight.interval:
-            flight.pull_phase = flight.cut_phase[until]
-    flight.pushed = int(until == count or is_pushed(flight, until))
-    while until < count and is_pushed(flight, until) == (flight.pushed == 1):
+            flight.restoring_phase = flight.interval_phase[until]
+    flight.destabilised = int(until == count or is_destabilised(flight, until))
+    while until < count and is_destabilised(flight, until) == (flight.destabilised == 1):
         until += 1
-    flight.until = until
-    steps.limit[lane] = (flight.cut_phase[until] - steps.phase[lane]) / steps.omega[lane]
+    flight.segment_end = until
+    steps.limit[lane] = (flight.interval_phase[until] - steps.phase[lane]) / steps.omega[lane]
 
 
 @kernel
 def start_steps(flight: Record, steps: Record, lane: int) -> None:
     """Put the start of a flight into a lane."""
-    flight.elapsed, flight.largest = 0.0, 0.0
+    flight.elapsed, flight.largest_z = 0.0, 0.0
     steps.phase[lane], steps.z0[lane], steps.w0[lane] = flight.phase, 0.0, flight.w0
-    steps.lifted[lane] = flight.lifted
+    steps.starts_at_uplift[lane] = flight.starts_at_uplift
     steps.strength[lane] = flight.sign * flight.a
-    next_stretch(flight, steps, lane)
+    next_segment(flight, steps, lane)
 
 
 @kernel
@@ -64,24 +64,24 @@ def impact_in_step(steps: Record, lane: int, pushed: bool, grounded: bool) -> fl
             return -1.0
         # z = 0 at the start leaves the zero of a parabola, else that of a falling curve as its end shows it
         guess = 2.0 * w0 * h / (w0 - w1) if grounded else h - z1 / w1
-        return polish(z, lane, order, 0.0, h, True, grounded, guess)[0]
+        return refine_root(z, lane, order, 0.0, h, True, grounded, guess)[0]
     if w0 >= 0.0:
         return -1.0
     if z1 <= 0.0:
-        return polish(z, lane, order, 0.0, h, True, False, h - z1 / w1)[0]
+        return refine_root(z, lane, order, 0.0, h, True, False, h - z1 / w1)[0]
     if w1 > 0.0:
-        bottom = first_crossing(rate, lane, order - 1, 0.0, h, False, steps.bend[lane])
-        if bottom > 0.0 and evaluate(z, lane, order, bottom) <= 0.0:
-            return polish(z, lane, order, 0.0, bottom, True, False, 0.5 * bottom)[0]
+        bottom = first_crossing(rate, lane, order - 1, 0.0, h, False, steps.second_derivative_bound[lane])
+        if bottom > 0.0 and evaluate_series(z, lane, order, bottom) <= 0.0:
+            return refine_root(z, lane, order, 0.0, bottom, True, False, 0.5 * bottom)[0]
     return -1.0
 
 
 @kernel
-def highest(steps: Record, lane: int, start: float, h: float, z1: float, w1: float, known: float) -> float:
+def highest_peak(steps: Record, lane: int, start: float, h: float, z1: float, w1: float, known: float) -> float:
     """Largest peak of z on [start, h] if it can pass `known`, else 0; z and w are `z1` and `w1` at h."""
     if start >= h:
         return 0.0
-    w0, bend = steps.w0[lane], steps.bend[lane]
+    w0, bend = steps.w0[lane], steps.second_derivative_bound[lane]
     bow = 0.125 * bend * h * h  # w stays this close to its chord
     if w0 * w1 > 0.0 and min(abs(w0), abs(w1)) > bow:
         return 0.0
@@ -90,12 +90,12 @@ def highest(steps: Record, lane: int, start: float, h: float, z1: float, w1: flo
         return 0.0
     start = max(start, 0.0)
     if w0 >= 0.0 > w1:
-        top, slope = polish(steps.rate, lane, steps.order - 1, start, h, True, False, h * w0 / (w0 - w1))
+        top, slope = refine_root(steps.rate, lane, steps.order - 1, start, h, True, False, h * w0 / (w0 - w1))
         reach = max(top - start, h - top)
         if 2.0 * abs(slope) <= bend * reach:  # the bound of the whole step, too large for an early impact
-            bend = bend_before(steps.rate, lane, steps.order - 1, h)
+            bend = second_derivative_bound(steps.rate, lane, steps.order - 1, h)
         if 2.0 * abs(slope) > bend * reach:  # |w - slope (t - top)| <= bend (t - top)^2/2
-            return evaluate(steps.z, lane, steps.order, top)
+            return evaluate_series(steps.z, lane, steps.order, top)
     largest = 0.0
     for _ in range(4 * steps.order):  # w has fewer zeros than its degree; one may be met again for rounding
         if start >= h:
@@ -103,58 +103,58 @@ def highest(steps: Record, lane: int, start: float, h: float, z1: float, w1: flo
         top = first_crossing(steps.rate, lane, steps.order - 1, start, h, True, bend)
         if top < 0.0:
             return largest
-        largest = max(largest, evaluate(steps.z, lane, steps.order, top))
+        largest = max(largest, evaluate_series(steps.z, lane, steps.order, top))
         start = top + 1e-9 * h
     raise SearchError("the search for peaks of a Taylor step does not end")
 
 
 @kernel
-def follow_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, float]:
+def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, float]:
     """See what the step just taken in a lane has met, and prepare the next one if the flight goes on.
 
     Returns
     -------
-    what ended the flight, or `UNDERWAY`; velocity w and rotation z then. `flight` has the time since its start and the
+    what ended the flight, or `IN_FLIGHT`; velocity w and rotation z then. `flight` has the time since its start and the
     largest z on the way.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
-    pushed = flight.pushed == 1
+    pushed = flight.destabilised == 1
     impact = impact_in_step(steps, lane, pushed, flight.elapsed == 0.0)
     if impact >= 0.0:
-        h, z, w = impact, 0.0, evaluate(steps.rate, lane, steps.order - 1, impact)
+        h, z, w = impact, 0.0, evaluate_series(steps.rate, lane, steps.order - 1, impact)
     if not pushed:
-        known = max(flight.peak, flight.largest)
-        pulled = (flight.pull_phase - steps.phase[lane]) / steps.omega[lane]
-        flight.largest = max(flight.largest, highest(steps, lane, pulled, h, z, w, known))
+        known = max(flight.peak_rotation, flight.largest_z)
+        pulled = (flight.restoring_phase - steps.phase[lane]) / steps.omega[lane]
+        flight.largest_z = max(flight.largest_z, highest_peak(steps, lane, pulled, h, z, w, known))
     flight.elapsed += h
     if impact >= 0.0:
         return IMPACT, w, z
     if flight.alpha > 0.0:
-        if max(z, flight.largest) >= 0.5 * math.pi / flight.alpha:
-            return FALLEN, w, z
+        if max(z, flight.largest_z) >= 0.5 * math.pi / flight.alpha:
+            return OVERTURNS, w, z
     elif z + w >= 1.0 + flight.a:  # see `slender_events.fly`
-        return FALLEN, w, z
-    steps.z0[lane], steps.w0[lane], steps.lifted[lane] = z, w, 0.0
+        return OVERTURNS, w, z
+    steps.z0[lane], steps.w0[lane], steps.starts_at_uplift[lane] = z, w, 0.0
     if h < steps.limit[lane]:
         steps.phase[lane] += steps.omega[lane] * h
-        steps.limit[lane] = (flight.cut_phase[flight.until] - steps.phase[lane]) / steps.omega[lane]
-        return UNDERWAY, w, z
-    flight.interval = flight.until
-    if flight.interval == flight.count:
+        steps.limit[lane] = (flight.interval_phase[flight.segment_end] - steps.phase[lane]) / steps.omega[lane]
+        return IN_FLIGHT, w, z
+    flight.interval = flight.segment_end
+    if flight.interval == flight.interval_count:
         return PULSE_END, w, z
-    steps.phase[lane] = flight.cut_phase[flight.interval]
-    next_stretch(flight, steps, lane)
-    return UNDERWAY, w, z
+    steps.phase[lane] = flight.interval_phase[flight.interval]
+    next_segment(flight, steps, lane)
+    return IN_FLIGHT, w, z
 
 
 @kernel
-def fly_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
-    """Follow one flight in the first lane to its end, as `follow_step`."""
-    set_block(steps, 0, flight.alpha, flight.omega)
+def flight_by_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
+    """Follow one flight in the first lane to its end, as `process_step`."""
+    init_block(steps, 0, flight.alpha, flight.omega)
     start_steps(flight, steps, 0)
     for _ in range(MAX_STEPS):
         take_step(steps)
-        ended, w, z = follow_step(flight, steps, 0)
-        if ended != UNDERWAY:
+        ended, w, z = process_step(flight, steps, 0)
+        if ended != IN_FLIGHT:
             return ended, w, z
     raise SearchError("a flight does not end")

@@ -14,13 +14,13 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import LANES, everywhere, larger, load, magnitude, rough_exp2, rough_log2, smaller, store
+from rocking._numba.simd import LANES, absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking.excitation.shapes import MAX_POLYNOMIAL
 
 
 @kernel
-def set_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
+def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
     """Put a block of slenderness angle `alpha` [rad] (0: slender) with frequency ratio `omega` into a lane."""
     steps.omega[lane] = omega
     steps.slender[lane], steps.alpha[lane] = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
@@ -29,10 +29,10 @@ def set_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
     store(steps.sine_alpha, 0, sines)
     store(steps.cosine_alpha, 0, cosines)
     if alpha == 0.0:
-        steps.pull[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
+        steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
         return
     sine, cosine = steps.sine_alpha[lane], steps.cosine_alpha[lane]
-    steps.pull[lane], steps.s_rate[lane], steps.c_rate[lane] = (
+    steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = (
         sine / alpha,
         -alpha * cosine / sine,
         alpha * sine / cosine,
@@ -65,7 +65,7 @@ def expand_wavelet(steps: Record) -> None:
     phase, omega = load(steps.phase, 0), load(steps.omega, 0)
     # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
     fall = -2.0 / steps.spread
-    before, here = everywhere(0.0), load(gauss, 0)
+    before, here = splat(0.0), load(gauss, 0)
     for n in range(order + 1):
         store(gauss, n, here)
         before, here = here, (phase * here + before) * (fall / (n + 1.0))
@@ -89,7 +89,12 @@ def expand_wavelet(steps: Record) -> None:
 def expand_motion(steps: Record) -> None:
     """Fill `z` and `rate` from z0, w0 and `f`."""
     z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
-    lifted, slender, z0, w0 = load(steps.lifted, 0), load(steps.slender, 0), load(steps.z0, 0), load(steps.w0, 0)
+    lifted, slender, z0, w0 = (
+        load(steps.starts_at_uplift, 0),
+        load(steps.slender, 0),
+        load(steps.z0, 0),
+        load(steps.w0, 0),
+    )
     store(f, 0, (1.0 - lifted) * load(f, 0) - lifted)  # at uplift |a f| = 1, exactly
     store(z, 0, z0)
     store(z, 1, w0)
@@ -98,9 +103,9 @@ def expand_motion(steps: Record) -> None:
     sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
     store(s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
     store(c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
-    pull, s_rate, c_rate = load(steps.pull, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    pull, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
     for n in range(steps.order - 1):
-        pushed, sine, cosine = load(s, n), everywhere(0.0), everywhere(0.0)
+        pushed, sine, cosine = load(s, n), splat(0.0), splat(0.0)
         for j in range(n + 1):
             at_j, back = load(rate, j), load(c, n - j)
             pushed += load(f, j) * back
@@ -115,21 +120,21 @@ def expand_motion(steps: Record) -> None:
 
 
 @kernel
-def choose_length(steps: Record) -> None:
+def choose_step_size(steps: Record) -> None:
     """Set `h`, the largest step on which the last two terms keep to the precision, or `limit` if that is shorter.
 
     Relative to the largest of the first four terms at the end of the step; all in rough binary logarithms.
     """
     z, order = steps.z, steps.order
-    shortest = everywhere(900.0)
+    shortest = splat(900.0)
     for k in range(order - 1, order + 1):
-        last = rough_log2(magnitude(load(z, k)))
-        longest = everywhere(-900.0)
+        last = approx_log2(absolute(load(z, k)))
+        longest = splat(-900.0)
         for j in range(4):
-            gap = rough_log2(magnitude(load(z, j))) - last + steps.log_precision
-            longest = larger(longest, gap * (1.0 / (k - j)))
-        shortest = smaller(shortest, longest)
-    store(steps.h, 0, smaller(rough_exp2(shortest), load(steps.limit, 0)))
+            gap = approx_log2(absolute(load(z, j))) - last + steps.log_precision
+            longest = maximum(longest, gap * (1.0 / (k - j)))
+        shortest = minimum(shortest, longest)
+    store(steps.h, 0, minimum(approx_exp2(shortest), load(steps.limit, 0)))
 
 
 @kernel
@@ -140,17 +145,17 @@ def take_step(steps: Record) -> None:
     else:
         expand_sinusoids(steps)
     expand_motion(steps)
-    choose_length(steps)
+    choose_step_size(steps)
     z, rate, order = steps.z, steps.rate, steps.order
     h = load(steps.h, 0)
     rotation, velocity = load(z, order), load(rate, order - 1)
-    bend = magnitude(velocity) * ((order - 1.0) * (order - 2.0))
+    bend = absolute(velocity) * ((order - 1.0) * (order - 2.0))
     for i in range(1, order):
         n = order - 1 - i
         rotation = rotation * h + load(z, n + 1)
         velocity = velocity * h + load(rate, n)
         if n > 1:
-            bend = bend * h + magnitude(load(rate, n)) * (n * (n - 1.0))
+            bend = bend * h + absolute(load(rate, n)) * (n * (n - 1.0))
     store(steps.z1, 0, rotation * h + load(z, 0))
     store(steps.w1, 0, velocity)
-    store(steps.bend, 0, bend)
+    store(steps.second_derivative_bound, 0, bend)
