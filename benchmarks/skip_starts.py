@@ -41,13 +41,13 @@ COUNT = "\nimport sys; print(len(sys.modules), file=sys.stderr)"
 CUBES = """
 import json, resource, sys, time
 from pathlib import Path
-from rocking.lookup.collection import Atlas
+from rocking.lookup.collection import CubeCollection
 results, everything = Path(sys.argv[1]), sys.argv[2] == "all"
 question = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
-Atlas(results).response("sine", method="solver", **question)  # loads the kernels, as the service does first
+CubeCollection(results).response("sine", method="solver", **question)  # loads the kernels, as the service does first
 memory = lambda: int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
 before, start = memory(), time.process_time()
-atlas = Atlas(results)
+atlas = CubeCollection(results)
 if everything:
     for folder in (results / "spectra").iterdir():
         for eta in atlas.levels(folder.name):

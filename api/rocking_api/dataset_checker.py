@@ -28,7 +28,7 @@ class Inspection:
 
     Parameters
     ----------
-    atlas : Atlas
+    atlas : CubeCollection
         Whose data sets.
     """
 

@@ -10,7 +10,7 @@ exceeded_alpha        i1   1 where |theta| passed alpha at some time
 peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
 stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
 interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
-restitution_levels    i1   which files serve in that cell before the next restitution, see `interpolation.LEVELS`
+restitution_levels    i1   which files serve in that cell before the next restitution, see `SLICE_STENCILS`
 restitution_error     f4   largest error of that, measured in the same cells
 alpha_levels          i1   which angles serve in that cell before the next angle
 alpha_error           f4   largest error of that, measured in the same cells

@@ -164,7 +164,7 @@ def solve_and_sample(
     slenderness, omega, eta, alpha : float
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
     flight, steps
-        The pulse, scratch and answer, as `scratch.prepared` and `scratch.prepared_steps`.
+        The pulse, scratch and answer, as `state.pulse_state` and `state.step_state`.
     farthest : float
         |theta|/alpha at which the history of a block that is known to overturn may stop [-].
     tau : float array (samples,)
@@ -200,7 +200,7 @@ def sample_arcs(
 ) -> int:
     """`solve_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE`.
 
-    Compiled as `rock_arcs`, it has the same bits.
+    Compiled as `solve_by_arcs`, it has the same bits.
     """
     return sample_pulse(slenderness, omega, eta, alpha, flight, None, farthest, tau, rotation, velocity, landings, stop)
 
@@ -231,7 +231,7 @@ def sample_free_rocking(
     alpha : float
         Slenderness angle [rad], 0: slender.
     steps
-        Scratch, as `scratch.prepared_steps`.
+        Scratch, as `state.step_state`.
     eta : float
         Restitution [-].
     start, horizon : float

@@ -130,7 +130,7 @@ def test_lanes_do_not_know_of_each_other():
             together[name][lane] = one[name][lane]
     take_step(together)
     for lane, one in enumerate(alone):
-        for name in ("h", "z1", "w1", "bend"):
+        for name in ("h", "z1", "w1", "second_derivative_bound"):
             assert together[name][lane] == one[name][lane]
         np.testing.assert_array_equal(together["z"][:, lane], one["z"][:, lane])
 

@@ -39,7 +39,7 @@ class Together:
 
     Parameters
     ----------
-    atlas : Atlas
+    atlas : CubeCollection
         Where the answers come from.
     executor : BoundedExecutor
         For what takes too long for the event loop.

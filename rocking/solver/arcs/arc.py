@@ -6,7 +6,7 @@ with cosh h - 1 and sinh h: the coefficients A, B of (3.4) would lose all digits
 state it is expanded in a Taylor series, which needs no transcendental function.
 
 `cosine` and `sine` stand for those of the angles w_k phi + d_k, shape (terms,), at the point in question; the record
-`flight` is laid out in `scratch.layout`.
+`flight` is laid out in `state.FLIGHT_STATE`.
 """
 
 from __future__ import annotations

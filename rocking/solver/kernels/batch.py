@@ -142,10 +142,10 @@ def solve_batch(
     slenderness, omega, eta, alpha : float arrays (cells,)
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
     flights, steps
-        The pulse and scratch: an array (LANES,) of records as `scratch.prepared`, and `scratch.prepared_steps`.
+        The pulse and scratch: an array (LANES,) of records as `state.pulse_state`, and `state.step_state`.
     stop : uint8 array (1,)
         Once another thread sets it to 1, this returns within a flight or a Taylor step, with answers missing.
-    answers : array (cells,) of `scratch.ANSWER`
+    answers : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
     """
     following, busy, taken = 0, 0, np.zeros(LANES, dtype=np.int64)
