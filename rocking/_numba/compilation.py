@@ -101,7 +101,10 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile `function`, which is called from Python with arrays as `contiguous_array` makes them, and keep the machine code."""
+    """Compile `function` and keep the machine code on disk.
+
+    It is called from Python, with arrays as `contiguous_array` returns them.
+    """
     folder = cache_folder()
     compile_ = numba.njit(pipeline_class=_EntryCompiler, cache=folder is not None, **_OPTIONS)
     config: Any = numba.config  # its attributes are made at run time

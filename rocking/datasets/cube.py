@@ -199,8 +199,8 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Its values are written with a digest (`content_sha256`), and the file with another at its end (`append_checksum`), by which
-        `read_dataset` sees damage.
+        The file holds a digest of its values (`content_sha256`) and a checksum at its end (`append_checksum`), by which
+        `read_dataset` detects damage.
     path : path
         Parent folders are made; an existing file is replaced.
     """

@@ -79,7 +79,7 @@ class Motion:
         return rotation, velocity
 
     def sample_count(self, tau: Floats, rotation: Floats, answer: Record) -> int:
-        """How many of the samples `rotation` at `tau` show it before it has fallen, the first beyond `max_rotation` too."""
+        """Number of samples `rotation` at `tau` up to the first beyond `max_rotation`; all unless it overturns."""
         if not overturned(answer):
             return tau.size
         beyond = np.flatnonzero(np.abs(rotation) > self.max_rotation)

@@ -198,7 +198,7 @@ def sample_arcs(
     landings: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """`solve_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE`.
+    """`solve_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE_SINUSOID_STATE`.
 
     Compiled as `solve_by_arcs`, it has the same bits.
     """
@@ -227,7 +227,7 @@ def sample_free_rocking(
     Parameters
     ----------
     z, w, sign : float
-        |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and `end_sign` of a record.
+        |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and `end_sign`.
     alpha : float
         Slenderness angle [rad], 0: slender.
     steps

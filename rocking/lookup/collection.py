@@ -1,7 +1,7 @@
 """All cubes of a results folder as one source of answers; each is opened when first asked.
 
-A missing, damaged or unreadable cube never gives a wrong answer: the solver answers in its place, and `CubeCollection.problems`
-says so. Files that change are read again.
+A missing, damaged or unreadable cube never gives a wrong result: the solver computes it instead, and
+`CubeCollection.problems` reports the file. Files that change are read again.
 """
 
 from __future__ import annotations

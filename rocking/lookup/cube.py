@@ -162,7 +162,7 @@ class Cube:
         )
 
     def _around(self, k: int, on_level: int) -> tuple[list[CubeSlice], Flags] | None:
-        """`SLICE_COUNT` cubes, the k-th in place `LOWER_PLACE`, and which of them there are; the others are the k-th once more.
+        """`SLICE_COUNT` cubes, the k-th in place `LOWER_PLACE`, and which of them exist; the others repeat the k-th.
 
         A gap needs those next to it that were made together: the errors between restitutions were measured with them.
         """

@@ -78,7 +78,7 @@ def interpolate_many(
         The nodes.
     eta, on_eta : float array (points,), bool
         Restitutions, all above that of cube `LOWER_PLACE`, and below that of the next; or all equal to it.
-    etas, usable : float array (AROUND,), bool array (AROUND,)
+    etas, usable : float array (SLICE_COUNT,), bool array (SLICE_COUNT,)
         Restitutions of the cubes, and whether there is one.
     angle_level, on_angle : int array, bool array (points,)
         Layer at or below each angle, -1 where there is none; whether the angle is that of the layer.
@@ -86,7 +86,7 @@ def interpolate_many(
         Squares of the angles, and of those of the layers.
     cubes : named tuple of `lookup.FIELDS`
         Each a tuple of `SLICE_COUNT` arrays (layers, n, m), one for each cube.
-    answers : array (points,) of `lookup.FOUND`
+    answers : array (points,) of `lookup.FOUND_RECORD`
         `known` is set where there is an answer.
     """
     for point in range(len(row)):

@@ -245,8 +245,8 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
     flight
         The record.
     precision : float
-        Share of the motion during a step that the last terms of its series may have [-], from `FULL_PRECISION` to 1e-4. The
-        degree follows from it: 1 - log(precision)/2 makes the steps longest for the work, Jorba and Zou (2005).
+        Largest ratio of the last terms of a step's series to the motion during the step [-], `FULL_PRECISION` to 1e-4.
+        It sets the degree: 1 - log(precision)/2 gives the longest steps for the work, Jorba and Zou (2005).
     """
     memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
     start = -memory.ctypes.data % VECTOR_BYTES

@@ -116,7 +116,7 @@ def solve_by_arcs(
     stop: FloatArray,
     answers: Record,
 ) -> None:
-    """`solve_batch` for slender blocks under one sinusoid: `alpha` is 0, `flight` a record `SINGLE`."""
+    """`solve_batch` for slender blocks under one sinusoid: `alpha` is 0, `flight` a record `SINGLE_SINUSOID_STATE`."""
     following = 0
     while following < len(slenderness) and not is_stopped(stop):
         following = init_cell(flight, following, slenderness, omega, alpha)

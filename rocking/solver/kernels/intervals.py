@@ -69,7 +69,7 @@ def set_interval(flight: Record, index: int, phase: float, level: float, rise: f
 
 @kernel
 def split_into_intervals(slenderness: float, flight: Record) -> int:
-    """Fill `flight.cut_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
+    """Fill `flight.interval_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
     terms = term_count(flight)
     single = terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.spread == 0.0
     # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
