@@ -1,4 +1,4 @@
-"""The service answers while the solver is compiled; questions wait for it, in vain no longer than their time."""
+"""The service responds while the solver is compiled; requests for it wait up to their time limit."""
 
 import asyncio
 import http.client
@@ -77,7 +77,7 @@ def burst(server):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
-def test_health_is_told_while_the_kernels_are_compiled_and_loaded(tmp_path):
+def test_health_responds_while_the_kernels_are_compiled_and_loaded(tmp_path):
     """On two cores in use by others: 0.09 s at most while they are compiled, 0.02 s while they are loaded."""
     folder = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     for granted, log in [(600, "compiled.log"), (60, "loaded.log")]:
@@ -91,7 +91,7 @@ def test_health_is_told_while_the_kernels_are_compiled_and_loaded(tmp_path):
     assert max(seconds for _, seconds in answers.values()) < 1.0
 
 
-def test_a_question_waits_for_the_kernels_and_no_longer_than_its_time(tmp_path, monkeypatch):
+def test_a_request_waits_for_the_kernels_up_to_its_time_limit(tmp_path, monkeypatch):
     loaded = threading.Event()
     monkeypatch.setattr(rocking_api.execution.kernels, "load_kernels", lambda: loaded.wait(30))
     with client_of(tmp_path, max_seconds=0.1) as client:
@@ -122,7 +122,7 @@ def test_kernels_are_compiled_in_another_process_and_loaded_in_a_thread(monkeypa
 
     async def scenario():
         kernels = Kernels(1.0)
-        await kernels.wait()  # nobody loads them: what asks loads its own
+        await kernels.wait()  # nothing loads them: a request loads what it needs
         await kernels.load()
         await kernels.wait()
 

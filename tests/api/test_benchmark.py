@@ -1,4 +1,4 @@
-"""`python -m benchmarks.service` runs and tells what it is to tell; no time is asserted."""
+"""`python -m benchmarks.service` runs and reports all its quantities; times are not asserted."""
 
 import asyncio
 import json
@@ -32,7 +32,7 @@ def test_the_benchmark_measures_a_worker(results, tmp_path):
 def test_the_small_client_counts_answers_and_errors(results, tmp_path):
     good = "/v1/response?pulse=sine&restitution=0.85&slenderness=%.9f&frequency_ratio=%.9f"
     with serving(results, tmp_path / "log") as server:
-        asyncio.run(_ask(server.port, good, 3, 0.1))  # the first answers wait for a cube and for compiled code
+        asyncio.run(_ask(server.port, good, 3, 0.1))  # the first responses wait for a cube and for compiled code
         found = asyncio.run(_ask(server.port, good, 3, 0.5))
         wrong = asyncio.run(_ask(server.port, good.replace("sine", "sinus"), 3, 0.2))
     assert (found["client"], found["connections"], found["errors"]) == ("asyncio", 3, 0)

@@ -1,14 +1,14 @@
-"""The one way in which routes ask for responses: inside the border of the service, with the options of a question.
+"""Evaluation of requests: within the ranges of the service, with the options of a request.
 
-Many points are computed piece by piece, so that the work can be stopped, into arrays of the smallest types that hold
-them: the memory of an answer that waits for its reader is that of these arrays.
+Many points are computed in chunks, so that the work can be cancelled, into arrays of the smallest sufficient types:
+these arrays are the memory that a response keeps until its client has read it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -19,7 +19,7 @@ from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import LookupOptions, alpha_of, checked
 
 PIECE = 50_000
-"""Points between two looks at the clock [-]: some hundredths of a second."""
+"""Points between two checks of the stop flag [-]: some hundredths of a second."""
 
 FIELDS: dict[str, DTypeLike] = {
     "peak_rotation": np.float64,
@@ -28,10 +28,10 @@ FIELDS: dict[str, DTypeLike] = {
     "exceeded_alpha": np.bool_,
     "error_bound": np.float64,
 }
-"""Fields of `BoundedResponse` that are kept as they are."""
+"""Fields of `BoundedResponse` that are kept, and their types."""
 
 BYTES_PER_POINT = sum(np.dtype(dtype).itemsize for dtype in FIELDS.values()) + 1
-"""Of a `BatchResult`."""
+"""Memory of a `BatchResult` per point [bytes]."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class BatchResult:
     versions: tuple[str, ...]
 
 
-def ask(
+def evaluate(
     atlas: CubeCollection,
     options: LookupOptions,
     *,
@@ -64,12 +64,12 @@ def ask(
 ) -> tuple[BoundedResponse, tuple[str, ...]]:
     """Responses, and the sha256 of each data set that gave some of them; the arguments broadcast.
 
-    `stop` ends it with `StoppedError`.
-
     Raises
     ------
     InvalidArgumentError, DatasetError
-        As `CubeCollection.response`, and beyond the border of the service.
+        As `CubeCollection.response`; also outside the ranges of the service.
+    StoppedError
+        If `stop` was set.
     """
     return atlas.response(
         options.pulse,
@@ -83,7 +83,7 @@ def ask(
     )
 
 
-def ask_many(
+def evaluate_many(
     atlas: CubeCollection, options: LookupOptions, groups: Mapping[str, NDArray[np.float64]], stop: StopFlag
 ) -> BatchResult:
     """Responses of the points of three arrays of one length.
@@ -91,7 +91,7 @@ def ask_many(
     Raises
     ------
     InvalidArgumentError, DatasetError
-        As `ask`.
+        As `evaluate`.
     StoppedError
         If `stop` was set.
     """
@@ -102,9 +102,28 @@ def ask_many(
     for start in range(0, max(points, 1), PIECE):
         stop.check()
         here = slice(start, start + PIECE)
-        part, met = ask(atlas, options, **{name: values[here] for name, values in groups.items()}, stop=stop)
+        part, met = evaluate(atlas, options, **{name: values[here] for name, values in groups.items()}, stop=stop)
         for name, values in fields.items():
             values[here] = getattr(part, name)
         from_cube[here] = part.source == "cube"
         versions |= dict.fromkeys(met)
     return BatchResult(fields, from_cube, (*versions,))
+
+
+class PointResult(NamedTuple):
+    """The fields of a `BoundedResponse` for one block, and the sha256 of the data set it comes from."""
+
+    peak_rotation: float
+    outcome: int
+    impacts: int
+    exceeded_alpha: bool
+    error_bound: float
+    source: str
+    data_version: str | None
+
+
+def point_results(found: BoundedResponse, versions: tuple[str, ...]) -> list[PointResult]:
+    """The results of one restitution, one by one."""
+    columns = [getattr(found, name).ravel().tolist() for name in PointResult._fields[:-1]]
+    version = versions[0] if versions else None
+    return [PointResult._make((*row, version if row[-1] == "cube" else None)) for row in zip(*columns, strict=True)]

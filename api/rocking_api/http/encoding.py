@@ -1,7 +1,7 @@
-"""Answers as JSON, CSV or netCDF-3.
+"""Responses as JSON, CSV or netCDF-3.
 
-netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and the bodies that we are sent are parsed by
-plain Python (scipy), so that no hostile bytes reach the HDF5 library.
+netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and request bodies are parsed by plain Python
+(scipy), so that untrusted bytes do not reach the HDF5 library.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ MEDIA_TYPES: dict[Form, str] = {"json": "application/json", "csv": "text/csv", "
 CONTENT: dict[int | str, dict[str, Any]] = {
     200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}},
 }
-"""For the OpenAPI description: the other forms of an answer."""
+"""For the OpenAPI description: the other formats of a response."""
 
 
 class Column(Protocol):
-    """One value for each point: an array, or what makes parts of one."""
+    """One value per point: an array, or a lazily converted one."""
 
     def __len__(self) -> int: ...
 
@@ -40,13 +40,13 @@ class Column(Protocol):
 
 
 ROWS = 5_000
-"""Points of a batch whose text is made and sent at once [-]: up to half a megabyte, some milliseconds."""
+"""Points of a batch that are written and sent at once [-]: up to half a megabyte, some milliseconds."""
 
 _SOURCES = ["cube", "solver"]
 
 
-def form_of(request: Request, asked: Form | None, default: Form = "json") -> Form:
-    """The form of the answer: as asked, else the first known media type of the Accept header, else the default."""
+def negotiated_form(request: Request, asked: Form | None, default: Form = "json") -> Form:
+    """Format of the response: as requested, else the first known media type of the Accept header, else the default."""
     if asked is not None:
         return asked
     for part in request.headers.get("accept", "").split(","):
@@ -56,13 +56,13 @@ def form_of(request: Request, asked: Form | None, default: Form = "json") -> For
     return default
 
 
-def json_response(answer: BaseModel) -> Response:
-    """A model as JSON; it was made by us and is not validated again."""
-    return Response(answer.model_dump_json(), media_type=MEDIA_TYPES["json"])
+def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) -> Response:
+    """A model as JSON, without validation."""
+    return Response(model.model_dump_json(), headers=headers, media_type=MEDIA_TYPES["json"])
 
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
-    """Columns as CSV: numbers to the last digit, nothing where there is no number, true and false."""
+    """Columns as CSV: numbers with all digits, empty for missing numbers, true and false."""
     text = ",".join(columns) + "\n" + _rows(columns)
     return Response(text, media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
@@ -80,7 +80,7 @@ def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
 
 
 def json_stream(fields: Mapping[str, Any], columns: Mapping[str, Column]) -> Response:
-    """An object of the columns, arrays (points,), and then the other fields, written while it is sent."""
+    """A JSON object of the columns, arrays (points,), then the other fields, written while it is sent."""
 
     def parts() -> Iterator[bytes]:
         opening = b"{"
@@ -100,7 +100,7 @@ def _points(columns: Mapping[str, Column]) -> int:
 
 
 def _streamed(parts: Iterator[bytes], points: int, media_type: str, headers: dict[str, str]) -> Response:
-    """A short answer is sent as a whole: a thread for each part of it would take longer."""
+    """Send a short response as a whole: a thread per part would take longer."""
     if points <= ROWS:
         return Response(b"".join(parts), media_type=media_type, headers=headers)
     return StreamingResponse(parts, media_type=media_type, headers=headers)
@@ -115,7 +115,7 @@ def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
 def dataset_of(
     groups: Mapping[str, NDArray[np.float64]], result: BatchResult, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Questions and answers over one dimension `point`, with the attributes of the data sets."""
+    """Groups and results over one dimension `point`, with the attributes of the data sets."""
     variables: dict[str, Any] = {name: ("point", values, {"units": "1"}) for name, values in groups.items()}
     for name in FIELDS:
         if name in VARIABLES:
@@ -130,7 +130,7 @@ def dataset_of(
 
 
 def _rows(columns: Mapping[str, list[Any]]) -> str:
-    """Lines of CSV; no cell of ours needs quotes."""
+    """Lines of CSV; no cell needs quotes."""
     lines = zip(*(map(_cell, column) for column in columns.values()), strict=True)
     return "".join(f"{','.join(line)}\n" for line in lines)
 
