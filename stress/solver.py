@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import rocking
 from reference.exact_response import ExactResponse
+from rocking.model.fields import RESPONSE_FIELDS
 from stress.cells import Cell, look
 from stress.truth import INPUTS, Table
 
@@ -30,7 +31,8 @@ def solve(table: Table) -> rocking.Response:
     for pulse in np.unique(table.pulse):
         rows = table.pulse == pulse
         response = rocking.peak_response(str(pulse), **{name: table[name][rows] for name in INPUTS})
-        for name, values in vars(response).items():
+        for field in RESPONSE_FIELDS:
+            name, values = field.name, getattr(response, field.name)
             fields.setdefault(name, np.empty(len(rows), values.dtype))[rows] = values
     return rocking.Response(**fields)  # type: ignore[arg-type]  # the fields by name, each of its own dtype
 

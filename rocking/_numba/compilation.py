@@ -34,6 +34,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.typed_passes import NativeLowering
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 Record = Any
@@ -100,6 +101,12 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return compiled
 
 
+def jitable(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Let kernels call `function`, which remains an ordinary function in Python."""
+    made: Callable[..., Any] = register_jitable(error_model="numpy", fastmath={"contract"})(function)
+    return made
+
+
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` and keep the machine code on disk.
 
@@ -156,7 +163,8 @@ def _is_writable(folder: Path) -> bool:
 def _digest(package: Path) -> str:
     """Digest of what machine code depends on: processor, Python, numba; files with kernels and what these import."""
     files = {path.relative_to(package): path.read_bytes() for path in package.rglob("*.py")}
-    waiting = [path for path, text in files.items() if re.search(rb"^@(kernel|entry)$|numba\.extending", text, re.M)]
+    compiled = re.compile(rb"^@(kernel|jitable|entry)$|numba\.extending", re.M)
+    waiting = [path for path, text in files.items() if compiled.search(text)]
     seen: set[Path] = set()
     while waiting:
         path = waiting.pop()

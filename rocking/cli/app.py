@@ -10,6 +10,8 @@ from typing import Annotated
 
 import typer
 
+from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+
 app = typer.Typer(
     help="Rocking of free-standing rigid blocks under pulse ground motion.",
     no_args_is_help=True,
@@ -21,14 +23,17 @@ _GROUPS = "In groups"
 _UNITS = "With units"
 
 Pulse = Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
-Slenderness = Annotated[float | None, typer.Option(help="g tan(alpha)/a_g = 1/a.", rich_help_panel=_GROUPS)]
-FrequencyRatio = Annotated[float | None, typer.Option(help="omega_g/p.", rich_help_panel=_GROUPS)]
+Slenderness = Annotated[float | None, typer.Option(help=f"{SLENDERNESS.help}.", rich_help_panel=_GROUPS)]
+FrequencyRatio = Annotated[float | None, typer.Option(help=f"{FREQUENCY_RATIO.help}.", rich_help_panel=_GROUPS)]
 Restitution = Annotated[
-    str, typer.Option(help="Coefficient eta in [0, 1]; housner for a block with units: (2.4), 0 where negative.")
+    str,
+    typer.Option(
+        help=f"{RESTITUTION.help}, {RESTITUTION.interval}; housner for a block with units: (2.4), 0 where negative."
+    ),
 ]
 Alpha = Annotated[
     str | None,
-    typer.Option(help="Slenderness angle, such as '20 deg'; absent: the slender limit.", rich_help_panel=_GROUPS),
+    typer.Option(help=f"{ALPHA.help}, such as '20 deg'.", rich_help_panel=_GROUPS),
 ]
 HalfWidth = Annotated[str | None, typer.Option(help="b, such as 0.2m.", rich_help_panel=_UNITS)]
 HalfHeight = Annotated[str | None, typer.Option(help="h, such as '80 cm'.", rich_help_panel=_UNITS)]
@@ -98,8 +103,8 @@ def history(
 @app.command()
 def spectrum(
     pulse: Pulse,
-    slenderness: Annotated[float, typer.Option(help="g tan(alpha)/a_g = 1/a.")],
-    restitution: Annotated[float, typer.Option(help="Coefficient eta in [0, 1].")],
+    slenderness: Annotated[float, typer.Option(help=f"{SLENDERNESS.help}.")],
+    restitution: Annotated[float, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}.")],
     alpha: Alpha = None,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
@@ -119,7 +124,7 @@ def spectrum(
 @app.command()
 def boundary(
     pulse: Pulse,
-    restitution: Annotated[float, typer.Option(help="Coefficient eta in [0, 1].")],
+    restitution: Annotated[float, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}.")],
     alpha: Alpha = None,
     frequency_ratio_min: FrequencyRatioMin = 0.2,
     frequency_ratio_max: FrequencyRatioMax = 15.0,

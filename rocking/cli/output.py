@@ -14,7 +14,8 @@ import typer
 
 from rocking.cli.arguments import Params
 from rocking.errors import InvalidArgumentError, in_range
-from rocking.model.response import Outcome
+from rocking.model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
+from rocking.model.outcome import Outcome
 from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
 
 Form = Literal["text", "json", "csv"]
@@ -157,14 +158,16 @@ def _groups(question: Params) -> dict[str, Any]:
 
 
 def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
-    return {
-        "peak_rotation": [_number(peak) for peak in found.peak_rotation.ravel().tolist()],
-        "overturned": found.overturned.ravel().tolist(),
-        "outcome": [Outcome(code).name for code in found.outcome.ravel().tolist()],
-        "impacts": found.impacts.ravel().tolist(),
-        "exceeded_alpha": found.exceeded_alpha.ravel().tolist(),
-        "error_bound": [_number(bound) for bound in found.error_bound.ravel().tolist()],
-    }
+    columns: dict[str, list[Any]] = {}
+    for field in COLUMN_FIELDS:
+        values = getattr(found, field.name).ravel().tolist()
+        if field is OUTCOME:
+            values = [Outcome(code).name for code in values]
+        elif field.dtype == "f8":
+            values = [_number(value) for value in values]
+        if field is not SOURCE:  # it is the solver
+            columns[field.name] = values
+    return columns
 
 
 def _number(value: float) -> float | None:

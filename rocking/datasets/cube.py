@@ -37,8 +37,8 @@ from xarray.backends import NetCDF4DataStore
 
 from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
-from rocking.model.response import Outcome
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_number
+from rocking.model.fields import CUBE_FIELDS
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 """Dimensions of a spectrum cube, in order."""
@@ -54,33 +54,13 @@ AXES: dict[str, dict[str, Any]] = {
 }
 """Attributes of the axes of a spectrum cube."""
 
-_OUTCOMES = {
-    "flag_values": np.array([int(outcome) for outcome in Outcome], dtype=np.int8),
-    "flag_meanings": " ".join(outcome.name.lower() for outcome in Outcome),
-}
-_NO_YES = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"}
-
 _LEVELS = "0 to 5: Lagrange over 4, 4, 4, 3, 3, 2, the first of them 1, 2, 0, 1, 0, 0 below the node's; -1: not at all"
 
 MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
 """Attributes of every dimensionless variable that a model computed."""
 
 VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
-    "peak_rotation": (
-        "f8",
-        {"long_name": "peak rotation, max |theta|/alpha over the whole response", "equation": "3.2",
-         "ancillary_variables": "outcome peak_mode stencil interpolation_error",
-         "comment": "missing where it overturns"},
-    ),
-    "outcome": ("i1", {"long_name": "final fate of the block", "equation": "3.8", **_OUTCOMES}),
-    "impacts": ("i4", {"long_name": "number of impacts before the pulse ends", "equation": "2.3",
-                       "comment": "and the one after it upon which the block overturns"}),
-    "exceeded_alpha": ("i1", {"long_name": "whether |theta| passed alpha at some time", "equation": "3.2", **_NO_YES}),
-    "peak_mode": (
-        "i4",
-        {"long_name": "lobe that holds the peak", "equation": "3.4",
-         "comment": "twice the impacts before it, plus one if reached in free rocking; -1 where there is no peak"},
-    ),
+    **{field.name: (field.file_dtype, field.attributes) for field in CUBE_FIELDS},
     "stencil": (
         "i1",
         {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
@@ -118,7 +98,9 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
          "comment": "over alpha_levels, as restitution_error"},
     ),
 }  # fmt: skip
-"""Type and attributes of each variable of a spectrum cube."""
+"""Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking.model.fields`."""
+
+VARIABLES["peak_rotation"][1]["ancillary_variables"] = "outcome peak_mode stencil interpolation_error"
 
 _GLOBAL = {
     "Conventions": "CF-1.11, ACDD-1.3",
@@ -171,16 +153,17 @@ def build_spectrum_dataset(
 
 def scalar_coordinates(pulse: str, restitution: float) -> dict[str, xr.Variable]:
     """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set."""
+    number, names = pulse_number(pulse), PULSE_NAMES if pulse in PULSE_NAMES else (*PULSE_NAMES, "registered")
     flags = {
-        "flag_values": np.arange(len(PULSE_NAMES), dtype=np.int8),
-        "flag_meanings": " ".join(PULSE_NAMES),
+        "flag_values": np.array([pulse_number(name) for name in names], dtype=np.int8),
+        "flag_meanings": " ".join(names),
     }
     shape = get_pulse(pulse)
     window = np.array([shape.start, shape.end])
     named = {"long_name": "shape of the ground acceleration", "units": "1", "pulse_name": pulse, "phase_window": window}
     eta = {"long_name": "coefficient of restitution eta", "units": "1", "equation": "2.3"}
     return {
-        "pulse": xr.Variable((), np.int8(PULSE_NAMES.index(pulse)), named | flags),
+        "pulse": xr.Variable((), np.int8(number), named | flags),
         "restitution": xr.Variable((), np.float64(restitution), eta),
     }
 

@@ -1,15 +1,16 @@
-"""Ground-acceleration pulses: one exact definition each, as a shape f(phi) of unit peak over a window of phase phi.
+"""Catalogue of ground-acceleration pulses, each defined by a shape f(phi) of unit peak on a window of the phase phi.
 
-The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; positive starts the block towards negative
-rotation. Two families cover all of them: sums of sinusoids, whose response has exact arcs (3.4), and wavelets, a
-polynomial times a Gaussian, whose response is expanded in Taylor series.
+The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; a positive one starts a
+rotation in the negative direction. There are two families: sums of sinusoids, for which the slender block has exact
+arcs (3.4), and wavelets, a polynomial times a Gaussian, for which the motion is expanded in Taylor series. To add a
+pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import lru_cache
 
 from rocking.errors import InvalidArgumentError, in_range, one_of
 from rocking.excitation.shapes import (
@@ -17,9 +18,6 @@ from rocking.excitation.shapes import (
     SinusoidalPulse,
     WaveletPulse,
     checked_number,
-    peak_amplitude,
-    stationary_phases_of_sinusoids,
-    sum_of_sinusoids,
 )
 
 __all__ = [
@@ -29,11 +27,13 @@ __all__ = [
     "WaveletPulse",
     "as_pulse",
     "get_pulse",
+    "pulse_number",
+    "register",
 ]
 
 
 def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]) -> SinusoidalPulse:
-    """cos(phi) seen through a window given in the phase of the cosine."""
+    """cos(phi) on a window of phi."""
     return SinusoidalPulse(name, start, end, stationary, ((1.0, 1.0, 0.0),))
 
 
@@ -54,7 +54,7 @@ def half_sine() -> SinusoidalPulse:
 
 
 def rectangular() -> SinusoidalPulse:
-    """Constant 1, 0 to pi: it lasts T_p/2 like the half sine (Housner 1963)."""
+    """Constant 1, 0 to pi: duration T_p/2, as the half sine (Housner 1963)."""
     return SinusoidalPulse("rectangular", 0.0, math.pi, (), ((1.0, 0.0, 0.0),))
 
 
@@ -69,7 +69,7 @@ def c2() -> SinusoidalPulse:
 
 
 def _type_c(cycles: int) -> SinusoidalPulse:
-    from scipy.optimize import brentq  # takes longer to load than the rest of the package: only these pulses pay
+    from scipy.optimize import brentq  # takes longer to import than the rest of the package; only these pulses need it
 
     span = (2 * cycles + 1) * math.pi
 
@@ -104,7 +104,7 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
     Parameters
     ----------
     cycles : float
-        gamma [-], (1, 20]: how many cycles the envelope holds.
+        gamma [-], (1, 20]: number of cycles within the envelope.
     phase : float
         nu [rad], [-2 pi, 2 pi].
 
@@ -122,12 +122,10 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
         ((cycles - 1) / 2, 1 - 1 / cycles, shift),
     )
     end = math.pi * cycles
-    peak = peak_amplitude(partial(sum_of_sinusoids, raw), -end, end, stationary_phases_of_sinusoids(raw, -end, end))
-    terms = tuple((c / peak, w, d) for c, w, d in raw)
-    return SinusoidalPulse("mavroeidis_papageorgiou", -end, end, (), terms)
+    return SinusoidalPulse.of_unit_peak("mavroeidis_papageorgiou", -end, end, raw)
 
 
-_FACTORIES: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
+_FACTORIES: dict[str, Callable[..., AbstractPulse]] = {
     factory.__name__: factory
     for factory in (
         sine,
@@ -143,10 +141,38 @@ _FACTORIES: dict[str, Callable[..., SinusoidalPulse | WaveletPulse]] = {
 }
 
 PULSE_NAMES: tuple[str, ...] = tuple(_FACTORIES)
-"""Names that `get_pulse` knows; a leading minus mirrors the pulse."""
+"""Names of the pulses of this package; a leading minus mirrors one. Files store their places: append only."""
 
 
-def as_pulse(pulse: str | AbstractPulse) -> SinusoidalPulse | WaveletPulse:
+_REGISTERED: dict[str, AbstractPulse] = {}
+
+
+def register(pulse: AbstractPulse) -> None:
+    """Make a pulse of one's own available by its name, to every function and to the service of this process.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+        Its name must be an identifier that is not taken, without a leading minus.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is no pulse or the name cannot be used.
+    """
+    if not isinstance(pulse, AbstractPulse):
+        raise InvalidArgumentError("pulse", pulse, "a pulse such as SinusoidalPulse")
+    if not pulse.name.isidentifier() or pulse.name in (*PULSE_NAMES, *_REGISTERED):
+        raise InvalidArgumentError("name", pulse.name, "an identifier that no other pulse has")
+    _REGISTERED[pulse.name] = pulse
+
+
+def pulse_number(name: str) -> int:
+    """Number of a pulse in data files: its place in `PULSE_NAMES`, which never changes, or -1 for a registered one."""
+    return PULSE_NAMES.index(name) if name in PULSE_NAMES else -1
+
+
+def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
     """The pulse itself, or the one of that name.
 
     Raises
@@ -154,18 +180,16 @@ def as_pulse(pulse: str | AbstractPulse) -> SinusoidalPulse | WaveletPulse:
     InvalidArgumentError
         For anything else.
     """
-    if isinstance(pulse, SinusoidalPulse | WaveletPulse):
-        return pulse
-    return get_pulse(pulse)  # type: ignore[arg-type]  # whatever it is, the message is the same
+    return pulse if isinstance(pulse, AbstractPulse) else get_pulse(pulse)
 
 
-def get_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
+def get_pulse(name: str, **parameters: float) -> AbstractPulse:
     """The pulse of that name; `"-sine"` is the mirrored sine.
 
     Parameters
     ----------
     name : str
-        One of `PULSE_NAMES`, with an optional leading minus.
+        One of `PULSE_NAMES` or of a registered pulse, with an optional leading minus.
     **parameters : float
         `cycles` and `phase`, for mavroeidis_papageorgiou only.
 
@@ -175,14 +199,17 @@ def get_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
         For an unknown name or parameter, or a parameter out of range.
     """
     if not isinstance(name, str):
-        allowed = "a SinusoidalPulse, a WaveletPulse, or one of " + ", ".join(PULSE_NAMES)
+        allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join((*PULSE_NAMES, *_REGISTERED))
         raise InvalidArgumentError("pulse", name, allowed)
+    registered = _REGISTERED.get(name.removeprefix("-"))
+    if registered is not None and not parameters:
+        return registered.mirrored() if name.startswith("-") else registered
     return _build_pulse(name, **{key: checked_number(key, value) for key, value in parameters.items()})
 
 
 @lru_cache(maxsize=256)
-def _build_pulse(name: str, **parameters: float) -> SinusoidalPulse | WaveletPulse:
-    base = one_of("pulse", name.removeprefix("-"), PULSE_NAMES)
+def _build_pulse(name: str, **parameters: float) -> AbstractPulse:
+    base = one_of("pulse", name.removeprefix("-"), (*PULSE_NAMES, *_REGISTERED))
     allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
     for parameter in parameters:
         one_of(f"parameter of pulse {base}", parameter, allowed)

@@ -1,10 +1,15 @@
-"""Shapes of pulses, checked when they are made: sums of sinusoids, and wavelets, a polynomial times a Gaussian."""
+"""The protocol of an excitation, `AbstractPulse`, and its two families: sums of sinusoids and wavelets.
+
+An excitation gives its shape f(phi), the phases that divide it into monotone intervals, and the coefficients by which
+the solver expands f (`rocking.excitation.series`). Arguments are checked at construction.
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import final
 
@@ -12,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.series import ExcitationSeries, Family, Terms
 from rocking.excitation.stationary import sign_changes
 
 MAX_SINUSOIDS = 8
@@ -24,13 +30,12 @@ MAX_PIECES = 84
 """Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
 
 MAX_MAGNITUDE = 1e6
-"""Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase loses more than ten digits."""
+"""Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase has fewer than six digits."""
 
 PEAK_TOLERANCE = 1e-12
 """Largest difference of max |f| from 1 [-]."""
 
 Array = NDArray[np.float64]
-Terms = tuple[tuple[float, float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,7 @@ class AbstractPulse(ABC):
         Window of the phase [rad], start < end, within +-`MAX_MAGNITUDE`.
     stationary : tuple of float
         All phases strictly inside the window at which f' changes its sign [rad], ascending; at most `MAX_PIECES` - 1.
-        Left empty, they are found.
+        If empty, they are computed.
 
     Raises
     ------
@@ -84,7 +89,12 @@ class AbstractPulse(ABC):
 
     @abstractmethod
     def mirrored(self) -> AbstractPulse:
-        """The pulse of opposite sign, -f(phi)."""
+        """The pulse -f(phi)."""
+
+    @property
+    @abstractmethod
+    def series(self) -> ExcitationSeries:
+        """Family and coefficients by which the solver evaluates and expands f."""
 
     @abstractmethod
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
@@ -97,7 +107,7 @@ class AbstractPulse(ABC):
 
     @property
     def monotone_pieces(self) -> tuple[tuple[float, float], ...]:
-        """Intervals of phi [rad] that cover the window and on each of which f is monotone."""
+        """Intervals of phi [rad] that cover the window, on each of which f is monotone."""
         ends = (self.start, *self.stationary, self.end)
         return tuple(pairwise(ends))
 
@@ -115,6 +125,14 @@ class SinusoidalPulse(AbstractPulse):
 
     terms: Terms
 
+    @classmethod
+    def of_unit_peak(cls, name: str, start: float, end: float, terms: Terms) -> SinusoidalPulse:
+        """The sum of `terms` over its largest absolute value on the window; arguments and errors as for the class."""
+        peak = peak_amplitude(
+            partial(sum_of_sinusoids, terms), start, end, stationary_phases_of_sinusoids(terms, start, end)
+        )
+        return cls(name, start, end, (), tuple((c / peak, w, d) for c, w, d in terms))
+
     def __post_init__(self) -> None:
         terms = in_range("terms", self.terms, -MAX_MAGNITUDE, MAX_MAGNITUDE)
         if terms.ndim != 2 or not 1 <= len(terms) <= MAX_SINUSOIDS or terms.shape[1] != 3 or (terms[:, 1] < 0.0).any():
@@ -124,6 +142,10 @@ class SinusoidalPulse(AbstractPulse):
 
     def shape(self, phi: ArrayLike) -> Array:
         return sum_of_sinusoids(self.terms, phi)
+
+    @cached_property
+    def series(self) -> ExcitationSeries:
+        return ExcitationSeries(Family.SINUSOIDS, self.terms)
 
     def mirrored(self) -> SinusoidalPulse:
         terms = tuple((-c, w, d) for c, w, d in self.terms)
@@ -162,12 +184,16 @@ class WaveletPulse(AbstractPulse):
         phi = np.asarray(phi, dtype=np.float64)
         return np.asarray(np.polynomial.polynomial.polyval(phi, self.polynomial) * np.exp(-phi * phi / self.spread))
 
+    @cached_property
+    def series(self) -> ExcitationSeries:
+        return ExcitationSeries(Family.WAVELET, polynomial=self.polynomial, spread=self.spread)
+
     def mirrored(self) -> WaveletPulse:
         polynomial = tuple(-c for c in self.polynomial)
         return WaveletPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
 
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
-        # f' = (P' - 2 phi/spread P) exp(-phi^2/spread): the sign is that of the polynomial
+        # f' = (P' - 2 phi/spread P) exp(-phi^2/spread) has the sign of the polynomial
         shape = np.polynomial.Polynomial(self.polynomial)
         factor = shape.deriv() - shape * np.polynomial.Polynomial([0.0, 2.0 / self.spread])
         bound = np.polynomial.Polynomial(np.abs(factor.coef))
@@ -178,7 +204,7 @@ class WaveletPulse(AbstractPulse):
 
 
 def checked_number(parameter: str, value: ArrayLike, *, low: float = -MAX_MAGNITUDE, unit: str = "-") -> float:
-    """One number from `low` to `MAX_MAGNITUDE`."""
+    """A number from `low` to `MAX_MAGNITUDE`, checked."""
     array = in_range(parameter, value, low, MAX_MAGNITUDE, unit=unit)
     if array.ndim:
         raise InvalidArgumentError(parameter, value, "one number")

@@ -12,9 +12,9 @@ from rocking._numba.compilation import Record
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.history.sampling import sample_arcs, sample_free_rocking, solve_and_sample
+from rocking.model.checks import check_groups
 from rocking.model.response import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
-from rocking.solver.peak_response import checked_groups
 from rocking.solver.state import SINGLE_SINUSOID_STATE, has_one_sinusoid, pulse_state, step_state
 
 Floats = NDArray[np.float64]
@@ -131,7 +131,7 @@ def build_motion(
     if duration is not None:
         in_range("duration", duration, 0.0, np.inf, closed="neither")
     made = as_pulse(pulse)
-    s, omega, eta, angle = (float(group) for group in checked_groups(slenderness, frequency_ratio, restitution, alpha))
+    s, omega, eta, angle = (float(group) for group in check_groups(slenderness, frequency_ratio, restitution, alpha))
     horizon = (made.end - made.start) / omega + FREE_DURATION if duration is None else float(duration)
     return Motion(made, s, omega, eta, angle, horizon, stop)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.compilation import contiguous_array
-from rocking.errors import broadcast, in_range
+from rocking.model.checks import broadcast_groups
 
 Array = NDArray[np.float64]
 
@@ -34,14 +34,7 @@ class Points:
         InvalidArgumentError
             If a value is out of range, or the shapes do not broadcast.
         """
-        groups = (
-            in_range("slenderness", slenderness, 0.0, np.inf, closed="neither"),
-            in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither"),
-            in_range("restitution", restitution, 0.0, 1.0),
-            in_range("alpha", 0.0 if alpha is None else alpha, 0.0, np.pi / 2, closed="left", unit="rad"),
-        )
-        given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
-        full = broadcast(given | {"restitution": restitution, "alpha": alpha}, groups)
+        full = broadcast_groups(slenderness, frequency_ratio, restitution, alpha)
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
     def __getitem__(self, index: Any) -> Points:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.model.response import Outcome
+from rocking.model.fields import BOUNDED_FIELDS
+from rocking.model.outcome import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
 from rocking.solver.peak_response import peak_response
 
@@ -21,24 +22,26 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class BoundedResponse:
-    """Responses with a bound and a source; every field is an array of the broadcast shape of the question.
+    """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
+
+    The fields are declared, with their equations, in `rocking.model.fields`.
 
     Attributes
     ----------
-    peak_rotation : float array [-]
-        max |theta|/alpha; 0 without uplift, nan where overturned.
+    peak_rotation : float64 array [-]
+        Peak rotation, max |theta|/alpha over the whole response; nan where the block overturns, 0 without uplift.
     outcome : int8 array
-        Code of `rocking.Outcome`.
+        Final outcome, a code of `rocking.Outcome`.
     impacts : int32 array
-        Impacts before the pulse ends, and the one after it upon which the block overturns; -1 where a cube answers
-        whose nodes around the point differ in them.
+        Number of impacts before the pulse ends, and the one after it that is followed by overturning; -1 where a cube
+        was interpolated whose nodes around the point differ in them.
     exceeded_alpha : bool array
-        |theta| passed alpha at some time.
-    error_bound : float array [-]
-        Bound of the absolute error of `peak_rotation`; nan where overturned, inf where the fate itself changes
-        within the rounding of the question.
+        Whether |theta| passed alpha at some time.
+    error_bound : float64 array [-]
+        Bound of the absolute error of `peak_rotation`; nan where the block overturns, infinite where the outcome
+        changes within the rounding of the parameters.
     source : str array
-        "cube" or "solver".
+        "cube" (interpolated data set) or "solver".
     """
 
     peak_rotation: Array
@@ -50,12 +53,12 @@ class BoundedResponse:
 
     @property
     def overturned(self) -> Flags:
-        """Final fate: True where the block overturns."""
+        """Whether the block overturns in the end."""
         return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
 
     @classmethod
     def empty(cls, shape: tuple[int, ...]) -> BoundedResponse:
-        """Answers to be filled in: no uplift anywhere, which is exact."""
+        """Responses without uplift, which are exact, to be overwritten."""
         return cls(
             np.zeros(shape),
             np.full(shape, Outcome.NO_UPLIFT, dtype=np.int8),
@@ -66,13 +69,13 @@ class BoundedResponse:
         )
 
     def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
-        """The same answers in another shape."""
-        return BoundedResponse(*(getattr(self, name).reshape(shape) for name in self.__dataclass_fields__))
+        """The same responses in another shape."""
+        return BoundedResponse(*(getattr(self, field.name).reshape(shape) for field in BOUNDED_FIELDS))
 
     def put(self, where: Flags | NDArray[np.intp], part: BoundedResponse) -> None:
-        """Fill in the answers of a part of the points."""
-        for name in self.__dataclass_fields__:
-            getattr(self, name)[where] = getattr(part, name)
+        """Set the responses of a part of the points."""
+        for field in BOUNDED_FIELDS:
+            getattr(self, field.name)[where] = getattr(part, field.name)
 
 
 def solve_with_bound(

@@ -8,6 +8,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from itertools import repeat
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,9 +17,12 @@ from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, in_range
-from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
+from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.model.checks import check, check_groups
+from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
 from rocking.model.outcome_margin import outcome_margin
-from rocking.model.response import Response
+from rocking.model.parameters import FREQUENCY_RATIO, TOLERANCE
+from rocking.model.response import Response, dimensions_of
 from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
 from rocking.solver.state import (
     FULL_PRECISION,
@@ -32,17 +36,8 @@ from rocking.solver.state import (
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells handed to one thread at a time: at least a millisecond of work, as long as a thread takes to start."""
 
-MIN_SLENDERNESS = 1e-12
-"""Smallest 1/a answered [-]: an acceleration of 10^12 g tan(alpha)."""
-
-FREQUENCY_RATIO_RANGE = (1e-9, 1e9)
-"""Frequency ratios answered [-]."""
-
-ALPHA_RANGE = (1e-12, 1.57)
-"""Slenderness angles of (2.2) answered [rad]; 0 is the slender limit. At pi/2 tan(alpha) leaves all measure."""
-
-TOLERANCE_RANGE = (1e-13, 1e-3)
-"""Tolerances that can be asked for [-]."""
+FREQUENCY_RATIO_RANGE = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
+"""Frequency ratios accepted [-]."""
 
 TRUNCATION_FRACTION = 1e-4
 """Share of the tolerance that the truncated terms of one Taylor step may have [-]: steps and impacts magnify it."""
@@ -73,22 +68,6 @@ def _new_state(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void]
 
 
 solver_state = SolverState()
-
-
-def checked_groups(
-    slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
-) -> list[NDArray[np.float64]]:
-    """The groups, checked and broadcast against each other; alpha = None is the slender limit, 0."""
-    groups = (
-        in_range("slenderness", slenderness, MIN_SLENDERNESS, math.inf),
-        in_range("frequency_ratio", frequency_ratio, *FREQUENCY_RATIO_RANGE),
-        in_range("restitution", restitution, 0.0, 1.0),
-        in_range("alpha", 0.0 if alpha is None else alpha, 0.0, ALPHA_RANGE[1], unit="rad"),
-    )
-    angles = groups[3]
-    in_range("alpha", angles[angles > 0.0], *ALPHA_RANGE, unit="rad")
-    given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
-    return broadcast(given, groups)
 
 
 def peak_response(
@@ -142,31 +121,27 @@ def peak_response(
     if threads is not None:
         in_range("threads", threads, 1, math.inf)
     made = as_pulse(pulse)
-    groups = checked_groups(slenderness, frequency_ratio, restitution, alpha)
+    given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
+    checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
+    groups = broadcast(given, checked)
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in groups]
-    allowed = 0.0 if tolerance is None else float(in_range("tolerance", tolerance, *TOLERANCE_RANGE))
-    by_arcs = isinstance(made, SinusoidalPulse) and not cells[3].any()  # which have nothing to leave out
+    allowed = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
+    by_arcs = made.series.has_exact_arcs and not cells[3].any()  # exact: no terms to truncate
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * allowed)
     answers = _solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
         margin = outcome_margin(answers["end_rotation"], answers["end_velocity"], cells[2], cells[3])
         near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * allowed)
         answers[near] = _solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
-    found = {name: answers[name].reshape(shape) for name in RESPONSE_RECORD.names or ()}
-    peak = found["peak_rotation"]
+    found: dict[str, NDArray[Any]] = {field.name: answers[field.name].reshape(shape) for field in RECORD_FIELDS}
+    peak = found[PEAK_ROTATION.name]
     return Response(
-        peak_rotation=peak,
-        outcome=found["outcome"],
-        impacts=found["impacts"],
-        chatter=found["chatter"],
+        **found,
         exceeded_alpha=np.asarray(np.isnan(peak) | (peak > 1.0)),
-        uplift_time=found["uplift_time"],
-        first_impact_time=found["first_impact_time"],
-        first_impact_velocity=found["first_impact_velocity"],
-        peak_mode=found["peak_mode"],
-        end_rotation=found["end_rotation"],
-        end_velocity=found["end_velocity"],
+        pulse=made.name,
+        groups=dict(zip(given, checked, strict=True)),
+        dims=dimensions_of(*given.values()),
     )
 
 

@@ -11,10 +11,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from rocking._numba.compilation import Record, kernel
+from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
-from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, WaveletPulse
-from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+from rocking.excitation.shapes import MAX_PIECES, MAX_SINUSOIDS, AbstractPulse
+from rocking.model.fields import RECORD_FIELDS, record_dtype
+from rocking.solver.excitation import EXCITATION_FIELDS, excitation_fields, fill_excitation
 
 SERIES_LENGTH = 17
 """Length of the series of the slender arcs: degree 16 in z."""
@@ -34,13 +35,8 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
     ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
     return np.dtype(
         [
-            # the pulse
-            ("terms", np.int64),  # sinusoids c cos(w phi + d) of it; wavelets have one of amplitude 0
-            ("amplitude", np.float64, per_term),  # c
-            ("multiple", np.float64, per_term),  # w
-            ("shift", np.float64, per_term),  # d
-            ("spread", np.float64),  # wavelet: f = (sum polynomial[k] phi^k) exp(-phi^2/spread); 0: sinusoids
-            ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
+            # the excitation
+            *excitation_fields(most_terms),
             ("pieces", np.int64),  # monotone pieces of f
             ("end_phase", np.float64, ends),  # their ends, with f and the angles' cosines and sines there
             ("end_shape", np.float64, ends),
@@ -133,14 +129,8 @@ SINGLE_SINUSOID_STATE = _flight_layout(1)
 """The same for a pulse of one sinusoid: loops over the sinusoids are gone when it is compiled."""
 
 
-@kernel
-def term_count(flight: Record) -> int:
-    """Number of sinusoids of the pulse; known when compiled for a record `SINGLE_SINUSOID_STATE`."""
-    return flight.terms if len(flight.force) > 1 else 1
-
-
 def _steps_layout() -> np.dtype[np.void]:
-    per_term, lanes, series = (MAX_SINUSOIDS,), (LANES,), (MAX_ORDER + 1, LANES)
+    lanes, series = (LANES,), (MAX_ORDER + 1, LANES)
     return np.dtype(
         [
             ("z", np.float64, series),  # coefficients of z,
@@ -170,13 +160,8 @@ def _steps_layout() -> np.dtype[np.void]:
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
-            # the pulse, as in `FLIGHT_STATE`
-            ("terms", np.int64),
-            ("amplitude", np.float64, per_term),
-            ("multiple", np.float64, per_term),
-            ("shift", np.float64, per_term),
-            ("spread", np.float64),
-            ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
+            # the excitation, as in `FLIGHT_STATE`
+            *excitation_fields(MAX_SINUSOIDS),
             # what is asked
             ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
             ("log_precision", np.float64),  # log2 of the share of the motion that the last terms may have
@@ -187,42 +172,22 @@ def _steps_layout() -> np.dtype[np.void]:
 STEP_STATE = _steps_layout()
 """Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
 
-RESPONSE_RECORD = np.dtype(
-    [
-        ("outcome", np.int8),
-        ("chatter", np.bool_),
-        ("impacts", np.int32),
-        ("peak_mode", np.int32),
-        ("peak_rotation", np.float64),
-        ("uplift_time", np.float64),
-        ("first_impact_time", np.float64),
-        ("first_impact_velocity", np.float64),
-        ("end_rotation", np.float64),  # state at the end of the pulse
-        ("end_velocity", np.float64),
-    ],
-    align=True,
-)
-"""What is answered about a cell, as in `response.Response`."""
+RESPONSE_RECORD = record_dtype(RECORD_FIELDS)
+"""Record of the response of a cell."""
 
 
 def has_one_sinusoid(pulse: AbstractPulse) -> bool:
     """Whether a record `SINGLE_SINUSOID_STATE` holds the pulse."""
-    return isinstance(pulse, SinusoidalPulse) and len(pulse.terms) == 1
+    return pulse.series.is_one_sinusoid
 
 
 @lru_cache(maxsize=256)
 def pulse_state(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT_STATE) -> Record:
     """The record of a pulse, `FLIGHT_STATE` or `SINGLE_SINUSOID_STATE`, to be copied before use."""
-    wavelet = isinstance(pulse, WaveletPulse)
-    terms = ((0.0, 1.0, 0.0),) if wavelet else pulse.terms if isinstance(pulse, SinusoidalPulse) else ()
-    count = len(terms)
     record: Record = np.zeros(1, fields)[0]
-    amplitude, multiple, shift = (np.array(column) for column in zip(*terms, strict=True))
-    record["terms"] = count
-    record["amplitude"][:count], record["multiple"][:count], record["shift"][:count] = amplitude, multiple, shift
-    if isinstance(pulse, WaveletPulse):
-        record["spread"] = pulse.spread
-        record["polynomial"][: len(pulse.polynomial)] = pulse.polynomial
+    fill_excitation(record, pulse.series)
+    multiple, shift = (np.array(column) for column in zip(*(term[1:] for term in pulse.series.terms), strict=True))
+    count = len(multiple)
     phases = np.array([pulse.start, *pulse.stationary, pulse.end])
     ends = len(phases)
     record["pieces"] = ends - 1
@@ -251,7 +216,7 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
     memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
     start = -memory.ctypes.data % VECTOR_BYTES
     steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
-    for name in ("terms", "amplitude", "multiple", "shift", "spread", "polynomial"):
+    for name in EXCITATION_FIELDS:
         steps[name] = flight[name]
     steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)

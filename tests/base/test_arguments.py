@@ -30,17 +30,13 @@ AMBIGUOUS = {
 }
 
 
-class ThirdPulse(AbstractPulse):
-    """A pulse that is neither a sum of sinusoids nor a wavelet."""
+class Lookalike:
+    """An object with the attributes of a pulse that does not derive from `AbstractPulse`."""
+
+    name, start, end, stationary = "lookalike", 0.0, 1.0, ()
 
     def shape(self, phi):
         return np.ones_like(phi)
-
-    def mirrored(self):
-        return self
-
-    def _stationary_phases(self, *window):  # noqa: ARG002
-        return ()
 
 
 @pytest.mark.parametrize("value", AMBIGUOUS.values(), ids=AMBIGUOUS)
@@ -106,7 +102,7 @@ NO_PULSES = {
     "list": ["sine"],
     "array": np.array(["sine"]),
     "class": AbstractPulse,
-    "third class": ThirdPulse("third", 0.0, 1.0, ()),
+    "lookalike": Lookalike(),
     "unknown": "square",
 }
 

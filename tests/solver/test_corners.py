@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.solver.peak_response import ALPHA_RANGE, FREQUENCY_RATIO_RANGE, MIN_SLENDERNESS
+from rocking.model import parameters
 
-SLENDERNESS = (MIN_SLENDERNESS, 1e-3, 0.5, 0.999, 1 - 1e-15)
-FREQUENCY_RATIO = (FREQUENCY_RATIO_RANGE[0], 1e-3, 1.0, 1e3, FREQUENCY_RATIO_RANGE[1])
+SLENDERNESS = (parameters.SLENDERNESS.lower, 1e-3, 0.5, 0.999, 1 - 1e-15)
+FREQUENCY_RATIO = (parameters.FREQUENCY_RATIO.lower, 1e-3, 1.0, 1e3, parameters.FREQUENCY_RATIO.upper)
 RESTITUTION = (0.0, 0.9, 1 - 1e-12, 1.0)
-ALPHA = (0.0, ALPHA_RANGE[0], 1e-3, 1.2, ALPHA_RANGE[1])
+ALPHA = (0.0, parameters.SMALLEST_ALPHA, 1e-3, 1.2, parameters.ALPHA.upper)
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking.excitation.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse, get_pulse
-from rocking.solver.kernels.intervals import shape_and_slope
+from rocking.solver.excitation import shape_and_slope
 from tests.kernels import cell
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS
 
 DATA = Path(__file__).parents[1] / "data"
 EPS = float(np.finfo(float).eps)
@@ -26,7 +27,8 @@ class Table:
         for pulse in np.unique(self.pulse):
             here = self.pulse == pulse
             response = rocking.peak_response(str(pulse), **{name: self.true[name][here] for name in INPUTS})
-            for name, values in [*vars(response).items(), ("overturned", response.overturned)]:
+            for field in (*RESPONSE_FIELDS, OVERTURNED):
+                name, values = field.name, getattr(response, field.name)
                 self.found.setdefault(name, np.empty(len(rows), values.dtype))[here] = values
 
     def relative_error(self, name: str) -> np.ndarray:

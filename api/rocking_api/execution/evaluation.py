@@ -15,19 +15,14 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.lookup.collection import CubeCollection
+from rocking.model.fields import BOUNDED_FIELDS, SOURCE
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import LookupOptions, alpha_of, checked
 
 PIECE = 50_000
 """Points between two checks of the stop flag [-]: some hundredths of a second."""
 
-FIELDS: dict[str, DTypeLike] = {
-    "peak_rotation": np.float64,
-    "outcome": np.int8,
-    "impacts": np.int32,
-    "exceeded_alpha": np.bool_,
-    "error_bound": np.float64,
-}
+FIELDS: dict[str, DTypeLike] = {field.name: field.dtype for field in BOUNDED_FIELDS if field is not SOURCE}
 """Fields of `BoundedResponse` that are kept, and their types."""
 
 BYTES_PER_POINT = sum(np.dtype(dtype).itemsize for dtype in FIELDS.values()) + 1

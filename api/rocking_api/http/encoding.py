@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from pydantic_core import to_json
 
 from rocking.datasets.cube import MODEL_RESULT, VARIABLES
+from rocking.model.fields import ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
 
 Form = Literal["json", "csv", "nc"]
@@ -122,7 +123,7 @@ def dataset_of(
             dtype, about = VARIABLES[name]
             kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
             variables[name] = ("point", result.fields[name].astype(dtype, copy=False), MODEL_RESULT | kept)
-    bound = {"units": "1", "long_name": "bound of the absolute error of peak_rotation"}
+    bound = {"units": ERROR_BOUND.unit, **ERROR_BOUND.attributes}
     source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": " ".join(_SOURCES)}
     variables["error_bound"] = ("point", result.fields["error_bound"], bound)
     variables["source"] = ("point", (~result.from_cube).astype("i1"), {"long_name": "source", **source})

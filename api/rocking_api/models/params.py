@@ -13,6 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from rocking.errors import in_range
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.model.checks import check
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
 _KNOWN = frozenset(PULSES)
@@ -33,7 +35,7 @@ PulseName = Annotated[
 Slenderness = Annotated[
     float,
     Field(
-        description="dimensionless slenderness g tan(alpha)/a_g = 1/a [-]; from 1 on the block never uplifts",
+        description=f"{SLENDERNESS.help}; from 1 on the block does not uplift",
         examples=[0.4],
         json_schema_extra={"minimum": MIN_SLENDERNESS},
     ),
@@ -41,7 +43,7 @@ Slenderness = Annotated[
 FrequencyRatio = Annotated[
     float,
     Field(
-        description="frequency ratio omega_g/p [-]",
+        description=FREQUENCY_RATIO.help,
         examples=[5.0],
         json_schema_extra={"minimum": FREQUENCY_RATIO_RANGE[0], "maximum": FREQUENCY_RATIO_RANGE[1]},
     ),
@@ -49,9 +51,9 @@ FrequencyRatio = Annotated[
 Restitution = Annotated[
     float,
     Field(
-        description="coefficient of restitution eta [-]",
+        description=RESTITUTION.help,
         examples=[0.85],
-        json_schema_extra={"minimum": 0, "maximum": 1},
+        json_schema_extra={"minimum": RESTITUTION.lower, "maximum": RESTITUTION.upper},
     ),
 ]
 AlphaDeg = Annotated[
@@ -182,7 +184,7 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": get_pulse,
     "slenderness": partial(checked, "slenderness"),
     "frequency_ratio": partial(checked, "frequency_ratio"),
-    "restitution": partial(in_range, "restitution", low=0.0, high=1.0),
+    "restitution": partial(check, RESTITUTION),
     "alpha_deg": alpha_of,
     "tolerance": partial(in_range, "tolerance", low=0.0, high=np.inf, closed="left"),
     "highest_amplitude": partial(in_range, "highest_amplitude", low=1.0, high=1e6, closed="right"),
@@ -222,5 +224,5 @@ def check_point(params: ResponseParams) -> None:
         checked("slenderness", params.slenderness)
     if not lowest <= params.frequency_ratio <= highest:
         checked("frequency_ratio", params.frequency_ratio)
-    if not 0.0 <= params.restitution <= 1.0:
-        in_range("restitution", params.restitution, 0.0, 1.0)
+    if not RESTITUTION.lower <= params.restitution <= RESTITUTION.upper:
+        check(RESTITUTION, params.restitution)

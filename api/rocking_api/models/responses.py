@@ -11,6 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
+from rocking.model.fields import (
+    COLUMN_FIELDS,
+    ERROR_BOUND,
+    EXCEEDED_ALPHA,
+    IMPACTS,
+    OUTCOME,
+    OVERTURNED,
+    PEAK_ROTATION,
+    SOURCE,
+)
 from rocking.model.response import Outcome
 from rocking_api.execution.evaluation import BatchResult, PointResult
 from rocking_api.http.encoding import Column
@@ -19,15 +29,13 @@ from rocking_api.models.params import HistoryParams, OverturningParams, Response
 VERSION = version("rocking")
 OUTCOMES = [outcome.name for outcome in Outcome]
 
-_OUTCOME = Field(description=f"final outcome, one of {', '.join(OUTCOMES)}")
-_BOUND = Field(description="bound of the absolute error of peak_rotation [-]; null if there is no peak or no bound")
-_SOURCE = Field(description="cube (interpolated data set) or solver")
-_PEAK = Field(description="max |theta|/alpha over the whole response [-]; null if overturned")
-_IMPACTS = Field(
-    description="impacts before the pulse ends, and the one after it upon which the block overturns; -1 if a data set "
-    "answers whose nodes there differ"
-)
-_EXCEEDED = Field(description="|theta| passed alpha at some time; the ground can bring a block back from there")
+_PEAK = Field(description=PEAK_ROTATION.description())
+_OVERTURNED = Field(description=OVERTURNED.description())
+_OUTCOME = Field(description=f"{OUTCOME.description()}, one of {', '.join(OUTCOMES)}")
+_IMPACTS = Field(description=f"{IMPACTS.description()}; -1 if nodes of a data set differ there")
+_EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
+_BOUND = Field(description=ERROR_BOUND.description())
+_SOURCE = Field(description=SOURCE.description())
 _DATA = Field(
     description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
     "solver did"
@@ -39,7 +47,7 @@ class PointResponse(BaseModel):
 
     query: ResponseParams
     peak_rotation: float | None = _PEAK
-    overturned: bool
+    overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     meaning: str = Field(description="the outcome in words")
     impacts: int = _IMPACTS
@@ -55,7 +63,7 @@ class Columns(BaseModel):
     """Many blocks, in the order of the request."""
 
     peak_rotation: list[float | None] = _PEAK
-    overturned: list[bool]
+    overturned: list[bool] = _OVERTURNED
     outcome: list[str] = _OUTCOME
     impacts: list[int] = _IMPACTS
     exceeded_alpha: list[bool] = _EXCEEDED
@@ -118,7 +126,7 @@ class HistoryResponse(BaseModel):
     """A motion."""
 
     query: HistoryParams
-    overturned: bool
+    overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     peak_rotation: float | None = _PEAK
     impacts: int = _IMPACTS
@@ -202,16 +210,13 @@ class Names:
 
 def columns_of(result: BatchResult) -> dict[str, Column]:
     """The fields of `Columns` with one value for each point."""
-    fields = result.fields
-    return {
-        "peak_rotation": fields["peak_rotation"],
-        "overturned": fields["outcome"] >= Outcome.OVERTURNED_DIRECTLY,
-        "outcome": Names(fields["outcome"], OUTCOMES),
-        "impacts": fields["impacts"],
-        "exceeded_alpha": fields["exceeded_alpha"],
-        "error_bound": fields["error_bound"],
-        "source": Names(result.from_cube, ["solver", "cube"]),
+    columns: dict[str, Column] = {
+        **result.fields,
+        OVERTURNED.name: result.fields[OUTCOME.name] >= Outcome.OVERTURNED_DIRECTLY,
+        OUTCOME.name: Names(result.fields[OUTCOME.name], OUTCOMES),
+        SOURCE.name: Names(result.from_cube, ["solver", "cube"]),
     }
+    return {field.name: columns[field.name] for field in COLUMN_FIELDS}
 
 
 def point_response(params: ResponseParams, point: PointResult) -> PointResponse:

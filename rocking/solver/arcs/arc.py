@@ -14,7 +14,8 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
-from rocking.solver.state import SERIES_LENGTH, term_count
+from rocking.solver.excitation import term_count
+from rocking.solver.state import SERIES_LENGTH
 
 MAX_EXPONENT = 350.0
 """e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""

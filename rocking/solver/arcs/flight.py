@@ -16,7 +16,7 @@ from rocking.solver.arcs.arc import (
     rotation,
     velocity,
 )
-from rocking.solver.state import term_count
+from rocking.solver.excitation import term_count
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking.solver.kernels.intervals import shape_and_slope
+from rocking.solver.excitation import shape_and_slope
 
 
 @kernel

@@ -14,10 +14,11 @@ from rocking._numba.compilation import Record, kernel
 from rocking.errors import SearchError
 from rocking.solver.arcs.events import long_flight, short_flight
 from rocking.solver.arcs.flight import set_angles, start_arc
+from rocking.solver.excitation import has_exact_arcs, term_count
 from rocking.solver.kernels.chatter import chatter_ends_in_rest
 from rocking.solver.kernels.free_rocking import free_outcome
 from rocking.solver.kernels.intervals import split_into_intervals
-from rocking.solver.state import IMPACT, OVERTURNS, term_count
+from rocking.solver.state import IMPACT, OVERTURNS
 from rocking.solver.taylor.flight import flight_by_steps
 
 IMPACT_LIMIT = 200_000
@@ -34,7 +35,7 @@ NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 def init_state(slenderness: float, omega: float, alpha: float, flight: Record) -> None:
     """Set up a cell: the empty answer, the cuts, rest before the first of them."""
     flight.first_flight_known = 0
-    flight.by_arcs = int(alpha == 0.0 and flight.spread == 0.0)
+    flight.by_arcs = int(has_exact_arcs(flight, alpha))
     flight.outcome, flight.peak_rotation, flight.peak_mode = NO_UPLIFT, 0.0, -1
     flight.impacts, flight.chatter = 0, 0
     flight.uplift_time, flight.first_impact_time, flight.first_impact_velocity = math.nan, math.nan, math.nan

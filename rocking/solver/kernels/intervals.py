@@ -16,26 +16,7 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking.excitation.shapes import MAX_POLYNOMIAL
-from rocking.solver.state import term_count
-
-
-@kernel
-def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
-    """f and df/dphi of the pulse."""
-    f, slope = 0.0, 0.0
-    if flight.spread > 0.0:
-        for i in range(MAX_POLYNOMIAL):
-            k = MAX_POLYNOMIAL - 1 - i
-            slope = slope * phi + f
-            f = f * phi + flight.polynomial[k]
-        bell = math.exp(-phi * phi / flight.spread)
-        return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
-    for k in range(term_count(flight)):
-        angle = flight.multiple[k] * phi + flight.shift[k]
-        f += flight.amplitude[k] * math.cos(angle)
-        slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
-    return f, slope
+from rocking.solver.excitation import is_unit_sinusoid, shape_and_slope, term_count
 
 
 @kernel
@@ -71,7 +52,7 @@ def set_interval(flight: Record, index: int, phase: float, level: float, rise: f
 def split_into_intervals(slenderness: float, flight: Record) -> int:
     """Fill `flight.interval_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
     terms = term_count(flight)
-    single = terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.spread == 0.0
+    single = is_unit_sinusoid(flight)
     # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
     cap = math.atan2(root, slenderness) if single else 0.0

@@ -11,12 +11,10 @@ S = 1 - z and C = 1, without a special form.
 
 from __future__ import annotations
 
-import math
-
 from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import LANES, absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
+from rocking._numba.simd import absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
 from rocking._numba.simd_sines import sine_and_cosine
-from rocking.excitation.shapes import MAX_POLYNOMIAL
+from rocking.solver.excitation import expand_excitation
 
 
 @kernel
@@ -37,52 +35,6 @@ def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
         -alpha * cosine / sine,
         alpha * sine / cosine,
     )
-
-
-@kernel
-def expand_sinusoids(steps: Record) -> None:
-    """Fill `f` with the coefficients of F in powers of tau about `phase`, for a sum of sinusoids."""
-    f, phase, omega, strength = steps.f, load(steps.phase, 0), load(steps.omega, 0), load(steps.strength, 0)
-    for k in range(steps.terms):
-        sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
-        rate = omega * steps.multiple[k]
-        scale, bend = strength * steps.amplitude[k], rate * rate
-        even, odd = scale * cosine, scale * rate * sine * -1.0
-        for n in range(0, steps.order + 1, 2):
-            store(f, n, even if k == 0 else load(f, n) + even)
-            even = even * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
-        for n in range(1, steps.order + 1, 2):
-            store(f, n, odd if k == 0 else load(f, n) + odd)
-            odd = odd * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
-
-
-@kernel
-def expand_wavelet(steps: Record) -> None:
-    """The same for f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
-    f, gauss, p, order = steps.f, steps.gauss, steps.polynomial, steps.order
-    for lane in range(LANES):
-        gauss[0, lane] = math.exp(-steps.phase[lane] * steps.phase[lane] / steps.spread)
-    phase, omega = load(steps.phase, 0), load(steps.omega, 0)
-    # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
-    fall = -2.0 / steps.spread
-    before, here = splat(0.0), load(gauss, 0)
-    for n in range(order + 1):
-        store(gauss, n, here)
-        before, here = here, (phase * here + before) * (fall / (n + 1.0))
-    constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
-    linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
-    square = p[2] + 3.0 * p[3] * phase
-    power = load(steps.strength, 0)
-    for n in range(order + 1):
-        total = constant * load(gauss, n)
-        if n > 0:
-            total += linear * load(gauss, n - 1)
-        if n > 1:
-            total += square * load(gauss, n - 2)
-        if n > 2:
-            total += p[MAX_POLYNOMIAL - 1] * load(gauss, n - 3)
-        store(f, n, power * total)
-        power = power * omega
 
 
 @kernel
@@ -140,10 +92,7 @@ def choose_step_size(steps: Record) -> None:
 @kernel
 def take_step(steps: Record) -> None:
     """Expand about z0, w0 at `phase`; set the step's length, z and w at its end, and the bound of |w''| on it."""
-    if steps.spread > 0.0:
-        expand_wavelet(steps)
-    else:
-        expand_sinusoids(steps)
+    expand_excitation(steps)
     expand_motion(steps)
     choose_step_size(steps)
     z, rate, order = steps.z, steps.rate, steps.order

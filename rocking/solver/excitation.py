@@ -1,0 +1,145 @@
+"""The excitation inside the solver: the one place that distinguishes families of f(phi).
+
+`fill_excitation` writes an excitation into a record, `shape_and_slope` evaluates f and its derivative,
+`expand_excitation` expands F in powers of tau for a Taylor step, and `has_exact_arcs` selects between exact arcs and
+Taylor steps. A further family, such as a piecewise linear record, adds its coefficients to `excitation_fields` and a
+case to each of these functions. The record has one layout for all families, so that each kernel is compiled once.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import LANES, load, splat, store
+from rocking._numba.simd_sines import sine_and_cosine
+from rocking.excitation.series import ExcitationSeries, Family
+from rocking.excitation.shapes import MAX_POLYNOMIAL
+
+WAVELET = int(Family.WAVELET)
+
+
+def excitation_fields(most_terms: int) -> list[tuple[str, type] | tuple[str, type, tuple[int, ...]]]:
+    """Fields of a record that describe an excitation of up to `most_terms` sinusoids."""
+    per_term = (most_terms,)
+    return [
+        ("family", np.int64),  # see `Family`
+        ("terms", np.int64),  # number of sinusoids c cos(w phi + d); a wavelet has one of amplitude 0
+        ("amplitude", np.float64, per_term),  # c
+        ("multiple", np.float64, per_term),  # w
+        ("shift", np.float64, per_term),  # d
+        ("spread", np.float64),  # wavelet: f = (sum polynomial[k] phi^k) exp(-phi^2/spread)
+        ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
+    ]
+
+
+EXCITATION_FIELDS = tuple(str(field[0]) for field in excitation_fields(1))
+"""Names of these fields."""
+
+
+def fill_excitation(record: Record, series: ExcitationSeries) -> None:
+    """Write an excitation into a record with `excitation_fields`, which is zero on entry."""
+    count = len(series.terms)
+    amplitude, multiple, shift = (np.array(column) for column in zip(*series.terms, strict=True))
+    record["family"], record["terms"] = series.family, count
+    record["amplitude"][:count], record["multiple"][:count], record["shift"][:count] = amplitude, multiple, shift
+    record["spread"] = series.spread
+    record["polynomial"][: len(series.polynomial)] = series.polynomial
+
+
+@kernel
+def term_count(flight: Record) -> int:
+    """Number of sinusoids; a constant when compiled for a record of a single sinusoid."""
+    return flight.terms if len(flight.force) > 1 else 1
+
+
+@kernel
+def has_exact_arcs(flight: Record, alpha: float) -> bool:
+    """Whether the motion consists of exact arcs (3.4): slender blocks under sums of sinusoids."""
+    return alpha == 0.0 and flight.family != WAVELET
+
+
+@kernel
+def is_unit_sinusoid(flight: Record) -> bool:
+    """Whether f is one sinusoid of amplitude 1 and frequency 1, for which phases of |a f| = 1 have closed forms."""
+    return (
+        term_count(flight) == 1
+        and flight.multiple[0] == 1.0
+        and abs(flight.amplitude[0]) == 1.0
+        and flight.family != WAVELET
+    )
+
+
+@kernel
+def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
+    """f and df/dphi of the excitation."""
+    f, slope = 0.0, 0.0
+    if flight.family == WAVELET:
+        for i in range(MAX_POLYNOMIAL):
+            k = MAX_POLYNOMIAL - 1 - i
+            slope = slope * phi + f
+            f = f * phi + flight.polynomial[k]
+        bell = math.exp(-phi * phi / flight.spread)
+        return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
+    for k in range(term_count(flight)):
+        angle = flight.multiple[k] * phi + flight.shift[k]
+        f += flight.amplitude[k] * math.cos(angle)
+        slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
+    return f, slope
+
+
+@kernel
+def expand_excitation(steps: Record) -> None:
+    """Fill `f` with the coefficients of F = sgn(theta) a f in powers of tau about `phase`."""
+    if steps.family == WAVELET:
+        expand_wavelet(steps)
+    else:
+        expand_sinusoids(steps)
+
+
+@kernel
+def expand_sinusoids(steps: Record) -> None:
+    """Fill `f` with the coefficients of F in powers of tau about `phase`, for a sum of sinusoids."""
+    f, phase, omega, strength = steps.f, load(steps.phase, 0), load(steps.omega, 0), load(steps.strength, 0)
+    for k in range(steps.terms):
+        sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
+        rate = omega * steps.multiple[k]
+        scale, bend = strength * steps.amplitude[k], rate * rate
+        even, odd = scale * cosine, scale * rate * sine * -1.0
+        for n in range(0, steps.order + 1, 2):
+            store(f, n, even if k == 0 else load(f, n) + even)
+            even = even * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+        for n in range(1, steps.order + 1, 2):
+            store(f, n, odd if k == 0 else load(f, n) + odd)
+            odd = odd * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+
+
+@kernel
+def expand_wavelet(steps: Record) -> None:
+    """The same for f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
+    f, gauss, p, order = steps.f, steps.gauss, steps.polynomial, steps.order
+    for lane in range(LANES):
+        gauss[0, lane] = math.exp(-steps.phase[lane] * steps.phase[lane] / steps.spread)
+    phase, omega = load(steps.phase, 0), load(steps.omega, 0)
+    # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
+    fall = -2.0 / steps.spread
+    before, here = splat(0.0), load(gauss, 0)
+    for n in range(order + 1):
+        store(gauss, n, here)
+        before, here = here, (phase * here + before) * (fall / (n + 1.0))
+    constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
+    linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
+    square = p[2] + 3.0 * p[3] * phase
+    power = load(steps.strength, 0)
+    for n in range(order + 1):
+        total = constant * load(gauss, n)
+        if n > 0:
+            total += linear * load(gauss, n - 1)
+        if n > 1:
+            total += square * load(gauss, n - 2)
+        if n > 2:
+            total += p[MAX_POLYNOMIAL - 1] * load(gauss, n - 3)
+        store(f, n, power * total)
+        power = power * omega

@@ -1,0 +1,104 @@
+"""A pulse defined outside the package: responses, histories, boundaries, a cube and HTTP responses for it."""
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
+
+import rocking
+from rocking import precompile
+from rocking.datasets.cube import read_spectrum, write_dataset
+from rocking.errors import InvalidArgumentError
+from rocking.excitation import pulses
+from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
+from rocking.lookup.open import open_cube
+from rocking.spectra.cubes import spectrum
+from tests.direct_integration import integrate
+
+GROUPS = {"slenderness": 0.6, "frequency_ratio": 3.0, "restitution": 0.85}
+
+
+@pytest.fixture
+def pulse(monkeypatch):
+    """A sum of three sinusoids with their own phases, registered for one test."""
+    monkeypatch.setattr(pulses, "_REGISTERED", {})
+    made = SinusoidalPulse.of_unit_peak(
+        "three_sines", 0.0, 7.0, ((1.0, 1.0, -0.5 * np.pi), (0.6, 2.3, 0.4), (0.25, 3.1, -1.2))
+    )
+    register(made)
+    return made
+
+
+def test_response_is_that_of_direct_integration(pulse):
+    found = rocking.peak_response("three_sines", **GROUPS)
+    amplitude = 1.0 / GROUPS["slenderness"]
+    motion = integrate(
+        amplitude,
+        GROUPS["frequency_ratio"],
+        GROUPS["restitution"],
+        shape=pulse.shape,
+        start=rocking.closed_form.first_uplift_phase(pulse, amplitude),
+        end=pulse.end,
+    )
+    assert len(motion.impact_times) == found.impacts > 0
+    assert float(found.first_impact_time) == pytest.approx(motion.impact_times[0], abs=1e-8)
+    assert float(found.end_rotation) == pytest.approx(abs(motion.rotation), abs=1e-8)
+    mirrored = rocking.peak_response("-three_sines", **GROUPS)
+    np.testing.assert_array_equal(mirrored.peak_rotation, found.peak_rotation)
+
+
+@pytest.mark.usefixtures("pulse")
+def test_rigid_block_tends_to_the_slender_one():
+    slender, rigid = (rocking.peak_response("three_sines", **GROUPS, alpha=alpha) for alpha in (None, 1e-6))
+    assert float(rigid.peak_rotation) == pytest.approx(float(slender.peak_rotation), rel=1e-9)
+
+
+@pytest.mark.usefixtures("pulse")
+def test_history_and_boundary():
+    found = rocking.peak_response("three_sines", **GROUPS)
+    history = rocking.time_history("three_sines", **GROUPS, contact=True)
+    assert float(abs(history.rotation).max()) == pytest.approx(float(found.peak_rotation), rel=1e-3)
+    amplitude = {name: value for name, value in GROUPS.items() if name != "slenderness"}
+    threshold = 1.0 / rocking.critical_amplitude("three_sines", **amplitude).amplitude[0]
+    sides = rocking.peak_response("three_sines", **amplitude, slenderness=threshold * np.array([1 + 1e-9, 1 - 1e-9]))
+    assert sides.overturned.tolist() == [False, True]
+    assert rocking.overturning_boundary("three_sines", restitution=0.85, nodes=31).sizes["curve"] > 0
+
+
+@pytest.mark.usefixtures("pulse")
+def test_cube_and_http_response(tmp_path):
+    axes = {"slenderness": np.linspace(0.55, 0.65, 21), "frequency_ratio": np.geomspace(2.8, 3.2, 21)}
+    path = tmp_path / "spectra" / "three_sines" / "eta-0.85.nc"
+    write_dataset(spectrum("three_sines", restitution=0.85, **axes), path)
+    stored = read_spectrum(path)
+    assert int(stored["pulse"]) == -1
+    assert stored["pulse"].attrs["pulse_name"] == "three_sines"
+    solved = float(rocking.peak_response("three_sines", **GROUPS).peak_rotation)
+    interpolated = open_cube(path).response(**GROUPS, tolerance=1e-2)
+    assert abs(float(interpolated.peak_rotation) - solved) <= float(interpolated.error_bound)
+    precompile.main()  # the service refuses requests while it compiles
+    with TestClient(create_app(Settings(results=tmp_path))) as client:
+        for method in ("solver", "auto"):
+            answer = client.get("/v1/response", params=GROUPS | {"pulse": "three_sines", "method": method})
+            assert answer.status_code == 200, answer.text
+            assert answer.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)
+
+
+def test_names_that_cannot_be_registered(pulse, monkeypatch):
+    monkeypatch.setattr(pulses, "_REGISTERED", {"three_sines": pulse})
+    mirrored = pulse.mirrored()
+    for wrong in (pulse, mirrored, rocking.get_pulse("sine")):
+        with pytest.raises(InvalidArgumentError, match=r"^`name` = "):
+            register(wrong)
+    with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
+        register("three_sines")
+    with pytest.raises(InvalidArgumentError, match=r"^`pulse` = .*three_sines"):
+        rocking.get_pulse("four_sines")
+
+
+def test_numbers_in_files_never_change():
+    stored = ("sine", "cosine", "half_sine", "rectangular", "c1", "c2", "ricker", "ricker_antisymmetric")
+    stored += ("mavroeidis_papageorgiou",)
+    assert PULSE_NAMES[: len(stored)] == stored
+    assert [pulse_number(name) for name in stored] == list(range(9))

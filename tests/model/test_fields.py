@@ -1,0 +1,139 @@
+"""The declared fields of a response are those of the classes, records, files and pages that derive from them."""
+
+import re
+from pathlib import Path
+from typing import get_type_hints
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rocking
+from rocking.datasets.cube import VARIABLES
+from rocking.model import fields
+from rocking.model.fields import BOUNDED_FIELDS, COLUMN_FIELDS, CUBE_FIELDS, RESPONSE_FIELDS
+from rocking.model.outcome import Outcome
+from rocking.model.outcome_code import SURVIVES, decode_outcomes, outcome_codes
+from rocking.solver.bounded_response import BoundedResponse
+from rocking.solver.peak_response import peak_response
+from rocking.solver.state import RESPONSE_RECORD
+
+NOTATION = Path(__file__).parents[2] / "docs" / "notation.md"
+TYPES = {"f8": np.float64, "i1": np.int8, "i4": np.int32, "?": np.bool_, "U": np.str_}
+GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+
+
+@pytest.mark.parametrize(("kind", "declared"), [(rocking.Response, RESPONSE_FIELDS), (BoundedResponse, BOUNDED_FIELDS)])
+def test_annotated_fields_are_the_declared_ones(kind, declared):
+    hints = get_type_hints(kind, localns={"xr": xr})
+    names = list(kind.__dataclass_fields__)
+    assert names[: len(declared)] == [field.name for field in declared]
+    for field in declared:
+        assert TYPES[field.dtype].__name__ in str(hints[field.name])
+
+
+@pytest.mark.parametrize(("kind", "declared"), [(rocking.Response, RESPONSE_FIELDS), (BoundedResponse, BOUNDED_FIELDS)])
+def test_docstrings_give_the_declared_meaning(kind, declared):
+    text = " ".join(kind.__doc__.split()).lower().replace("`", "")
+    for field in declared:
+        assert field.name in text
+        if field not in (fields.END_ROTATION, fields.END_VELOCITY, fields.SOURCE):  # described together, or in words
+            assert field.meaning.lower() in text, field.name
+
+
+def test_responses_have_the_declared_types():
+    found = peak_response("sine", **GROUPS)
+    for field in RESPONSE_FIELDS:
+        assert getattr(found, field.name).dtype == np.dtype(field.dtype)
+    assert set(RESPONSE_RECORD.names) == {field.name for field in RESPONSE_FIELDS} - {"exceeded_alpha"}
+
+
+def test_files_store_the_declared_fields():
+    for field in CUBE_FIELDS:
+        dtype, attributes = VARIABLES[field.name]
+        assert dtype == field.file_dtype
+        assert attributes["long_name"] == field.meaning
+        assert attributes["equation"] == field.equation
+
+
+def test_the_page_of_the_notation_has_the_table():
+    assert fields.markdown_table() in NOTATION.read_text()
+
+
+def test_equation_numbers_are_in_the_ledger():
+    ledger = (NOTATION.parent / "equations.md").read_text()
+    for field in {*RESPONSE_FIELDS, *COLUMN_FIELDS}:
+        assert f"| ({field.equation}) |" in ledger, field.name
+
+
+def test_description_tells_what_a_missing_number_looks_like():
+    assert "; null where the block overturns" in fields.PEAK_ROTATION.description()
+    assert "; nan where the block overturns" in fields.PEAK_ROTATION.description("nan")
+    assert "null" not in fields.IMPACTS.description()
+
+
+def test_codes_of_overturning_are_decoded_again():
+    outcome = np.array([0, 1, 2, 3, 3, 3], dtype=np.int8)
+    impacts = np.array([0, 7, 0, 1, 2, 200_003], dtype=np.int32)
+    codes = outcome_codes(outcome, impacts)
+    assert codes.tolist() == [SURVIVES, SURVIVES, 2, 7, 11, 800_015]
+    assert codes.dtype == np.int64
+    decoded, counted = decode_outcomes(codes)
+    assert decoded.tolist() == [Outcome.SAFE, Outcome.SAFE, 2, 3, 3, 3]
+    assert counted.tolist() == [0, 0, 0, 1, 2, 200_003]
+    assert (decoded.dtype, counted.dtype) == (outcome.dtype, impacts.dtype)
+
+
+def test_data_set_of_one_response():
+    found = peak_response("-sine", **GROUPS).to_xarray()
+    assert float(found.peak_rotation) == pytest.approx(0.553568707, abs=1e-9)
+    assert found.attrs == {"pulse": "-sine"}
+    assert {name: float(found[name]) for name in found.coords} == GROUPS | {"alpha": 0.0}
+    for name in found.data_vars:
+        assert {"units", "long_name", "equation"} <= set(found[name].attrs)
+    assert not bool(found.overturned)
+
+
+def test_an_axis_is_named_after_the_argument_that_varies_along_it():
+    s, w, eta = np.linspace(0.2, 0.8, 3), np.array([1.0, 2.0, 5.0, 9.0]), np.array([0.8, 0.9])
+    found = peak_response("c1", slenderness=s[:, None, None], frequency_ratio=w[:, None], restitution=eta, alpha=0.2)
+    labelled = found.to_xarray()
+    assert labelled.peak_rotation.dims == ("slenderness", "frequency_ratio", "restitution")
+    one = peak_response("c1", slenderness=s[1], frequency_ratio=w[2], restitution=eta[0], alpha=0.2).peak_rotation
+    picked = labelled.peak_rotation.sel(slenderness=s[1], frequency_ratio=w[2], restitution=eta[0])
+    np.testing.assert_array_equal(picked, one)
+
+
+def test_arguments_that_vary_together_are_coordinates_of_one_axis():
+    found = peak_response("sine", slenderness=[0.2, 0.5], frequency_ratio=[3.0, 4.0], restitution=0.9)
+    assert found.to_xarray().peak_rotation.dims == ("dim_0",)
+    named = found.to_xarray(("block",))
+    assert named.slenderness.dims == named.frequency_ratio.dims == ("block",)
+    with pytest.raises(rocking.InvalidArgumentError, match="1 name"):
+        found.to_xarray(("block", "pulse"))
+
+
+def test_labelled_arguments_keep_their_dimensions():
+    s = xr.DataArray([0.2, 0.5], dims="site")
+    assert peak_response("sine", **GROUPS | {"slenderness": s}).to_xarray().peak_rotation.dims == ("site",)
+
+
+@pytest.mark.parametrize(
+    ("groups", "words"),
+    [
+        ({}, "under sine: rocks and comes to rest: peak rotation 0.553569 alpha, 1 impact"),
+        ({"slenderness": 1.2}, "under sine: never uplifts"),
+        ({"slenderness": 0.05}, "under sine: overturns without impact, 0 impacts"),
+        (
+            {"slenderness": [1.2, 0.4]},
+            "of 2 blocks: 1 never uplift, 1 rock and come to rest, largest peak rotation 0.55",
+        ),
+        ({"slenderness": [[0.05, 0.05]]}, "of 1 x 2 blocks: 2 overturn without impact"),
+        ({"slenderness": []}, "of 0 blocks"),
+    ],
+)
+def test_repr_says_what_happened(groups, words):
+    shown = repr(peak_response("sine", **GROUPS | groups))
+    assert words in shown
+    assert len(shown) < 200
+    assert not re.search(r"array|nan", shown)
