@@ -84,8 +84,8 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         lifespan=_lifespan,
         responses=RESPONSES,
     )
-    atlas = CubeCollection(settings.results)
-    service = app.state.service = Service(settings, atlas, ZarrStores(atlas.catalogue))
+    cubes = CubeCollection(settings.results)
+    service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
     # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream")
     app.add_middleware(MemoryBudgetMiddleware, budget=service.memory_budget)  # counts before compression
@@ -129,7 +129,7 @@ async def _load_kernels(service: Service, when_ready: Callable[[], None]) -> Non
 
 
 async def _warn_without_cubes(service: Service) -> None:
-    names = await anyio.to_thread.run_sync(service.atlas.catalogue.names, abandon_on_cancel=True)
+    names = await anyio.to_thread.run_sync(service.cubes.catalogue.names, abandon_on_cancel=True)
     if not any(name.startswith("spectra/") for name in names):
         LOG.warning("no spectrum cubes in %s; the solver is used instead", service.settings.results)
 

@@ -28,19 +28,19 @@ class DatasetChecker:
 
     Parameters
     ----------
-    atlas : CubeCollection
+    cubes : CubeCollection
         Cubes and catalogue of the results folder.
     """
 
-    def __init__(self, atlas: CubeCollection) -> None:
-        self._atlas = atlas
+    def __init__(self, cubes: CubeCollection) -> None:
+        self._cubes = cubes
         self._task: asyncio.Task[None] | None = None
         self._state = State([], 0, {})
 
     async def state(self) -> State:
         """The complete result, or the result so far after `MAX_WAIT`."""
         if self._task is None or self._task.done():
-            names = await anyio.to_thread.run_sync(self._atlas.catalogue.names)
+            names = await anyio.to_thread.run_sync(self._cubes.catalogue.names)
             self._state = State(names, len(names), {})
             self._task = asyncio.create_task(self._check(names))
         await asyncio.wait({self._task}, timeout=MAX_WAIT)
@@ -52,12 +52,12 @@ class DatasetChecker:
         problems: dict[str, str] = {}
         for k, name in enumerate(names):
             try:
-                problem = await anyio.to_thread.run_sync(partial(self._atlas.problem, name))
+                problem = await anyio.to_thread.run_sync(partial(self._cubes.problem, name))
             except UnknownDatasetError:
                 problem = None  # removed meanwhile
             if problem is not None:
                 problems[name] = problem
             self._state = State(names, len(names) - k - 1, problems)
         # includes problems of the folder itself; the files are checked by now
-        problems = await anyio.to_thread.run_sync(self._atlas.problems)
+        problems = await anyio.to_thread.run_sync(self._cubes.problems)
         self._state = State(names, 0, problems)

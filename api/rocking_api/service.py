@@ -29,7 +29,7 @@ class Service:
     """One per application, made in `create_app`."""
 
     settings: Settings
-    atlas: CubeCollection
+    cubes: CubeCollection
     zarr_stores: ZarrStores
     batcher: MicroBatcher = field(init=False)
     kernels: Kernels = field(init=False)
@@ -44,11 +44,11 @@ class Service:
         settings = self.settings
         # a separate thread: requests for one block do not wait for heavy work
         single = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
-        self.batcher = MicroBatcher(self.atlas, single)
+        self.batcher = MicroBatcher(self.cubes, single)
         self.kernels = Kernels(settings.max_seconds)
         self.executor = BoundedExecutor(settings.max_workers, settings.max_queue, settings.max_seconds)
         self.metrics = Metrics(self.executor)
-        self.dataset_checker = DatasetChecker(self.atlas)
+        self.dataset_checker = DatasetChecker(self.cubes)
         self.io_limiter = CapacityLimiter(settings.max_workers)
         self.large_body_limiter = CapacityLimiter(1)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)

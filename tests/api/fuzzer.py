@@ -292,7 +292,7 @@ def fault(sent: Sent, got: Received) -> str | None:
 async def ask_all(results: Path, seed: int, first: int, count: int, together: int = 4) -> tuple[Counter, list[str]]:
     """Statuses and faults of the responses, and errors that the service logged."""
     app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
-    names = app.state.service.atlas.catalogue.names()
+    names = app.state.service.cubes.catalogue.names()
     statuses: Counter = Counter()
     faults: list[str] = []
     left = iter(range(first, first + count))

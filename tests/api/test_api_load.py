@@ -179,7 +179,7 @@ def test_an_invalid_batch_is_refused_before_queueing(results, form):
 
 
 def test_timeout_is_504(results, monkeypatch):
-    monkeypatch.setattr(rocking_api.execution.evaluation, "PIECE", 1)
+    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 1)
     with client_of(results, max_seconds=0.2) as client:
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
         problem = assert_problem(client.post("/v1/response", json=many), 504)
@@ -231,7 +231,7 @@ def test_the_time_limit_of_the_whole_is_not_taken_for_that_of_a_part():
 def test_batches_in_chunks_are_equal(client, monkeypatch):
     many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
     whole = client.post("/v1/response", json=many).json()
-    monkeypatch.setattr(rocking_api.execution.evaluation, "PIECE", 7)
+    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
     assert client.post("/v1/response", json=many).json() == whole
 
 
@@ -241,7 +241,7 @@ def test_batched_requests_have_the_results_of_single_requests(results):
     questions += [POINT | {"slenderness": -1.0}, POINT | {"tolerance": -1.0}, POINT | {"pulse": "sinus"}]
     with client_of(results) as client:
         alone = [client.get("/v1/response", params=question) for question in questions]
-        calls = _count_calls(client.app.state.service.atlas)
+        calls = _count_calls(client.app.state.service.cubes)
         together = asyncio.run(_all_at_once(client.app, questions))
     assert [answer.status_code for answer in alone] == [status for status, _ in together]
     for one, (_, body) in zip(alone, together, strict=True):
@@ -260,20 +260,20 @@ def test_a_request_waits_for_those_of_the_next_iterations_of_the_loop(results):
 
     questions = [ResponseParams(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
     with client_of(results) as client:
-        atlas = client.app.state.service.atlas
+        cubes = client.app.state.service.cubes
 
         def gathered():
-            return MicroBatcher(atlas, BoundedExecutor(1, 16, 30.0))
+            return MicroBatcher(cubes, BoundedExecutor(1, 16, 30.0))
 
         alone = [asyncio.run(one_a_turn(gathered(), [question]))[0] for question in questions]
-        calls = _count_calls(atlas)
+        calls = _count_calls(cubes)
         assert asyncio.run(one_a_turn(gathered(), questions)) == alone
     assert len(calls) == 1
 
 
 def test_an_internal_error_reaches_all_requests_of_a_batch(results, monkeypatch):
     with client_of(results) as client:
-        monkeypatch.setattr(client.app.state.service.atlas, "is_open", lambda *_: 1 / 0)
+        monkeypatch.setattr(client.app.state.service.cubes, "is_open", lambda *_: 1 / 0)
         together = asyncio.run(_all_at_once(client.app, [POINT, POINT | {"slenderness": 0.5}]))
     assert [status for status, _ in together] == [500, 500]
 
@@ -298,14 +298,14 @@ def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
     assert longest < 0.1
 
 
-def _count_calls(atlas):
-    calls, respond = [], atlas.response
+def _count_calls(cubes):
+    calls, respond = [], cubes.response
 
     def counted(*args, **kwargs):
         calls.append(args)
         return respond(*args, **kwargs)
 
-    atlas.response = counted
+    cubes.response = counted
     return calls
 
 

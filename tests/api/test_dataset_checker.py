@@ -17,12 +17,12 @@ def test_data_sets_left_are_counted_one_by_one(monkeypatch):
         turn.acquire()
         return "damaged" if name == NAMES[1] else None
 
-    atlas = SimpleNamespace(
+    cubes = SimpleNamespace(
         catalogue=SimpleNamespace(names=lambda: NAMES), problem=problem, problems=lambda: {NAMES[1]: "damaged"}
     )
 
     async def counted():
-        inspection, seen = DatasetChecker(atlas), []
+        inspection, seen = DatasetChecker(cubes), []
         for left in (3, 2, 1, 0):
             while (state := await inspection.state()).unchecked > left:
                 pass

@@ -39,14 +39,14 @@ class MicroBatcher:
 
     Parameters
     ----------
-    atlas : CubeCollection
+    cubes : CubeCollection
         Source of the results.
     executor : BoundedExecutor
         For work that takes too long for the event loop.
     """
 
-    def __init__(self, atlas: CubeCollection, executor: BoundedExecutor) -> None:
-        self._atlas = atlas
+    def __init__(self, cubes: CubeCollection, executor: BoundedExecutor) -> None:
+        self._cubes = cubes
         self._executor = executor
         self._loop: asyncio.AbstractEventLoop
         self._waiting: dict[Hashable, list[PendingRequest]] = {}
@@ -86,7 +86,7 @@ class MicroBatcher:
         first = params_list[0]
         try:
             is_read = first.method == "solver" or self._is_open(first.pulse, first.restitution)
-        except Exception as error:  # noqa: BLE001  (nobody may wait for ever)
+        except Exception as error:  # noqa: BLE001  (no request may wait without end)
             _deliver(group, [error] * len(group))
             return
         if is_read and first.restitution <= MAX_INLINE_RESTITUTION:
@@ -100,7 +100,7 @@ class MicroBatcher:
         """Whether the data set is open; the folder is looked at once in `OPEN_CHECK_SECONDS`."""
         now = time.monotonic()
         known = self._open.get((pulse, restitution), 0.0) > now - OPEN_CHECK_SECONDS
-        if known or not self._atlas.is_open(pulse, restitution):
+        if known or not self._cubes.is_open(pulse, restitution):
             return known
         if len(self._open) > BATCH_SIZE:
             self._open.clear()
@@ -111,7 +111,7 @@ class MicroBatcher:
         """Evaluate in a thread: a data set has to be read first, or blocks may have many impacts."""
         try:
             _deliver(group, await self._executor.run(partial(self._results, params_list)))
-        except Exception as error:  # noqa: BLE001  (nobody may wait for ever)
+        except Exception as error:  # noqa: BLE001  (no request may wait without end)
             _deliver(group, [error] * len(group))
 
     def _results(
@@ -120,14 +120,14 @@ class MicroBatcher:
         """The result of each request, or its error."""
         try:
             found, versions = evaluate(
-                self._atlas,
+                self._cubes,
                 params_list[0],
                 slenderness=[params.slenderness for params in params_list],
                 frequency_ratio=[params.frequency_ratio for params in params_list],
                 restitution=params_list[0].restitution,
                 stop=stop,
             )
-        except Exception as error:  # noqa: BLE001  (whatever it is, it is for those who asked)
+        except Exception as error:  # noqa: BLE001  (any error belongs to the requests)
             if len(params_list) == 1:
                 return [error]
             return [

@@ -17,7 +17,7 @@ SEARCH_FACTOR = 10.0
 def margins_of(
     params: BlockParams,
     block: Block,
-    asked: ResponseParams,
+    dimensionless: ResponseParams,
     accelerations: list[float],
     seconds: float,
     stop: StopFlag,
@@ -26,12 +26,12 @@ def margins_of(
 
     None if the search over periods exceeds the time `seconds` [s].
     """
-    omega = asked.frequency_ratio
+    omega = dimensionless.frequency_ratio
     low, high = (
         max(omega / SEARCH_FACTOR, FREQUENCY_RATIO_RANGE[0]),
         min(omega * SEARCH_FACTOR, FREQUENCY_RATIO_RANGE[1]),
     )
-    groups = {"slenderness": asked.slenderness, "restitution": asked.restitution, "alpha": block.alpha}
+    groups = {"slenderness": dimensionless.slenderness, "restitution": dimensionless.restitution, "alpha": block.alpha}
 
     def search(part: StopFlag) -> FrequencyThresholds:
         return critical_frequency_ratio(params.pulse, **groups, window=(low, high), stop=part)

@@ -19,7 +19,7 @@ from rocking.model.fields import BOUNDED_FIELDS, SOURCE
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import LookupOptions, alpha_of, checked
 
-PIECE = 50_000
+CHUNK_SIZE = 50_000
 """Points between two checks of the stop flag [-]: some hundredths of a second."""
 
 FIELDS: dict[str, DTypeLike] = {field.name: field.dtype for field in BOUNDED_FIELDS if field is not SOURCE}
@@ -38,9 +38,9 @@ class BatchResult:
     fields : arrays by name, shape (points,)
         Those of `FIELDS`.
     from_cube : bool array, shape (points,)
-        Whether a data set answered: a byte in place of the 24 of the name.
+        Whether a point comes from a data set; one byte rather than 24 for the name.
     versions : tuple of str
-        sha256 of each data set that answered some points.
+        sha256 of each data set used.
     """
 
     fields: dict[str, NDArray[Any]]
@@ -49,7 +49,7 @@ class BatchResult:
 
 
 def evaluate(
-    atlas: CubeCollection,
+    cubes: CubeCollection,
     options: LookupOptions,
     *,
     slenderness: ArrayLike,
@@ -66,7 +66,7 @@ def evaluate(
     StoppedError
         If `stop` was set.
     """
-    return atlas.response(
+    return cubes.response(
         options.pulse,
         slenderness=checked("slenderness", slenderness),
         frequency_ratio=checked("frequency_ratio", frequency_ratio),
@@ -79,7 +79,7 @@ def evaluate(
 
 
 def evaluate_many(
-    atlas: CubeCollection, options: LookupOptions, groups: Mapping[str, NDArray[np.float64]], stop: StopFlag
+    cubes: CubeCollection, options: LookupOptions, groups: Mapping[str, NDArray[np.float64]], stop: StopFlag
 ) -> BatchResult:
     """Responses of the points of three arrays of one length.
 
@@ -94,10 +94,10 @@ def evaluate_many(
     fields = {name: np.empty(points, dtype) for name, dtype in FIELDS.items()}
     from_cube = np.empty(points, np.bool_)
     versions: dict[str, None] = {}
-    for start in range(0, max(points, 1), PIECE):
+    for start in range(0, max(points, 1), CHUNK_SIZE):
         stop.check()
-        here = slice(start, start + PIECE)
-        part, met = evaluate(atlas, options, **{name: values[here] for name, values in groups.items()}, stop=stop)
+        here = slice(start, start + CHUNK_SIZE)
+        part, met = evaluate(cubes, options, **{name: values[here] for name, values in groups.items()}, stop=stop)
         for name, values in fields.items():
             values[here] = getattr(part, name)
         from_cube[here] = part.source == "cube"

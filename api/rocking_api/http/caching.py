@@ -23,10 +23,10 @@ def validators(sha256: str, control: str = REVALIDATE) -> dict[str, str]:
 
 def not_modified(request: Request, sha256: str, control: str = REVALIDATE) -> Response | None:
     """304 if the client has this version (If-None-Match: a list, weak tags, or *)."""
-    asked = request.headers.get("if-none-match")
-    if asked is None:
+    requested = request.headers.get("if-none-match")
+    if requested is None:
         return None
-    known = [tag.strip().removeprefix("W/") for tag in asked.split(",")]
+    known = [tag.strip().removeprefix("W/") for tag in requested.split(",")]
     if f'"{sha256}"' in known or "*" in known:
         return Response(status_code=304, headers=validators(sha256, control))
     return None

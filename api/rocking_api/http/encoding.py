@@ -46,10 +46,10 @@ ROWS = 5_000
 _SOURCES = ["cube", "solver"]
 
 
-def negotiated_form(request: Request, asked: Form | None, default: Form = "json") -> Form:
+def negotiated_form(request: Request, requested: Form | None, default: Form = "json") -> Form:
     """Format of the response: as requested, else the first known media type of the Accept header, else the default."""
-    if asked is not None:
-        return asked
+    if requested is not None:
+        return requested
     for part in request.headers.get("accept", "").split(","):
         for form, media_type in MEDIA_TYPES.items():
             if part.split(";")[0].strip() == media_type:

@@ -92,9 +92,9 @@ def without_range(scope: Scope) -> Scope:
 
 
 def _refusal(status: int, headers: dict[bytes, bytes], scope: Scope) -> Response:
-    asked = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"range"), "")
+    requested = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"range"), "")
     extent = headers.get(b"content-range", b"").decode("latin-1")
     allowed = f"bytes 0 to {int(extent.rpartition('/')[2]) - 1}" if extent else "bytes=FIRST-LAST"
-    detail = f"the range `{asked}` cannot be served"
+    detail = f"the range `{requested}` cannot be served"
     kept = {"Content-Range": extent} if extent else None
-    return problem_response(status, detail, kept, parameter="Range", value=asked, allowed=allowed)
+    return problem_response(status, detail, kept, parameter="Range", value=requested, allowed=allowed)

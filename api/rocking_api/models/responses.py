@@ -135,7 +135,7 @@ class HistoryResponse(BaseModel):
     angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
     ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
     impact_time: list[float] = Field(description="tau of the impacts [-]")
-    contact: ContactResponse | None = Field(None, description="null unless asked for")
+    contact: ContactResponse | None = Field(None, description="null unless requested")
     source: str = "solver"
     version: str = VERSION
 

@@ -49,17 +49,17 @@ async def get_block(params: Annotated[BlockParams, Query()], request: Request, s
 
 def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse:
     block = Block(params.half_width, params.half_height, params.gravity)
-    asked = _in_groups(params, block)
-    points = {name: getattr(asked, name) for name in ("slenderness", "frequency_ratio", "restitution")}
-    (point,) = point_results(*evaluate(service.atlas, asked, **points, stop=stop))
+    dimensionless = _in_groups(params, block)
+    points = {name: getattr(dimensionless, name) for name in ("slenderness", "frequency_ratio", "restitution")}
+    (point,) = point_results(*evaluate(service.cubes, dimensionless, **points, stop=stop))
     service.metrics.points(point.source, 1)
-    found = point_response(asked, point)
+    found = point_response(dimensionless, point)
     seconds = SEARCH_SHARE * service.settings.max_seconds
-    found_thresholds = run_with_timeout(lambda part: _thresholds(params, block, asked, part), seconds, stop)
+    found_thresholds = run_with_timeout(lambda part: _thresholds(params, block, dimensionless, part), seconds, stop)
     thresholds = found_thresholds or []
-    margins = margins_of(params, block, asked, [t.peak_acceleration for t in thresholds], seconds, stop)
+    margins = margins_of(params, block, dimensionless, [t.peak_acceleration for t in thresholds], seconds, stop)
     searched = {"peak accelerations": found_thresholds, "periods and sizes": margins}
-    below = _contact_below(thresholds[0].peak_acceleration, params, block, asked, stop) if thresholds else None
+    below = _contact_below(thresholds[0].peak_acceleration, params, block, dimensionless, stop) if thresholds else None
     safe = below is not None and below.rocking_applies
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
     contact = contact_extremes(build_motion(params.pulse, **points, alpha=block.alpha, stop=stop))
@@ -75,7 +75,7 @@ def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockRespon
         alpha_deg=math.degrees(block.alpha),
         half_diagonal=block.half_diagonal,
         frequency_parameter=block.frequency_parameter,
-        restitution=asked.restitution,
+        restitution=dimensionless.restitution,
         uplift_acceleration=block.uplift_acceleration,
         thresholds=found_thresholds,
         largest_safe_acceleration=thresholds[0].peak_acceleration if safe else None,
@@ -112,13 +112,13 @@ def _in_groups(params: BlockParams, block: Block) -> ResponseParams:
     )
 
 
-def _thresholds(params: BlockParams, block: Block, asked: ResponseParams, stop: StopFlag) -> list[Threshold]:
+def _thresholds(params: BlockParams, block: Block, dimensionless: ResponseParams, stop: StopFlag) -> list[Threshold]:
     changes = critical_amplitude(
         params.pulse,
-        frequency_ratio=asked.frequency_ratio,
-        restitution=asked.restitution,
+        frequency_ratio=dimensionless.frequency_ratio,
+        restitution=dimensionless.restitution,
         alpha=block.alpha,
-        highest_amplitude=min(max(HIGHEST_AMPLITUDE, 10.0 / asked.slenderness), 1e6),
+        highest_amplitude=min(max(HIGHEST_AMPLITUDE, 10.0 / dimensionless.slenderness), 1e6),
         stop=stop,
     )
     return [
@@ -168,14 +168,14 @@ def _notes(found: PointResponse, margins: Margins | None) -> list[str]:
 
 
 def _contact_below(
-    acceleration: float, params: BlockParams, block: Block, asked: ResponseParams, stop: StopFlag
+    acceleration: float, params: BlockParams, block: Block, dimensionless: ResponseParams, stop: StopFlag
 ) -> ContactExtremes:
     """Contact of the motion just below a change of outcome."""
     motion = build_motion(
         params.pulse,
         slenderness=block.uplift_acceleration / acceleration * (1.0 + RELATIVE_OFFSET),
-        frequency_ratio=asked.frequency_ratio,
-        restitution=asked.restitution,
+        frequency_ratio=dimensionless.frequency_ratio,
+        restitution=dimensionless.restitution,
         alpha=block.alpha,
         stop=stop,
     )

@@ -28,7 +28,7 @@ async def get_datasets(service: ServiceDep) -> Response:
     """All data sets in the results folder that can be read."""
 
     def work() -> list[DatasetFile]:
-        catalogue = service.atlas.catalogue
+        catalogue = service.cubes.catalogue
         found = []
         for name in catalogue.names():
             with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or unreadable: see /health
@@ -47,7 +47,7 @@ async def get_datasets(service: ServiceDep) -> Response:
     response_class=Response,
     responses={
         200: {"content": {"application/x-netcdf": {}}},
-        206: {"description": "the ranges asked for"},
+        206: {"description": "the requested ranges"},
         304: {"description": "not modified"},
     },
 )
@@ -108,10 +108,10 @@ def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
     DatasetError
         If it is damaged.
     """
-    file = service.atlas.catalogue.open(name)
+    file = service.cubes.catalogue.open(name)
     try:
-        product = service.atlas.catalogue.product_of(file)
-        problem = service.atlas.problem_of(file)
+        product = service.cubes.catalogue.product_of(file)
+        problem = service.cubes.problem_of(file)
         if problem is not None:
             raise DatasetError(problem)
     except BaseException:
@@ -121,7 +121,7 @@ def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
 
 
 def _description(service: Service, name: str) -> DatasetDescription:
-    product, dataset = service.atlas.catalogue.dataset(name)
+    product, dataset = service.cubes.catalogue.dataset(name)
     return DatasetDescription(
         **_summary(product),
         dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},

@@ -63,7 +63,7 @@ def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | Non
     """The curves for the parameters from the data set, and its sha256; None if there are none."""
     # a mirrored pulse overturns the same blocks
     name = f"overturning/{params.pulse.removeprefix('-')}/eta-{params.restitution:.2f}"
-    catalogue = service.atlas.catalogue
+    catalogue = service.cubes.catalogue
     try:
         product, stored = catalogue.dataset(name)
     except (UnknownDatasetError, DatasetError):

@@ -71,7 +71,7 @@ async def _read(request: Request, service: Service, form: Form, reservation: Res
 
 
 def _answered(service: Service, batch: Batch, form: Form, stop: StopFlag) -> Response:
-    result = evaluate_many(service.atlas, batch.options, batch.groups, stop)
+    result = evaluate_many(service.cubes, batch.options, batch.groups, stop)
     from_cubes = int(result.from_cube.sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)

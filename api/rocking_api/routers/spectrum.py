@@ -53,7 +53,7 @@ def _spectrum(
         "frequency_ratio": frequency_ratio,
         "restitution": np.broadcast_to(np.float64(params.restitution), shape),
     }
-    result = evaluate_many(service.atlas, params, groups, stop)
+    result = evaluate_many(service.cubes, params, groups, stop)
     query = params.model_dump(exclude={"format"})
     if form == "nc":
         attributes = {name: value for name, value in query.items() if value is not None}
