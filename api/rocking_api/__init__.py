@@ -1,1 +1,1 @@
-"""The HTTP service: answers about rocking blocks from the data sets of the workflow and from the solver."""
+"""HTTP service: responses of rocking blocks from the data sets of the workflow and from the solver."""

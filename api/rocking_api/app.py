@@ -16,13 +16,12 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddle
 from starlette.types import ASGIApp
 
 from rocking.lookup.collection import CubeCollection
-from rocking_api.http.fast_path import ShortWay
-from rocking_api.http.in_flight import InFlightLayer
-from rocking_api.http.params_route import QuestionRoute
-from rocking_api.http.problems import RESPONSES, Problem, add_handlers
-from rocking_api.http.request_log import Observer
-from rocking_api.http.zarr_view import ZarrViews
-from rocking_api.models.params import BatchQuestion
+from rocking_api.http.errors import RESPONSES, Problem, add_handlers
+from rocking_api.http.memory_budget import MemoryBudgetMiddleware
+from rocking_api.http.params_route import FastPath, ParamsRoute
+from rocking_api.http.request_log import RequestLog
+from rocking_api.http.zarr_store import ZarrStores
+from rocking_api.models.params import BatchParams
 from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
     blocks,
@@ -49,9 +48,9 @@ ROUTES = (
 
 
 class Application(FastAPI):
-    """FastAPI with layers around its own: what they answer takes no way through those.
+    """FastAPI with outer middleware: a response made there does not pass through the middleware of FastAPI.
 
-    An error that gets out of FastAPI's layers comes to these as an exception.
+    An error that leaves the stack of FastAPI reaches the outer middleware as an exception.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -59,7 +58,7 @@ class Application(FastAPI):
         self.outer_layers: list[Middleware] = []
 
     def add_outer_layer(self, kind: Callable[..., ASGIApp], **options: Any) -> None:
-        """Put a layer around all that are there."""
+        """Add a middleware around those added before."""
         self.outer_layers.append(Middleware(kind, **options))
 
     def build_middleware_stack(self) -> ASGIApp:
@@ -77,7 +76,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     app = Application(
         title="rocking",
         version=VERSION,
-        summary="Does the block fall, and how far does it rock?",
+        summary="Does the block overturn, and how far does it rock?",
         description="Response of the free-standing rigid block to pulse ground motion, each number with its error "
         "bound and its source. Errors are problem+json (RFC 9457).",
         docs_url=None,
@@ -85,16 +84,16 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         lifespan=_lifespan,
         responses=RESPONSES,
     )
-    atlas = CubeCollection(settings.results)
-    service = app.state.service = Service(settings, atlas, ZarrViews(atlas.catalogue))
-    # data sets are compressed already, and a compressed answer has no ranges
+    cubes = CubeCollection(settings.results)
+    service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
+    # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream")
-    app.add_middleware(InFlightLayer, in_flight=service.in_flight)  # inside: what is compressed was held as a whole
+    app.add_middleware(MemoryBudgetMiddleware, budget=service.memory_budget)  # counts before compression
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
-    short = [route for route in response.router.routes if isinstance(route, QuestionRoute)]
-    app.add_outer_layer(ShortWay, routes=short)
+    short = [route for route in response.router.routes if isinstance(route, ParamsRoute)]
+    app.add_outer_layer(FastPath, routes=short)
     if settings.cors_origins:
         app.add_outer_layer(
             CORSMiddleware,
@@ -102,7 +101,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
-    app.add_outer_layer(Observer, metrics=service.metrics, access_log=settings.access_log)
+    app.add_outer_layer(RequestLog, metrics=service.metrics, access_log=settings.access_log)
     app.state.when_ready = when_ready
     add_handlers(app)
     for module in ROUTES:
@@ -117,18 +116,22 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     """Load the solver in the background, so that the first request need not wait for it."""
     service: Service = app.state.service
     async with anyio.create_task_group() as background:
-        background.start_soon(_look_around, service, app.state.when_ready)
+        background.start_soon(_load_kernels, service, app.state.when_ready)
+        background.start_soon(_warn_without_cubes, service)
         yield
         background.cancel_scope.cancel()
     service.executor.close()
 
 
-async def _look_around(service: Service, when_ready: Callable[[], None]) -> None:
-    names = await anyio.to_thread.run_sync(service.atlas.catalogue.names, abandon_on_cancel=True)
-    if not any(name.startswith("spectra/") for name in names):
-        LOG.warning("no spectrum cubes in %s; the solver answers in their place", service.settings.results)
+async def _load_kernels(service: Service, when_ready: Callable[[], None]) -> None:
     await service.kernels.load()
     when_ready()
+
+
+async def _warn_without_cubes(service: Service) -> None:
+    names = await anyio.to_thread.run_sync(service.cubes.catalogue.names, abandon_on_cancel=True)
+    if not any(name.startswith("spectra/") for name in names):
+        LOG.warning("no spectrum cubes in %s; the solver is used instead", service.settings.results)
 
 
 def _describe_bodies(app: FastAPI) -> None:
@@ -138,7 +141,7 @@ def _describe_bodies(app: FastAPI) -> None:
     def described() -> dict[str, object]:
         if app.openapi_schema is None:
             schemas = generate()["components"]["schemas"]
-            for model in (Problem, BatchQuestion):
+            for model in (Problem, BatchParams):
                 schemas[model.__name__] = model.model_json_schema()
         return generate()
 

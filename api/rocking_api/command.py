@@ -1,4 +1,4 @@
-"""What `rocking serve` calls, found through the entry point `serve` of the group `rocking.commands`."""
+"""The command `rocking serve`, found through the entry point `serve` of the group `rocking.commands`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Data sets are read and checked behind the scenes, one by one: a request need not wait for a folder of gigabytes."""
+"""Reads and checks data sets in the background, so that no request waits for a folder of gigabytes."""
 
 from __future__ import annotations
 
@@ -11,53 +11,53 @@ import anyio.to_thread
 from rocking.datasets.catalogue import UnknownDatasetError
 from rocking.lookup.collection import CubeCollection
 
-PATIENCE = 0.1
-"""How long a request waits for the check to end [s]."""
+MAX_WAIT = 0.1
+"""How long a request waits for the check to finish [s]."""
 
 
 class State(NamedTuple):
-    """What is known of the data sets."""
+    """Result of the check so far."""
 
     names: list[str]
     unchecked: int
     problems: dict[str, str]
 
 
-class Inspection:
-    """Checks every data set once per version of its file, whenever somebody asks.
+class DatasetChecker:
+    """Checks every data set once per version of its file, on request.
 
     Parameters
     ----------
-    atlas : CubeCollection
-        Whose data sets.
+    cubes : CubeCollection
+        Cubes and catalogue of the results folder.
     """
 
-    def __init__(self, atlas: CubeCollection) -> None:
-        self._atlas = atlas
+    def __init__(self, cubes: CubeCollection) -> None:
+        self._cubes = cubes
         self._task: asyncio.Task[None] | None = None
         self._state = State([], 0, {})
 
     async def state(self) -> State:
-        """All is known, or what is known after `PATIENCE`."""
+        """The complete result, or the result so far after `MAX_WAIT`."""
         if self._task is None or self._task.done():
-            names = await anyio.to_thread.run_sync(self._atlas.catalogue.names)
+            names = await anyio.to_thread.run_sync(self._cubes.catalogue.names)
             self._state = State(names, len(names), {})
             self._task = asyncio.create_task(self._check(names))
-        await asyncio.wait({self._task}, timeout=PATIENCE)
+        await asyncio.wait({self._task}, timeout=MAX_WAIT)
         if self._task.done():
-            self._task.result()  # an error inside is the asker's to hear
+            self._task.result()  # raises an error of the check
         return self._state
 
     async def _check(self, names: list[str]) -> None:
         problems: dict[str, str] = {}
         for k, name in enumerate(names):
             try:
-                problem = await anyio.to_thread.run_sync(partial(self._atlas.problem, name))
+                problem = await anyio.to_thread.run_sync(partial(self._cubes.problem, name))
             except UnknownDatasetError:
-                problem = None  # it went away meanwhile
+                problem = None  # removed meanwhile
             if problem is not None:
                 problems[name] = problem
             self._state = State(names, len(names) - k - 1, problems)
-        # with what is wrong with the folder as a whole; the files are known by now
-        problems = await anyio.to_thread.run_sync(self._atlas.problems)
+        # includes problems of the folder itself; the files are checked by now
+        problems = await anyio.to_thread.run_sync(self._cubes.problems)
         self._state = State(names, 0, problems)

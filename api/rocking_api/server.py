@@ -1,58 +1,71 @@
-"""The server process: uvicorn, one event loop, guarded connections, JSON logs, an orderly end."""
+"""The server process: uvicorn with one event loop, connection limits, JSON logs and graceful shutdown."""
 
 from __future__ import annotations
 
+import ctypes
 import gc
-import logging
+from contextlib import suppress
 
 import uvicorn
 
 from rocking_api.app import create_app
-from rocking_api.http.limits import guarded
-from rocking_api.http.logs import CONFIG
+from rocking_api.http.connection import limited_protocol
+from rocking_api.http.request_log import CONFIG
 from rocking_api.settings import Settings
 
-GARBAGE = 20_000
-"""Objects made and not freed that make the collector look for circles [-]."""
+GC_THRESHOLD = 20_000
+"""Net allocations that start a garbage collection [-]."""
+
+
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
+"""Parameters of `mallopt`, from glibc's malloc.h."""
+
+LARGE_BLOCK = 1_000_000
+"""Bytes of memory that are returned to the operating system when they are freed."""
 
 
 def serve(settings: Settings, host: str, port: int) -> None:
-    """Answer until SIGINT or SIGTERM; then running requests are granted `stop_seconds`, and new ones refused.
+    """Serve until SIGINT or SIGTERM; then finish running requests within `stop_seconds`, and refuse new ones.
 
     Parameters
     ----------
     settings : Settings
         Of the service.
     host, port : str, int
-        Where to listen; port 0 takes a free one and logs it.
+        Address; port 0 takes a free one and logs it.
     """
-    _lean_logging()
-    _lean_collector()
+    _tune_garbage_collector()
+    _return_freed_memory()
     uvicorn.run(
         create_app(settings, when_ready=gc.freeze),
         host=host,
         port=port,
-        http=guarded(settings.arrival_seconds, settings.max_header_bytes, settings.reading_seconds),
+        http=limited_protocol(settings.arrival_seconds, settings.max_header_bytes, settings.reading_seconds),
         ws="none",
         log_config=CONFIG,
-        access_log=False,  # the observer writes it
+        access_log=False,  # written by RequestLog
         server_header=False,
         timeout_graceful_shutdown=settings.stop_seconds,
     )
 
 
-def _lean_collector() -> None:
-    """Take what was imported out of the collector's sight: to look through it all stops everything for 0.1 s and more.
+def _return_freed_memory() -> None:
+    """Make glibc return freed blocks of a megabyte and more to the operating system at once.
 
-    So it is with the kernels once they are loaded. What requests leave behind is looked through once in some hundred of
-    them, not after each few.
+    By default it raises that threshold to 32 MB and keeps freed memory. Twenty clients that requested 500,000 points
+    each and read nothing add at most 73 to 125 MB rather than 138 to 201 MB, and 42 to 49 MB of it remain.
+    """
+    with suppress(OSError, AttributeError):  # another C library
+        for parameter in (M_TRIM_THRESHOLD, M_MMAP_THRESHOLD):
+            ctypes.CDLL(None).mallopt(parameter, LARGE_BLOCK)
+
+
+def _tune_garbage_collector() -> None:
+    """Exclude imported objects from garbage collection, and collect less often.
+
+    A full collection of them pauses the event loop for 0.1 to 0.3 s, for example while kernels are loaded. The kernels
+    are excluded once they are loaded. The throughput is the same without.
     """
     gc.collect()
     gc.freeze()
-    gc.set_threshold(GARBAGE)
-
-
-def _lean_logging() -> None:
-    """Have no record look up what our lines do not tell: the caller, the thread, the process."""
-    logging._srcfile = None  # the way that Python's logging HOWTO names, as the flags below
-    logging.logThreads = logging.logProcesses = logging.logMultiprocessing = False
+    gc.set_threshold(GC_THRESHOLD)

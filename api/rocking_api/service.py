@@ -1,4 +1,4 @@
-"""What the routes share: settings, data sets, counts, and places for work outside the event loop."""
+"""State shared by the routes: settings, data sets, metrics, executors."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
 from rocking.lookup.collection import CubeCollection
-from rocking_api.dataset_checker import Inspection
-from rocking_api.execution.batching import Together
+from rocking_api.dataset_checker import DatasetChecker
+from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
-from rocking_api.http.in_flight import InFlight
+from rocking_api.http.memory_budget import MemoryBudget
 from rocking_api.http.metrics import Metrics
-from rocking_api.http.zarr_view import ZarrViews
-from rocking_api.models.params import Question
+from rocking_api.http.zarr_store import ZarrStores
+from rocking_api.models.params import Params
 from rocking_api.settings import Settings
 
 T = TypeVar("T")
@@ -29,46 +29,48 @@ class Service:
     """One per application, made in `create_app`."""
 
     settings: Settings
-    atlas: CubeCollection
-    zarr_views: ZarrViews
-    together: Together = field(init=False)
+    cubes: CubeCollection
+    zarr_stores: ZarrStores
+    batcher: MicroBatcher = field(init=False)
     kernels: Kernels = field(init=False)
     executor: BoundedExecutor = field(init=False)
     metrics: Metrics = field(init=False)
-    inspection: Inspection = field(init=False)
-    reader: CapacityLimiter = field(init=False)
-    in_flight: InFlight = field(init=False)
+    dataset_checker: DatasetChecker = field(init=False)
+    io_limiter: CapacityLimiter = field(init=False)
+    large_body_limiter: CapacityLimiter = field(init=False)
+    memory_budget: MemoryBudget = field(init=False)
 
     def __post_init__(self) -> None:
         settings = self.settings
-        # a thread of its own: a question about one block does not wait behind heavy work
-        alone = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
-        self.together = Together(self.atlas, alone)
+        # a separate thread: requests for one block do not wait for heavy work
+        single = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
+        self.batcher = MicroBatcher(self.cubes, single)
         self.kernels = Kernels(settings.max_seconds)
         self.executor = BoundedExecutor(settings.max_workers, settings.max_queue, settings.max_seconds)
         self.metrics = Metrics(self.executor)
-        self.inspection = Inspection(self.atlas)
-        self.reader = CapacityLimiter(settings.max_workers)
-        self.in_flight = InFlight(settings.max_bytes_in_flight)
+        self.dataset_checker = DatasetChecker(self.cubes)
+        self.io_limiter = CapacityLimiter(settings.max_workers)
+        self.large_body_limiter = CapacityLimiter(1)
+        self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
 
-    async def off_loop(self, question: Question, work: Work[T], request: Request) -> T:
-        """Have heavy work done for a request, its body read, see `BoundedExecutor.run`.
+    async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
+        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`.
 
         Raises
         ------
         InvalidArgumentError
-            At once, if the question is out of range.
+            At once, if a parameter is out of range.
         """
-        question.check()
+        params.check()
         await self.kernels.wait()
         return await self.executor.run(work, request)
 
-    async def reading(self, work: Callable[[], T]) -> T:
-        """Have files and bodies read: this does not wait behind heavy work."""
-        return await anyio.to_thread.run_sync(work, limiter=self.reader)
+    async def run_io(self, work: Callable[[], T], large: bool = False) -> T:
+        """Read files and parse bodies in a thread, independent of heavy work; large bodies one at a time."""
+        return await anyio.to_thread.run_sync(work, limiter=self.large_body_limiter if large else self.io_limiter)
 
 
-async def _service(request: Request) -> Service:  # async: a plain function would cost a thread hop per request
+async def _service(request: Request) -> Service:  # async: FastAPI would run a plain function in a thread
     found: Service = request.app.state.service
     return found
 

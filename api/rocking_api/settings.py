@@ -9,34 +9,40 @@ from pydantic import BeforeValidator, Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 
-def _named(folder: Any) -> Any:
-    if folder == "":  # Path("") is the current folder, whose files nobody asked to publish
+def _nonempty(folder: Any) -> Any:
+    if folder == "":  # Path("") is the current folder, which must not be published by accident
         raise ValueError("the name of a folder")
     return folder
 
 
 class Settings(BaseSettings):
-    """What may differ between two services; `cors_origins` is empty unless asked for."""
+    """Settings of one service; `cors_origins` is empty by default."""
 
     model_config = SettingsConfigDict(env_prefix="ROCKING_", frozen=True, extra="forbid")
 
-    results: Annotated[Path, BeforeValidator(_named)] = Field(
+    results: Annotated[Path, BeforeValidator(_nonempty)] = Field(
         default=Path("results"), description="folder that the workflow filled"
     )
-    max_points: int = Field(default=1_000_000, ge=1, description="most points of one batch")
+    max_points: int = Field(default=1_000_000, ge=1, description="largest number of points of a batch")
     max_body_bytes: int = Field(default=64 * 1024 * 1024, ge=1, description="largest body of a request")
     max_header_bytes: int = Field(default=32 * 1024, ge=1024, description="largest URL and headers of a request")
-    max_samples: int = Field(default=100_000, ge=2, description="most samples of one time history or spectrum")
-    max_workers: int = Field(default=2, ge=1, description="requests of heavy work (all but one block) done at once")
+    max_samples: int = Field(
+        default=100_000, ge=2, description="largest number of samples of a time history or spectrum"
+    )
+    max_workers: int = Field(default=2, ge=1, description="concurrent requests of heavy work (all but one block)")
     max_queue: int = Field(default=16, ge=0, description="requests of heavy work that may wait; more are refused")
-    max_seconds: float = Field(default=60.0, gt=0.0, description="what a request of heavy work is granted [s]")
+    max_seconds: float = Field(default=60.0, gt=0.0, description="time limit of a request of heavy work [s]")
     max_bytes_in_flight: int = Field(
-        default=64 * 1024 * 1024, ge=1, description="bodies that arrive and answers not yet read, all together [bytes]"
+        default=64 * 1024 * 1024,
+        ge=1,
+        description="limit of bodies, batches and unread responses, all together [bytes]",
     )
-    arrival_seconds: float = Field(default=20.0, gt=0.0, description="what headers, and a body, may take to arrive [s]")
+    arrival_seconds: float = Field(
+        default=20.0, gt=0.0, description="time for the headers, and for a body, to arrive [s]"
+    )
     reading_seconds: float = Field(
-        default=20.0, gt=0.0, description="what a client that does not read is waited for [s]"
+        default=15.0, gt=0.0, description="time after which a client that does not read is disconnected [s]"
     )
-    stop_seconds: int = Field(default=30, ge=1, description="what running requests are granted when it is stopped [s]")
+    stop_seconds: int = Field(default=30, ge=1, description="time for running requests at shutdown [s]")
     access_log: bool = Field(default=True, description="one line of JSON for each request")
-    cors_origins: tuple[str, ...] = Field(default=(), description="web origins that may read the answers")
+    cors_origins: tuple[str, ...] = Field(default=(), description="web origins that may read the responses")

@@ -36,14 +36,14 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def client(results):
-    """A client of the service over the results; no exception inside may escape."""
+    """A client of the service over the results; internal exceptions become responses."""
     with TestClient(create_app(Settings(results=results)), raise_server_exceptions=False) as client:
         yield client
 
 
 @pytest.fixture
 def own_results(results, tmp_path):
-    """A copy of the results that a test may damage."""
+    """A copy of the results that a test may change."""
     return shutil.copytree(results, tmp_path / "results")
 
 
@@ -53,7 +53,7 @@ def client_of(results, **settings):
 
 
 def assert_problem(response, status, parameter=None):
-    """The three parts of a refusal."""
+    """Assert a problem+json response with status, parameter and allowed values."""
     assert response.status_code == status, response.text
     assert response.headers["content-type"] == "application/problem+json"
     problem = response.json()

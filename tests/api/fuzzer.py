@@ -26,10 +26,10 @@ from rocking_api.settings import Settings
 from rocking.excitation.pulses import PULSE_NAMES
 
 GRANTED = 1.0
-"""What a request of heavy work is granted [s]."""
+"""Time limit of a request of heavy work [s]."""
 
 SLOW = 5.0
-"""What no answer may take but those of 503 and 504 [s]."""
+"""Largest time of a response other than 503 and 504 [s]."""
 
 NUMBERS = {
     "slenderness": (1e-9, 3.0),
@@ -114,7 +114,7 @@ class Sent(NamedTuple):
 
 
 class Received(NamedTuple):
-    """Its answer."""
+    """A response."""
 
     status: int
     headers: dict[str, str]
@@ -222,7 +222,7 @@ def _body(draw: random.Random) -> tuple[bytes, str, str]:
 
 
 async def answer(app, sent: Sent) -> Received:
-    """Ask the application as uvicorn would."""
+    """Send a request to the application as uvicorn would."""
     scope = {
         "type": "http",
         "asgi": {"version": "3.0", "spec_version": "2.3"},
@@ -261,9 +261,9 @@ async def answer(app, sent: Sent) -> Received:
 
 
 def fault(sent: Sent, got: Received) -> str | None:
-    """What is wrong with an answer."""
+    """Faults of a response."""
     if sent.leaves:
-        return None  # nobody hears the answer
+        return None  # the client has disconnected
     if got.status == 0:
         return "no answer"
     if got.status >= 500 and got.status not in (503, 504):
@@ -290,9 +290,9 @@ def fault(sent: Sent, got: Received) -> str | None:
 
 
 async def ask_all(results: Path, seed: int, first: int, count: int, together: int = 4) -> tuple[Counter, list[str]]:
-    """Statuses, and what is wrong: answers, and errors that the service logged."""
+    """Statuses and faults of the responses, and errors that the service logged."""
     app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
-    names = app.state.service.atlas.catalogue.names()
+    names = app.state.service.cubes.catalogue.names()
     statuses: Counter = Counter()
     faults: list[str] = []
     left = iter(range(first, first + count))

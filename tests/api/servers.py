@@ -25,12 +25,12 @@ class Server:
         return f"http://127.0.0.1:{self.port}"
 
     def stop(self, seconds=30):
-        """As a service manager does; the exit status."""
+        """Stop it with SIGTERM; returns the exit status."""
         self.process.send_signal(signal.SIGTERM)
         return self.process.wait(timeout=seconds)
 
     def _port(self):
-        """The port that the server took, which it says in its log when it listens."""
+        """The port, from the log line of the server when it listens."""
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and self.process.poll() is None:
             listening = re.search(r"running on http://127\.0\.0\.1:(\d+)", self.log.read_text())
@@ -42,7 +42,7 @@ class Server:
 
 @contextmanager
 def serving(results, log, command=(sys.executable, "-m", "rocking.cli"), cwd=ROOT, **environment):
-    """`rocking serve` in a process of its own on a free port."""
+    """`rocking serve` in a separate process on a free port."""
     arguments = [*command, "serve", "--port", "0", "--results", str(results)]
     with (
         log.open("w") as output,

@@ -23,7 +23,7 @@ def ask(client, **changes):
     return client.get("/v1/blocks/response", params=QUESTION | changes)
 
 
-def test_the_answer_is_the_solver_s_in_si_units(client):
+def test_the_response_equals_the_solver_in_si_units(client):
     answer = ask(client).json()
     block = Block(0.2, 0.8)
     truth = peak_response(
@@ -50,13 +50,13 @@ def test_golden_thresholds_of_the_rigid_block(client):
     assert answer["largest_safe_acceleration"] == answer["thresholds"][0]["peak_acceleration"]
 
 
-def test_a_block_that_falls(client):
+def test_a_block_that_overturns(client):
     answer = ask(client, peak_acceleration=8.0).json()
     assert answer["overturned"]
     assert answer["peak_rotation_deg"] is answer["top_displacement"] is None
 
 
-def test_a_weak_pulse_moves_nothing(client):
+def test_a_weak_pulse_causes_no_uplift(client):
     answer = ask(client, peak_acceleration=2.0, restitution=0.9).json()
     assert answer["response"]["outcome"] == "NO_UPLIFT"
     assert answer["peak_rotation_deg"] == 0.0
@@ -95,7 +95,7 @@ def test_friction_through_the_motion(client):
         ({"peak_acceleration": 2.6, "restitution": 0.5}, "impacts accumulate", False),
     ],
 )
-def test_doubts_are_told(client, changes, words, overturned):
+def test_warnings(client, changes, words, overturned):
     answer = ask(client, **changes).json()
     assert answer["overturned"] is overturned
     assert any(words in warning for warning in answer["warnings"])
@@ -138,7 +138,7 @@ def test_the_largest_safe_acceleration_holds_for_this_size_only(client):
     assert large["largest_safe_acceleration"] == pytest.approx(0.496 * STANDARD_GRAVITY, rel=1e-3)
     assert small["overturned"]
     assert small["largest_safe_acceleration"] < 0.45 * STANDARD_GRAVITY < large["largest_safe_acceleration"]
-    said = client.get("/openapi.json").json()["components"]["schemas"]["BlockAnswer"]["properties"]
+    said = client.get("/openapi.json").json()["components"]["schemas"]["BlockResponse"]["properties"]
     assert "this block, of this size" in said["largest_safe_acceleration"]["description"]
 
 
@@ -157,7 +157,7 @@ def test_the_largest_safe_acceleration_comes_with_its_friction(client):
         ({"peak_acceleration": 3 * STANDARD_GRAVITY}, "would slide: "),  # and overturns, if held against sliding
     ],
 )
-def test_where_the_rocking_model_does_not_apply_the_first_sentence_says_so(client, changes, first):
+def test_the_meaning_starts_with_the_rocking_model_not_applying(client, changes, first):
     answer = ask(client, **changes).json()
     assert not answer["rocking_model_applies"]
     assert answer["meaning"].startswith(first)
@@ -176,7 +176,7 @@ def test_no_acceleration_is_called_safe_where_the_rocking_model_does_not_apply(c
     assert any("no largest safe acceleration" in warning for warning in answer["warnings"])
 
 
-def test_a_squat_block_that_does_not_uplift_is_answered(client):
+def test_a_squat_block_that_does_not_uplift_has_a_response(client):
     """2 m x 1 m under 1.2 g: it uplifts from 2 g on, and no impact asks for the negative restitution of (2.4)."""
     squat = {"half_width": 1.0, "half_height": 0.5}
     answer = ask(client, **squat, peak_acceleration=1.2 * STANDARD_GRAVITY).json()
@@ -204,7 +204,7 @@ def overturned(client, **changes):
 
 
 @pytest.mark.parametrize("peak_acceleration", [4.0, 4.8, 13.5, 20.0])
-def test_margins_are_where_the_fate_changes_next(client, peak_acceleration):
+def test_margins_are_the_nearest_changes_of_outcome(client, peak_acceleration):
     margins = ask(client, peak_acceleration=peak_acceleration).json()["margins"]
     here = overturned(client, peak_acceleration=peak_acceleration)
     for name, value, factor in (
@@ -225,45 +225,45 @@ def test_sizes_of_the_shape_that_survive(client):
     margins = ask(client).json()["margins"]
     block = Block(0.2, 0.8)
 
-    def falls(half_diagonal):
+    def overturns(half_diagonal):
         scale = half_diagonal / block.half_diagonal
         return overturned(client, half_width=0.2 * scale, half_height=0.8 * scale)
 
-    smallest, steadily = margins["smallest_surviving_half_diagonal"], margins["surviving_from_half_diagonal"]
-    assert falls(smallest * (1 - 1e-9))
-    assert not falls(smallest * (1 + 1e-9))
-    assert falls(steadily * (1 - 1e-9))
-    assert not falls(steadily * (1 + 1e-9))
-    assert not any(falls(steadily * factor) for factor in (1.01, 2, 10, 50))
-    assert all(falls(smallest / factor) for factor in (1.01, 2, 8))
-    assert any("larger ones that fall" in note for note in ask(client).json()["notes"])
+    smallest, from_here_on = margins["smallest_surviving_half_diagonal"], margins["surviving_from_half_diagonal"]
+    assert overturns(smallest * (1 - 1e-9))
+    assert not overturns(smallest * (1 + 1e-9))
+    assert overturns(from_here_on * (1 - 1e-9))
+    assert not overturns(from_here_on * (1 + 1e-9))
+    assert not any(overturns(from_here_on * factor) for factor in (1.01, 2, 10, 50))
+    assert all(overturns(smallest / factor) for factor in (1.01, 2, 8))
+    assert any("larger ones overturn" in note for note in ask(client).json()["notes"])
     low, high = margins["sizes_searched"]
     assert low == pytest.approx(block.half_diagonal / 100)
     assert high == pytest.approx(block.half_diagonal * 100)
 
 
-def test_a_pulse_that_moves_nothing_has_no_margin_in_period(client):
+def test_a_pulse_without_uplift_has_no_margin_in_period(client):
     margins = ask(client, peak_acceleration=2.0).json()["margins"]
     assert margins["nearest_period"] is margins["period_factor"] is None
     assert margins["smallest_surviving_half_diagonal"] == margins["surviving_from_half_diagonal"]
     assert margins["nearest_acceleration"] > 2.0
 
 
-def test_the_url_repeats_the_question(client):
+def test_the_url_repeats_the_request(client):
     answer = ask(client, pulse="-cosine", restitution=0.9, gravity=3.71).json()
     assert client.get(answer["url"]).json() == answer
 
 
-def test_a_change_of_fate_close_in_period_is_a_doubt(client):
+def test_a_change_of_outcome_close_in_period_is_a_warning(client):
     answer = ask(client, pulse_period=0.55).json()
     assert any("5 % of this period: at 0.5681 s" in warning for warning in answer["warnings"])
 
 
-def test_an_answer_outside_of_the_data_sets_says_so(client):
-    assert any("solver answered" in note for note in ask(client).json()["notes"])
+def test_a_response_outside_of_the_data_sets_has_a_note(client):
+    assert any("the solver was used" in note for note in ask(client).json()["notes"])
 
 
-def test_a_search_that_takes_too_long_leaves_the_rest_of_the_answer(client, monkeypatch):
+def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, monkeypatch):
     whole = ask(client).json()
     monkeypatch.setattr(blocks, "SEARCH_SHARE", 0.0)
     answer = ask(client).json()
@@ -273,11 +273,11 @@ def test_a_search_that_takes_too_long_leaves_the_rest_of_the_answer(client, monk
         assert answer[name] == whole[name]
 
 
-def test_an_elastic_block_that_strikes_without_number_is_answered(results):
+def test_an_elastic_block_with_many_impacts_has_a_response(results):
     """A hundred thousand impacts for each amplitude that is looked at: minutes of work."""
     needle = {"half_width": 1e-4, "half_height": 450.0, "pulse": "c1", "peak_acceleration": 1e-6, "pulse_period": 450.0}
     with client_of(results, max_seconds=10.0) as client:
         answer = ask(client, **needle).json()
     assert answer["response"]["outcome"] == "NO_UPLIFT"
     assert answer["thresholds"] is None
-    assert "the peak accelerations at which the fate changes were not found in time" in answer["warnings"][-1]
+    assert "the peak accelerations at which the outcome changes were not found in time" in answer["warnings"][-1]

@@ -1,4 +1,4 @@
-"""A real server against clients that are slow, long-winded or broken, and its orderly end."""
+"""A server with slow and malformed clients, and its shutdown."""
 
 import json
 import socket
@@ -40,7 +40,7 @@ def whole_answer_of(connection):
         while part := connection.recv(65536):
             received += part
     except ConnectionResetError:
-        pass  # it closed while we were still talking
+        pass  # closed while the client was sending
     head, _, body = bytes(received).partition(b"\r\n\r\n")
     return (int(head.split()[1]) if head else None), head.lower(), body
 
@@ -61,21 +61,21 @@ def _drip(connection):
             connection.sendall(b"a")
             time.sleep(0.1)
     except OSError:
-        pass  # the server has had enough
+        pass  # the server has closed the connection
 
 
-def test_a_connection_that_says_nothing_is_closed(connection):
+def test_an_idle_connection_is_closed(connection):
     assert answer_of(connection)[0] == 408
 
 
-def test_slow_clients_do_not_hold_up_others(server):
+def test_slow_clients_do_not_delay_others(server):
     slow = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(200)]
     try:
         for one in slow:
             one.sendall(b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n{")
         began = time.monotonic()
         assert httpx2.get(server.address + POINT).status_code == 200
-        assert time.monotonic() - began < 0.9  # before the others are given up
+        assert time.monotonic() - began < 0.9  # before the others time out
     finally:
         for one in slow:
             one.close()
@@ -89,13 +89,13 @@ def test_a_body_that_does_not_arrive_is_408(connection):
 
 
 @pytest.mark.parametrize("part", ["header", "headers", "url"])
-def test_headers_without_measure_are_431(connection, part):
+def test_too_large_headers_are_431(connection, part):
     start = {
         "header": b"GET /health HTTP/1.1\r\nHost: x\r\nX-Long: " + b"a" * 20_000,
         "headers": b"GET /health HTTP/1.1\r\nHost: x\r\n" + b"X-Many: a\r\n" * 2000,
         "url": b"GET /health?" + b"a" * 20_000 + b" HTTP/1.1\r\n",
     }[part]
-    with suppress(ConnectionError):  # refused before all was said
+    with suppress(ConnectionError):  # refused before everything was sent
         connection.sendall(start + b"\r\n\r\n")
     status, body = answer_of(connection)
     assert status == 431
@@ -105,7 +105,7 @@ def test_headers_without_measure_are_431(connection, part):
 @pytest.mark.parametrize(
     "said",
     [
-        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),  # somebody else's protocol
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),  # another protocol
         b"GET / HTTP/9.9\r\n\r\n",
         b"GET /\x00 HTTP/1.1\r\n\r\n",
         b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
@@ -125,7 +125,7 @@ def test_what_is_not_http_is_400(connection, said):
 UPGRADE = b"Host: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
 
 
-def test_a_request_to_go_on_in_another_protocol_is_answered_in_this_one(connection, server):
+def test_an_upgrade_request_is_answered_in_http(connection, server):
     connection.sendall(b"GET /health HTTP/1.1\r\n" + UPGRADE + b"\r\n")
     assert connection.recv(65536).startswith(b"HTTP/1.1 200 ")
     connection.sendall(b"GET /nowhere HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
@@ -150,12 +150,12 @@ def test_a_declared_body_beyond_the_limit_is_not_waited_for(connection):
     assert status == 413
 
 
-def test_after_all_this_it_still_answers(server):
+def test_the_server_still_responds(server):
     assert httpx2.get(server.address + POINT).status_code == 200
     assert "Traceback" not in server.log.read_text()
 
 
-def test_requests_in_flight_are_answered_before_the_end(results, tmp_path):
+def test_running_requests_are_finished_at_shutdown(results, tmp_path):
     with serving(results, tmp_path / "log") as server:
         httpx2.get(server.address + POINT)
         answers = []

@@ -1,4 +1,4 @@
-"""GET /v1/critical_amplitude: every amplitude at which the fate changes."""
+"""GET /v1/critical_amplitude: every amplitude at which the outcome changes."""
 
 import pytest
 
@@ -18,7 +18,7 @@ def test_golden_thresholds(client):
 
 
 @pytest.mark.parametrize("alpha_deg", [None, 0, 20])
-def test_it_is_the_package_s(client, alpha_deg):
+def test_thresholds_equal_those_of_the_package(client, alpha_deg):
     asked = QUESTION | ({} if alpha_deg is None else {"alpha_deg": alpha_deg})
     answer = client.get(URL, params=asked).json()
     alpha = 0.3490658503988659 if alpha_deg else None
@@ -28,7 +28,7 @@ def test_it_is_the_package_s(client, alpha_deg):
     assert all(one["slenderness"] == 1 / one["amplitude"] for one in answer["thresholds"])
 
 
-def test_a_low_ceiling_hides_what_is_above_it(client):
+def test_thresholds_above_the_highest_amplitude_are_not_listed(client):
     answer = client.get(URL, params=QUESTION | {"highest_amplitude": 2.0}).json()
     assert answer["thresholds"] == []
     assert answer["largest_safe_amplitude"] is None

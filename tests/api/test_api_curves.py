@@ -1,4 +1,4 @@
-"""GET /v1/spectrum, /v1/overturning and /v1/history, in every form."""
+"""GET /v1/spectrum, /v1/overturning and /v1/history, in every format."""
 
 import csv
 import io
@@ -45,7 +45,7 @@ def test_spectrum_lies_within_its_bounds(client):
         assert peak is None or abs(peak - exact) <= bound
 
 
-def test_the_three_forms_of_a_spectrum_agree(client):
+def test_the_three_formats_of_a_spectrum_agree(client):
     answer = client.get("/v1/spectrum", params=SPECTRUM).json()
     rows = read_csv(client.get("/v1/spectrum", params=SPECTRUM | {"format": "csv"}))
     stored = read_netcdf(client.get("/v1/spectrum", params=SPECTRUM, headers={"accept": "application/x-netcdf"}))
@@ -57,7 +57,7 @@ def test_the_three_forms_of_a_spectrum_agree(client):
     assert stored.attrs["slenderness"] == 0.6
 
 
-def test_curves_are_traced_once_for_all_who_ask(client, monkeypatch):
+def test_traced_curves_are_cached(client, monkeypatch):
     traced = []
 
     def trace(*args, **kwargs):
@@ -86,7 +86,7 @@ def test_overturning_reads_the_curves_of_the_workflow(client, results):
     assert {curve["outcome"] for curve in answer["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
 
 
-def test_overturning_finds_the_curves_of_the_angle_asked_for(own_results):
+def test_overturning_returns_the_curves_of_the_requested_angle(own_results):
     path = own_results / "overturning" / "sine" / "eta-0.85.nc"
     slender = read_dataset(path)
     alpha = np.radians(20)
@@ -114,8 +114,8 @@ def test_overturning_traces_curves_that_are_not_stored(client, changes):
     for s, w in list(zip(curve["slenderness"], curve["frequency_ratio"], strict=True))[::40]:
         beside = s * (1 + np.array([-1e-9, 1e-9]))
         pulse, eta = changes.get("pulse", "sine"), changes.get("restitution", 0.85)
-        fate = peak_response(pulse, slenderness=beside, frequency_ratio=w, restitution=eta).overturned
-        assert fate[0] != fate[1] or s < 0.02
+        overturned = peak_response(pulse, slenderness=beside, frequency_ratio=w, restitution=eta).overturned
+        assert overturned[0] != overturned[1] or s < 0.02
 
 
 def test_damaged_curves_are_traced_instead(own_results):
@@ -133,7 +133,7 @@ def test_overturning_as_csv_and_netcdf(client):
     assert int(rows[-1]["curve"]) == stored.sizes["curve"] - 1
 
 
-def test_history_is_the_solver_s(client):
+def test_history_equals_the_solver(client):
     answer = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
     truth = time_history(**BLOCK, samples=50)
     for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
@@ -142,7 +142,7 @@ def test_history_is_the_solver_s(client):
     assert answer["peak_rotation"] == pytest.approx(max(map(abs, answer["rotation"])), rel=0.05)
 
 
-def test_history_of_a_block_that_falls_has_no_peak(client):
+def test_history_of_a_block_that_overturns_has_no_peak(client):
     answer = client.get("/v1/history", params=BLOCK | {"slenderness": 0.1, "duration": 3.0}).json()
     assert answer["overturned"]
     assert answer["peak_rotation"] is None

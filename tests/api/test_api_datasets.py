@@ -29,7 +29,7 @@ def test_catalogue_lists_every_file_with_its_digest(client, results):
         assert client.get(entry["zarr"] + "/.zmetadata").status_code == 200
 
 
-def test_description_tells_dimensions_variables_and_attributes(client):
+def test_description_lists_dimensions_variables_and_attributes(client):
     described = client.get(f"/v1/datasets/{NAME}").json()
     assert described["dimensions"] == {"alpha": 1, "slenderness": 91, "frequency_ratio": 91}
     assert described["variables"]["peak_rotation"]["dimensions"] == ["alpha", "slenderness", "frequency_ratio"]
@@ -130,7 +130,7 @@ def test_zarr_keys_are_cached_by_the_same_etag(client):
     assert again.status_code == 304
 
 
-def test_a_damaged_file_is_not_handed_on(own_results):
+def test_a_damaged_file_is_refused(own_results):
     path = own_results / f"{NAME}.nc"
     content = bytearray(path.read_bytes())
     content[len(content) // 2 :] = bytes(len(content) - len(content) // 2)
@@ -141,7 +141,7 @@ def test_a_damaged_file_is_not_handed_on(own_results):
             assert "damaged" in problem["detail"]
 
 
-def test_a_replaced_file_is_served_anew(own_results):
+def test_a_replaced_file_is_served_as_a_new_version(own_results):
     with client_of(own_results) as client:
         curves = own_results / "overturning" / "sine" / "eta-0.85.nc"
         old = client.get("/v1/datasets/overturning/sine/eta-0.85.nc").headers["etag"]

@@ -1,4 +1,4 @@
-"""Data sets that are replaced, written to or unreadable while the service hands them out."""
+"""Data sets that are replaced, written to or unreadable while the service sends them."""
 
 import asyncio
 import hashlib
@@ -76,7 +76,7 @@ def test_ranges_are_of_what_was_hashed(path, own_results):
     assert body == content[100:70001]
 
 
-def test_a_file_that_is_written_to_while_it_is_sent_breaks_off(path, own_results):
+def test_the_download_of_a_file_that_is_written_to_is_aborted(path, own_results):
     content = path.read_bytes()
     changed = bytes(len(content))
     _, _, body, broken = download(own_results, lambda: path.write_bytes(changed))
@@ -85,7 +85,7 @@ def test_a_file_that_is_written_to_while_it_is_sent_breaks_off(path, own_results
     assert content.startswith(body)
 
 
-def test_a_file_that_is_renamed_or_linked_while_it_is_sent_is_sent_on(path, own_results):
+def test_renaming_or_linking_a_file_does_not_abort_its_download(path, own_results):
     content = path.read_bytes()
     _, _, body, broken = download(own_results, lambda: path.with_name("link").hardlink_to(path))
     assert (body, broken) == (content, None)
@@ -101,7 +101,7 @@ def test_a_url_with_a_digest_yields_these_bytes_or_none(path, own_results):
             file.write(bytes(100))
         os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
         assert path.stat().st_size == status.st_size
-        assert_problem(client.get(URL, params={"sha256": digest}), 503)  # damaged, which is noticed too
+        assert_problem(client.get(URL, params={"sha256": digest}), 503)  # damaged, which is detected too
         path.write_bytes(other_of(path))
         # a whole file, but of another version
         assert_problem(client.get(URL, params={"sha256": digest}), 503)
@@ -130,7 +130,7 @@ def degraded_health(client):
 
 
 @pytest.mark.parametrize("make", UNREADABLE)
-def test_an_unreadable_file_is_told_and_the_rest_goes_on(path, own_results, monkeypatch, make):
+def test_an_unreadable_file_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
     path.unlink()
     make(path, monkeypatch)
     with client_of(own_results) as client:
@@ -147,7 +147,7 @@ def test_an_unreadable_file_is_told_and_the_rest_goes_on(path, own_results, monk
 
 
 @pytest.mark.parametrize("make", [folder_loop, folder_forbidden])
-def test_an_unreadable_folder_is_told_and_the_rest_goes_on(path, own_results, monkeypatch, make):
+def test_an_unreadable_folder_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
     path.unlink()
     path.parent.rmdir()
     make(path.parent, monkeypatch)

@@ -1,6 +1,6 @@
-"""Questions that a machine makes up from the OpenAPI description: no 5xx, and every answer as described.
+"""Requests generated from the OpenAPI description: no 5xx, and every response as described.
 
-The same ones each time; `FUZZ_CASES=5000 FUZZ_SEED=1 pytest tests/api/test_api_fuzz.py` asks more, and others.
+They are reproducible; `FUZZ_CASES=5000 FUZZ_SEED=1 pytest tests/api/test_api_fuzz.py` sends more.
 """
 
 import os
@@ -44,16 +44,16 @@ OPERATIONS = [
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("path", "method"), OPERATIONS)
-def test_made_up_questions(results, path, method):
+def test_generated_requests(results, path, method):
     schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(Settings(results=results, max_samples=2000)))
 
-    # state, counts and catalogue take no parameters: there is nothing to make up
+    # state, counts and catalogue take no parameters: nothing to generate
     share = 2 if path in ("/health", "/metrics", "/v1/datasets") else CASES // (len(OPERATIONS) - 3) + 1
 
     @settings(max_examples=share, suppress_health_check=list(HealthCheck), derandomize=SEED is None)
     @given(case=schema[path][method].as_strategy())
     def ask(case):
-        case.call_and_validate(checks=CHECKS, timeout=100)  # what the service grants, and more
+        case.call_and_validate(checks=CHECKS, timeout=100)  # more than the time limit of the service
 
     if SEED is not None:
         ask = hypothesis.seed(int(SEED))(ask)

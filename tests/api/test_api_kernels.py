@@ -1,10 +1,14 @@
-"""The service answers while the solver is compiled; questions wait for it, in vain no longer than their time."""
+"""The service responds while the solver is compiled; requests for it wait up to their time limit."""
 
 import asyncio
+import http.client
+import os
 import threading
 import time
+from contextlib import closing, suppress
+from pathlib import Path
+from urllib.parse import urlencode
 
-import httpx2
 import pytest
 import rocking_api.execution.kernels
 from rocking_api.execution.kernels import Kernels
@@ -17,45 +21,77 @@ QUESTION = {"slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85, "me
 SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 3}
 
 
+def get(connection, path):
+    """Status of a request.
+
+    Not through a client that prepares TLS: nine of those hold the interpreter of this process for tenths of a second,
+    which would be measured as time of the server.
+    """
+    connection.request("GET", path)
+    response = connection.getresponse()
+    response.read()
+    return response.status
+
+
+def connect(server):
+    return closing(http.client.HTTPConnection("127.0.0.1", server.port, timeout=600))
+
+
+def kept_waiting(*processes):
+    """Time that the threads of processes were ready to run while the processor worked on something else [s]."""
+    delays = 0
+    for process in processes:
+        for thread in Path(f"/proc/{process}/task").glob("*/schedstat"):
+            with suppress(FileNotFoundError, ProcessLookupError):  # a thread that has just ended
+                delays += int(thread.read_text().split()[1])
+    return 1e-9 * delays
+
+
 def burst(server):
-    """Request all pulses at once: status and time of each, 90 % and largest time of /health meanwhile [s]."""
+    """Request all pulses at once: status and time of each, and the times of /health meanwhile [s].
+
+    The times of /health are those on a machine that does nothing else.
+    """
     answers, waits = {}, []
 
     def ask(pulse):
         began = time.perf_counter()
-        response = httpx2.get(f"{server.address}/v1/response", params=QUESTION | {"pulse": pulse}, timeout=600)
-        answers[pulse] = response.status_code, time.perf_counter() - began
+        with connect(server) as connection:
+            status = get(connection, "/v1/response?" + urlencode(QUESTION | {"pulse": pulse}))
+        answers[pulse] = status, time.perf_counter() - began
 
     threads = [threading.Thread(target=ask, args=(pulse,)) for pulse in PULSE_NAMES]
-    with httpx2.Client(base_url=server.address, timeout=600) as client:
-        client.get("/health")
+    processes = os.getpid(), server.process.pid
+    with connect(server) as connection:
+        get(connection, "/health")
         for thread in threads:
             thread.start()
-        while any(thread.is_alive() for thread in threads):
-            began = time.perf_counter()
-            assert client.get("/health").status_code == 200
-            waits.append(time.perf_counter() - began)
+        while not waits or any(thread.is_alive() for thread in threads):
+            delayed, began = kept_waiting(*processes), time.perf_counter()
+            assert get(connection, "/health") == 200
+            took = time.perf_counter() - began
+            waits.append(took - (kept_waiting(*processes) - delayed))
             time.sleep(0.005)
-    return answers, sorted(waits)[int(0.9 * len(waits))], max(waits)
+    return answers, waits
 
 
 @pytest.mark.slow
-def test_health_is_told_while_the_kernels_are_compiled_and_loaded(tmp_path):
+@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
+def test_health_responds_while_the_kernels_are_compiled_and_loaded(tmp_path):
+    """On two cores in use by others: 0.09 s at most while they are compiled, 0.02 s while they are loaded."""
     folder = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    with serving(tmp_path, tmp_path / "first.log", **folder, ROCKING_MAX_SECONDS="600") as server:
-        answers, usual, longest = burst(server)
-    assert {status for status, _ in answers.values()} == {200}
-    assert usual < 0.2
-    assert longest < 2.0  # other tests run beside this one
-    with serving(tmp_path, tmp_path / "second.log", **folder) as server:
-        httpx2.get(f"{server.address}/v1/response", params=QUESTION | {"pulse": "sine"}, timeout=60)  # loaded
-        answers, usual, longest = burst(server)
+    for granted, log in [(600, "compiled.log"), (60, "loaded.log")]:
+        with serving(tmp_path, tmp_path / log, **folder, ROCKING_MAX_SECONDS=str(granted)) as server:
+            if log == "loaded.log":
+                with connect(server) as connection:  # waits until they are loaded
+                    get(connection, "/v1/response?" + urlencode(QUESTION | {"pulse": "sine"}))
+            answers, waits = burst(server)
+        assert {status for status, _ in answers.values()} == {200}
+        assert max(waits) < 0.2
     assert max(seconds for _, seconds in answers.values()) < 1.0
-    assert usual < 0.2
-    assert longest < 2.0  # other tests run beside this one
 
 
-def test_a_question_waits_for_the_kernels_and_no_longer_than_its_time(tmp_path, monkeypatch):
+def test_a_request_waits_for_the_kernels_up_to_its_time_limit(tmp_path, monkeypatch):
     loaded = threading.Event()
     monkeypatch.setattr(rocking_api.execution.kernels, "load_kernels", lambda: loaded.wait(30))
     with client_of(tmp_path, max_seconds=0.1) as client:
@@ -86,7 +122,7 @@ def test_kernels_are_compiled_in_another_process_and_loaded_in_a_thread(monkeypa
 
     async def scenario():
         kernels = Kernels(1.0)
-        await kernels.wait()  # nobody loads them: what asks loads its own
+        await kernels.wait()  # nothing loads them: a request loads what it needs
         await kernels.load()
         await kernels.wait()
 

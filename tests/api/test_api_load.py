@@ -1,4 +1,4 @@
-"""Under load: queue and time limit of heavy work, clients that go away, questions that arrive together."""
+"""Under load: queue limit and time limit of heavy work, disconnects, micro-batching."""
 
 import asyncio
 import json
@@ -8,24 +8,24 @@ import time
 
 import httpx2
 import pytest
-import rocking_api.http.batch_response
-from rocking_api.execution.batching import Together
+import rocking_api.execution.evaluation
+from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
-from rocking_api.models.params import ResponseQuestion
+from rocking_api.models.params import ResponseParams
 from starlette.requests import ClientDisconnect
 
 import rocking
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking.errors import StoppedError
 from tests.api.conftest import assert_problem, client_of
-from tests.api.test_api_observed import metrics_of
+from tests.api.test_request_log import metrics_of
 
 POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 BATCH = POINT | {"slenderness": [0.6, 0.7]}
 
 
 class Gate:
-    """Heavy work that waits to be let through."""
+    """Heavy work that blocks until it is released."""
 
     def __init__(self):
         self.open = threading.Event()
@@ -37,7 +37,7 @@ class Gate:
         return "done"
 
 
-def test_beyond_the_queue_work_is_refused_and_the_rest_is_done():
+def test_work_beyond_the_queue_limit_is_refused():
     async def scenario():
         shop, gate = BoundedExecutor(workers=1, queue=2, seconds=30), Gate()
         asked = [asyncio.create_task(shop.run(gate.work)) for _ in range(3)]
@@ -52,7 +52,7 @@ def test_beyond_the_queue_work_is_refused_and_the_rest_is_done():
     asyncio.run(scenario())
 
 
-def test_work_that_cannot_be_stopped_keeps_its_place_after_its_time():
+def test_work_that_ignores_the_stop_flag_keeps_its_worker():
     async def scenario():
         shop, gate = BoundedExecutor(workers=1, queue=0, seconds=0.05), Gate()
         with pytest.raises(TimeLimitError, match=r"0\.05 s"):
@@ -68,12 +68,12 @@ def test_work_that_cannot_be_stopped_keeps_its_place_after_its_time():
 
 
 def slow_search(stop):
-    """An elastic block under a slow pulse: it strikes the ground without end, for half a minute."""
+    """An elastic block under a slow pulse: half a minute of impacts."""
     return rocking.critical_amplitude("c2", frequency_ratio=0.05, restitution=1.0, alpha=0.2, stop=stop)
 
 
 class Gone:
-    """A request whose client goes away soon."""
+    """A request whose client disconnects soon."""
 
     async def receive(self):
         await asyncio.sleep(0.2)
@@ -85,7 +85,7 @@ class Gone:
     [(0.2, None, TimeLimitError), (30, Gone(), ClientDisconnect)],
     ids=["time", "gone"],
 )
-def test_the_thread_is_free_soon_after_the_time_is_up_or_the_client_has_gone(seconds, request_, error):
+def test_the_thread_is_free_soon_after_timeout_or_disconnect(seconds, request_, error):
     rocking.peak_response("c2", slenderness=0.5, frequency_ratio=1.0, restitution=0.9, alpha=0.2)  # compiled
 
     async def scenario():
@@ -107,12 +107,12 @@ def test_work_is_not_traced():
     assert asyncio.run(BoundedExecutor(1, 0, 30).run(work)) == (None, sys.gettrace())
 
 
-def test_a_full_queue_is_503_with_a_hint_and_points_go_on(results, monkeypatch):
+def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(results, monkeypatch):
     gate = Gate()
     with client_of(results, max_workers=1, max_queue=0) as client:
         client.get("/v1/response", params=POINT)
         shop = client.app.state.service.executor
-        monkeypatch.setattr(rocking_api.http.batch_response, "ask", lambda *_, **__: gate.work())
+        monkeypatch.setattr(rocking_api.execution.evaluation, "evaluate", lambda *_, **__: gate.work())
         batch = threading.Thread(target=client.post, args=("/v1/response",), kwargs={"json": BATCH})
         batch.start()
         gate.begun.acquire()
@@ -141,13 +141,13 @@ WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ra
 
 
 @pytest.mark.parametrize("path", HEAVY)
-def test_a_wrong_question_does_not_wait(results, path):
-    """All places are taken: a right question is refused for that, a wrong one for what is wrong with it."""
+def test_an_invalid_request_is_refused_before_queueing(results, path):
+    """With a full queue a valid request is refused with 503, an invalid one with 422."""
     with client_of(results, max_workers=1, max_queue=0) as client:
         schema = client.get("/openapi.json").json()["paths"][path]["get"]["parameters"]
         gate = Gate()
         held = client.app.state.service.executor._pool.submit(gate.work)
-        client.app.state.service.executor._inside[held] = StopFlag()
+        client.app.state.service.executor._jobs[held] = StopFlag()
         try:
             assert_problem(client.get(path, params=HEAVY[path]), 503)
             for name in {parameter["name"] for parameter in schema} & set(WRONG):
@@ -157,11 +157,11 @@ def test_a_wrong_question_does_not_wait(results, path):
 
 
 @pytest.mark.parametrize("form", ["json", "csv"])
-def test_a_wrong_batch_does_not_wait(results, form):
+def test_an_invalid_batch_is_refused_before_queueing(results, form):
     with client_of(results, max_workers=1, max_queue=0) as client:
         gate = Gate()
         held = client.app.state.service.executor._pool.submit(gate.work)
-        client.app.state.service.executor._inside[held] = StopFlag()
+        client.app.state.service.executor._jobs[held] = StopFlag()
 
         def post(**wrong):
             if form == "json":
@@ -178,8 +178,8 @@ def test_a_wrong_batch_does_not_wait(results, form):
             gate.open.set()
 
 
-def test_too_long_is_504(results, monkeypatch):
-    monkeypatch.setattr(rocking_api.http.batch_response, "PIECE", 1)
+def test_timeout_is_504(results, monkeypatch):
+    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 1)
     with client_of(results, max_seconds=0.2) as client:
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
         problem = assert_problem(client.post("/v1/response", json=many), 504)
@@ -187,8 +187,8 @@ def test_too_long_is_504(results, monkeypatch):
 
 
 @pytest.mark.parametrize("path", ["/v1/critical_amplitude", "/v1/overturning"])
-def test_a_search_that_takes_too_long_is_504_and_leaves_its_place(results, path):
-    """An elastic block under a slow pulse has changes of fate without number: it takes half a minute."""
+def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, path):
+    """An elastic block under a slow pulse has very many changes of outcome: half a minute."""
     question = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
     if path == "/v1/critical_amplitude":
         question["frequency_ratio"] = 0.05
@@ -200,14 +200,14 @@ def test_a_search_that_takes_too_long_is_504_and_leaves_its_place(results, path)
             assert time.monotonic() - began < 0.5
 
 
-def test_a_part_of_the_work_may_have_an_end_of_its_own():
+def test_a_part_of_the_work_may_have_its_own_time_limit():
     def both(stop):
         return run_with_timeout(slow_search, 0.05, stop), run_with_timeout(lambda part: part.is_set(), 10.0, stop)
 
     assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
 
 
-def test_the_end_of_the_whole_is_no_end_of_a_part():
+def test_the_time_limit_of_the_whole_is_not_taken_for_that_of_a_part():
     async def scenario():
         ended = []
 
@@ -228,20 +228,20 @@ def test_the_end_of_the_whole_is_no_end_of_a_part():
     assert asyncio.run(scenario()) == ["the whole"]
 
 
-def test_batches_in_pieces_are_the_same(client, monkeypatch):
+def test_batches_in_chunks_are_equal(client, monkeypatch):
     many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
     whole = client.post("/v1/response", json=many).json()
-    monkeypatch.setattr(rocking_api.http.batch_response, "PIECE", 7)
+    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
     assert client.post("/v1/response", json=many).json() == whole
 
 
-def test_questions_asked_together_have_the_answers_of_questions_asked_alone(results):
+def test_batched_requests_have_the_results_of_single_requests(results):
     questions = [POINT | {"slenderness": 0.05 + 0.03 * k} for k in range(30)]
     questions += [POINT | {"method": "cube", "slenderness": s} for s in (0.01, 0.6, 0.02)]
     questions += [POINT | {"slenderness": -1.0}, POINT | {"tolerance": -1.0}, POINT | {"pulse": "sinus"}]
     with client_of(results) as client:
         alone = [client.get("/v1/response", params=question) for question in questions]
-        calls = _count_calls(client.app.state.service.atlas)
+        calls = _count_calls(client.app.state.service.cubes)
         together = asyncio.run(_all_at_once(client.app, questions))
     assert [answer.status_code for answer in alone] == [status for status, _ in together]
     for one, (_, body) in zip(alone, together, strict=True):
@@ -250,43 +250,43 @@ def test_questions_asked_together_have_the_answers_of_questions_asked_alone(resu
     assert len(calls) < len(questions) / 2
 
 
-def test_a_question_waits_for_those_that_come_with_the_next_turns_of_the_loop(results):
+def test_a_request_waits_for_those_of_the_next_iterations_of_the_loop(results):
     async def one_a_turn(together, questions):
         asked = []
         for question in questions:
-            asked.append(asyncio.create_task(together.ask(question)))
+            asked.append(asyncio.create_task(together.evaluate(question)))
             await asyncio.sleep(0)
         return await asyncio.gather(*asked)
 
-    questions = [ResponseQuestion(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
+    questions = [ResponseParams(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
     with client_of(results) as client:
-        atlas = client.app.state.service.atlas
+        cubes = client.app.state.service.cubes
 
         def gathered():
-            return Together(atlas, BoundedExecutor(1, 16, 30.0))
+            return MicroBatcher(cubes, BoundedExecutor(1, 16, 30.0))
 
         alone = [asyncio.run(one_a_turn(gathered(), [question]))[0] for question in questions]
-        calls = _count_calls(atlas)
+        calls = _count_calls(cubes)
         assert asyncio.run(one_a_turn(gathered(), questions)) == alone
     assert len(calls) == 1
 
 
-def test_an_error_inside_reaches_all_that_asked(results, monkeypatch):
+def test_an_internal_error_reaches_all_requests_of_a_batch(results, monkeypatch):
     with client_of(results) as client:
-        monkeypatch.setattr(client.app.state.service.atlas, "is_open", lambda *_: 1 / 0)
+        monkeypatch.setattr(client.app.state.service.cubes, "is_open", lambda *_: 1 / 0)
         together = asyncio.run(_all_at_once(client.app, [POINT, POINT | {"slenderness": 0.5}]))
     assert [status for status, _ in together] == [500, 500]
 
 
-def test_blocks_that_strike_without_end_do_not_hold_up_the_event_loop(results):
-    """One of them takes a sixth of a second, twice."""
+def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
+    """One of them takes a sixth of a second, computed twice."""
     elastic = {"pulse": "c2", "slenderness": 1 - 1e-7, "frequency_ratio": 0.05, "restitution": 1.0, "alpha_deg": 11.0}
     with client_of(results) as client:
-        together = client.app.state.service.together
+        together = client.app.state.service.batcher
         client.get("/v1/response", params=POINT)
 
         async def scenario():
-            asked = asyncio.create_task(together.ask(ResponseQuestion(**elastic)))
+            asked = asyncio.create_task(together.evaluate(ResponseParams(**elastic)))
             longest, before = 0.0, time.perf_counter()
             while not asked.done():
                 await asyncio.sleep(0.001)
@@ -298,14 +298,14 @@ def test_blocks_that_strike_without_end_do_not_hold_up_the_event_loop(results):
     assert longest < 0.1
 
 
-def _count_calls(atlas):
-    calls, respond = [], atlas.response
+def _count_calls(cubes):
+    calls, respond = [], cubes.response
 
     def counted(*args, **kwargs):
         calls.append(args)
         return respond(*args, **kwargs)
 
-    atlas.response = counted
+    cubes.response = counted
     return calls
 
 

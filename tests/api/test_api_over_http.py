@@ -1,4 +1,4 @@
-"""A real server on the loopback: xarray opens the data sets over HTTP and reads the same bits as from the file."""
+"""A server on the loopback: xarray opens the data sets over HTTP and reads the same bits as from the file."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ CORNER = {"slenderness": slice(3, 9), "frequency_ratio": slice(40, 60)}
 
 @pytest.fixture(scope="module")
 def address(results, tmp_path_factory):
-    """A process of its own: the netCDF library holds the interpreter while it reads from a URL."""
+    """A separate process: the netCDF library holds the interpreter while it reads from a URL."""
     with serving(results, tmp_path_factory.mktemp("serve") / "log") as server:
         yield server.address
 

@@ -1,4 +1,4 @@
-"""Random requests to all routes; `python -m tests.api.fuzzer` sends more of them, and others."""
+"""Random requests to all routes; `python -m tests.api.fuzzer` sends more."""
 
 import asyncio
 

@@ -19,7 +19,7 @@ def ask(client, **changes):
     return client.get("/v1/response", params=QUESTION | changes)
 
 
-def test_an_answer_from_a_cube(client):
+def test_a_response_from_a_cube(client):
     answer = ask(client).json()
     truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
     assert answer["source"] == "cube"
@@ -45,7 +45,7 @@ def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
     assert abs(answer["peak_rotation"] - truth.peak_rotation) <= answer["error_bound"] <= 1e-4
 
 
-def test_an_answer_from_the_solver_is_the_solver_s(client):
+def test_a_response_from_the_solver_equals_the_solver(client):
     answer = ask(client, method="solver").json()
     truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
     assert answer["source"] == "solver"
@@ -59,26 +59,26 @@ def test_an_answer_from_the_solver_is_the_solver_s(client):
     [{"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}, {"tolerance": 1e-13}],
     ids=["no cube of this restitution", "outside the cube", "no cube of this pulse", "too coarse"],
 )
-def test_auto_asks_the_solver_where_no_cube_answers(client, changes):
+def test_auto_uses_the_solver_where_no_cube_applies(client, changes):
     answer = ask(client, **changes).json()
     assert answer["source"] == "solver"
     asked = {key: value for key, value in (QUESTION | changes).items() if key not in ("pulse", "tolerance")}
     assert answer["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **asked).peak_rotation
 
 
-def test_overturned_has_no_peak_and_says_why(client):
+def test_overturned_has_no_peak_and_a_note(client):
     answer = ask(client, slenderness=0.3, frequency_ratio=2.0).json()
     assert answer["overturned"]
     assert answer["peak_rotation"] is answer["error_bound"] is None
     assert "overturns" in answer["note"]
 
 
-def test_above_slenderness_one_nothing_moves(client):
+def test_above_slenderness_one_there_is_no_uplift(client):
     answer = ask(client, slenderness=1.5, method="cube").json()
     assert (answer["outcome"], answer["peak_rotation"], answer["error_bound"]) == ("NO_UPLIFT", 0.0, 0.0)
 
 
-def test_mirrored_pulse_answers_alike(client):
+def test_a_mirrored_pulse_has_the_same_response(client):
     direct, mirrored = ask(client).json(), ask(client, pulse="-sine").json()
     assert mirrored["peak_rotation"] == direct["peak_rotation"]
     assert mirrored["source"] == "cube"
@@ -127,7 +127,7 @@ BATCH = {
 TRUTH = [Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY, Outcome.NO_UPLIFT, Outcome.SAFE]
 
 
-def test_json_batch_answers_as_single_questions(client):
+def test_a_json_batch_equals_single_requests(client):
     body = {"pulse": "sine"} | {name: values.tolist() for name, values in BATCH.items()}
     answer = client.post("/v1/response", json=body).json()
     assert answer["query"]["points"] == 4
@@ -180,7 +180,7 @@ def test_netcdf_batch_in_and_out(client):
     assert found.outcome.attrs["flag_meanings"].split()[1] == "safe"
 
 
-def test_the_accept_header_chooses_the_form(client):
+def test_the_accept_header_selects_the_format(client):
     body = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
     answer = client.post("/v1/response", json=body, headers={"accept": "text/csv;q=1, */*"})
     assert answer.text.splitlines()[0].startswith("slenderness,frequency_ratio,restitution,peak_rotation")
@@ -220,7 +220,7 @@ def test_bodies_that_cannot_be_read_are_explained(client, content, media_type, p
     assert_problem(post(client, content, media_type, **parameters), 422, parameter)
 
 
-def test_unknown_form_of_body(client):
+def test_unknown_media_type_of_a_body(client):
     assert_problem(post(client, b"<x/>", "application/xml"), 415, "Content-Type")
 
 
@@ -253,14 +253,14 @@ def test_other_methods_are_not_allowed(client):
         ({"alpha_deg": 1e-9}, "alpha_deg"),
     ],
 )
-def test_beyond_the_border_of_the_service(client, changes, parameter):
+def test_values_outside_the_ranges_of_the_service(client, changes, parameter):
     assert_problem(ask(client, **changes), 422, parameter)
 
 
 @pytest.mark.parametrize("slenderness", [1e-9, 1e-4, 0.5, 0.9999999, 1.0, 1e300])
 @pytest.mark.parametrize("frequency_ratio", [1e-6, 0.05, 50.0, 1e6])
 @pytest.mark.parametrize("alpha_deg", [0.0, 1e-6, 89.9])
-def test_up_to_the_border_every_question_has_an_answer(client, slenderness, frequency_ratio, alpha_deg):
+def test_at_the_ends_of_the_ranges_every_request_has_a_response(client, slenderness, frequency_ratio, alpha_deg):
     answer = ask(client, slenderness=slenderness, frequency_ratio=frequency_ratio, alpha_deg=alpha_deg)
     assert answer.status_code == 200
     found = answer.json()

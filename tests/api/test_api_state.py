@@ -19,7 +19,7 @@ QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restit
 
 
 def health_of(client):
-    """What /health says once every data set was checked."""
+    """The response of /health once every data set was checked."""
     deadline = time.monotonic() + 30
     while (health := client.get("/health").json())["unchecked"] and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -36,7 +36,7 @@ def test_healthy(client):
     }
 
 
-def test_without_results_the_solver_answers_and_health_says_so(tmp_path):
+def test_without_results_the_solver_is_used_and_health_reports_it(tmp_path):
     with client_of(tmp_path / "none") as client:
         health = health_of(client)
         assert health["status"] == "degraded"
@@ -46,7 +46,7 @@ def test_without_results_the_solver_answers_and_health_says_so(tmp_path):
         assert_problem(client.get("/v1/response", params=QUESTION | {"method": "cube"}), 422, "restitution")
 
 
-def test_with_a_damaged_cube_the_solver_answers_and_health_says_so(client, own_results):
+def test_with_a_damaged_cube_the_solver_is_used_and_health_reports_it(client, own_results):
     path = own_results / "spectra" / "sine" / "eta-0.85.nc"
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
@@ -61,7 +61,7 @@ def test_with_a_damaged_cube_the_solver_answers_and_health_says_so(client, own_r
         assert health["status"] == "degraded"
         assert "damaged" in health["problems"]["spectra/sine/eta-0.85"]
         assert_problem(damaged.get("/v1/response", params=QUESTION | {"method": "cube"}), 503)
-        path.write_bytes(whole)  # mended: noticed without a restart
+        path.write_bytes(whole)  # repaired: detected without a restart
         assert damaged.get("/v1/response", params=QUESTION).json()["source"] == "cube"
         assert health_of(damaged)["status"] == "ok"
 
@@ -130,20 +130,20 @@ def test_openapi_describes_every_route(client):
      "/v1/datasets/spectra/sine/eta-0.85.zarr/.zmetadata", "/v1/response?pulse=sine", "/nowhere",
      "/static/explorer/main.js", "/v1/map?pulse=sine&restitution=0.85&columns=2&rows=2"],
 )  # fmt: skip
-def test_no_browser_is_to_guess_the_type_of_an_answer(client, path):
+def test_every_response_has_nosniff(client, path):
     for answer in (client.get(path), client.head(path), client.get(path, headers={"if-none-match": "*"})):
         assert answer.headers.get_list("x-content-type-options") == ["nosniff"]
 
 
 @pytest.mark.parametrize("path", ["/", "/docs", "/static/explorer/main.js"])
 @pytest.mark.parametrize("asked", ["bytes=0-3", "bytes=5-2", "bytes=99999999-", "x"])
-def test_pages_are_sent_as_a_whole(client, path, asked):
+def test_pages_ignore_ranges(client, path, asked):
     answer = client.get(path, headers={"range": asked})
     assert (answer.status_code, answer.content) == (200, client.get(path).content)
 
 
 def test_an_empty_name_of_the_results_is_refused(monkeypatch):
-    """It would be the current folder."""
+    """An empty path would be the current folder."""
     with pytest.raises(ValueError, match="name of a folder"):
         Settings(results="")
     monkeypatch.setenv("ROCKING_RESULTS", "")
@@ -155,7 +155,7 @@ def test_unknown_route_is_a_problem(client):
     assert_problem(client.get("/v2/response"), 404)
 
 
-def test_an_error_of_our_own_tells_nothing_of_the_inside(results):
+def test_an_internal_error_shows_no_details(results):
     app = create_app(Settings(results=results))
 
     @app.get("/broken")
@@ -176,7 +176,7 @@ def test_only_text_is_compressed(client):
     assert "content-encoding" not in netcdf.headers
 
 
-def test_other_origins_are_let_in_only_if_asked(results, client):
+def test_other_origins_are_allowed_only_by_a_setting(results, client):
     origin = {"origin": "https://example.org"}
     assert "access-control-allow-origin" not in client.get("/health", headers=origin).headers
     with client_of(results, cors_origins=("https://example.org",)) as open_client:

@@ -1,4 +1,4 @@
-"""The files of the explorer: what was published, named where they are used, and asked for again after an upgrade."""
+"""Files of the explorer: vendored bytes, imports, ids, revalidation."""
 
 import hashlib
 import re
@@ -21,7 +21,7 @@ def test_the_vendored_library_is_what_was_published():
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
-def test_scripts_say_what_they_are_and_import_what_exists(path):
+def test_scripts_have_a_first_comment_and_valid_imports(path):
     text = path.read_text()
     assert text.startswith("// "), "a first line that tells the one idea of the file"
     assert text.count("\n") < 250
@@ -63,7 +63,7 @@ def test_no_style_or_script_inside_the_page(client):
     assert not re.search(r"<style|\sstyle=|\son\w+=|<script>", response.text)
 
 
-def test_files_are_asked_for_again(client):
+def test_files_are_revalidated(client):
     for path in ("/", "/static/explorer/main.js", "/static/uplot/uPlot.iife.min.js"):
         first = client.get(path)
         assert first.headers["cache-control"] == "no-cache"

@@ -1,4 +1,4 @@
-"""GET /v1/map: the answers of the front door, in every form, bounded, and kept by who has them already."""
+"""GET /v1/map: values, formats, limits and caching."""
 
 import csv
 import io
@@ -26,7 +26,7 @@ def truth():
     )
 
 
-def test_rows_hold_what_the_front_door_answers(client, truth):
+def test_rows_equal_peak_response(client, truth):
     answer = client.get("/v1/map", params=QUESTION).json()
     assert {Outcome.NO_UPLIFT, Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY} <= set(truth.outcome.ravel().tolist())
     assert [Outcome[answer["outcomes"][code]] for code in answer["outcome"]] == truth.outcome.ravel().tolist()
@@ -50,7 +50,7 @@ def test_csv_and_netcdf_hold_every_digit(client, truth):
     assert stored.attrs["restitution"] == 0.9
 
 
-def test_a_map_is_not_sent_twice(client):
+def test_an_unchanged_map_is_304(client):
     first = client.get("/v1/map", params=QUESTION)
     assert "max-age" in first.headers["cache-control"]
     known = {"if-none-match": first.headers["etag"]}
@@ -78,7 +78,7 @@ def test_a_map_is_not_sent_twice(client):
         ({"format": "png"}, "format"),
     ],
 )
-def test_a_wrong_window_is_explained(client, change, parameter):
+def test_an_invalid_window_is_explained(client, change, parameter):
     assert_problem(client.get("/v1/map", params=QUESTION | change), 422, parameter)
 
 

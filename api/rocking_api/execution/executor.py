@@ -1,7 +1,7 @@
-"""Heavy work beside the event loop: a few threads, a queue of limited length before them, a time limit.
+"""Thread pool for heavy work, with queue limit, timeout and cancellation.
 
-Work is a function of a `StopFlag`, which it passes on to the searches and to the solver. The flag is set when the time
-is up or the client has gone; the thread is free for other work hundredths of a second later.
+Work is a function of a `StopFlag`, which it passes on to the searches and to the solver. The flag is set after the time
+limit or when the client disconnects; the thread is free hundredths of a second later.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from rocking._numba.cancellation import StopFlag
 T = TypeVar("T")
 
 Work = Callable[[StopFlag], T]
-"""What is done in a thread; it ends with `StoppedError` soon after the flag is set."""
+"""Work for a thread; it ends with `StoppedError` soon after the flag is set."""
 
 
 class BusyError(RuntimeError):
-    """The queue is full: to be asked again later."""
+    """The queue is full; the client may retry."""
 
 
 class TimeLimitError(RuntimeError):
-    """The work takes longer than the service grants."""
+    """The work exceeds the time limit."""
 
     def __init__(self, seconds: float) -> None:
-        super().__init__(f"the answer takes longer than the {seconds:g} s that a request is granted; ask for less")
+        super().__init__(f"the request exceeds the time limit of {seconds:g} s; reduce it")
 
 
 class BoundedExecutor:
@@ -39,50 +39,50 @@ class BoundedExecutor:
     Parameters
     ----------
     workers : int
-        Threads.
+        Number of threads.
     queue : int
         Requests that may wait for one.
     seconds : float
-        What one request is granted, waiting included [s].
+        Time limit of a request, waiting included [s].
     """
 
     def __init__(self, workers: int, queue: int, seconds: float) -> None:
         self._pool = ThreadPoolExecutor(workers, thread_name_prefix="heavy")
-        self._places = workers + queue
+        self._capacity = workers + queue
         self._workers = workers
         self._seconds = seconds
-        self._inside: dict[Future[Any], StopFlag] = {}
+        self._jobs: dict[Future[Any], StopFlag] = {}
 
     @property
     def running(self) -> int:
-        """Requests that are worked on."""
-        return min(self._workers, len(self._inside))
+        """Requests being computed."""
+        return min(self._workers, len(self._jobs))
 
     @property
     def waiting(self) -> int:
         """Requests in the queue."""
-        return max(0, len(self._inside) - self._workers)
+        return max(0, len(self._jobs) - self._workers)
 
     async def run(self, work: Work[T], request: Request | None = None) -> T:
-        """Have work done in a thread; given the request, its body read, stop when its client goes away.
+        """Run work in a thread; given the request, its body read, stop when the client disconnects.
 
         Raises
         ------
         BusyError
             If the queue is full.
         TimeLimitError
-            If it takes too long.
+            If the time limit is exceeded.
         ClientDisconnect
-            If the client has gone.
+            If the client has disconnected.
         """
-        if len(self._inside) >= self._places:
-            raise BusyError("all places for heavy work are taken; ask again in a moment")
+        if len(self._jobs) >= self._capacity:
+            raise BusyError("all workers are busy and the queue is full; retry in a moment")
         stop = StopFlag()
         future = self._pool.submit(work, stop)
-        self._inside[future] = stop
-        future.add_done_callback(self._inside.pop)
+        self._jobs[future] = stop
+        future.add_done_callback(self._jobs.pop)
         answer = asyncio.wrap_future(future)
-        gone = None if request is None else asyncio.create_task(_gone(request))
+        gone = None if request is None else asyncio.create_task(_wait_for_disconnect(request))
         try:
             waited_for: set[asyncio.Future[Any]] = {answer} if gone is None else {answer, gone}
             await asyncio.wait(waited_for, timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED)
@@ -95,15 +95,15 @@ class BoundedExecutor:
             stop.set()
             if gone is not None:
                 gone.cancel()
-            answer.cancel()  # out of the queue, if it has not begun
+            answer.cancel()  # removes it from the queue if it has not started
 
     def close(self) -> None:
-        """Begin nothing more, and stop what runs."""
+        """Start no more work, and cancel what runs."""
         self._pool.shutdown(wait=False, cancel_futures=True)
-        for stop in [*self._inside.values()]:
+        for stop in [*self._jobs.values()]:
             stop.set()
 
 
-async def _gone(request: Request) -> None:
+async def _wait_for_disconnect(request: Request) -> None:
     while (await request.receive())["type"] != "http.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""What a client may keep: for ever under a URL that names a version, else for a while, and then it asks by ETag."""
+"""Cache headers: immutable under a URL that names a version, else a short time, then revalidation by ETag."""
 
 from __future__ import annotations
 
@@ -7,34 +7,35 @@ import hashlib
 from fastapi import Request, Response
 
 SHORT = "max-age=60"
-"""For answers that change only when data sets or the service are replaced."""
+"""For responses that change only with the data sets or the service."""
 
 IMMUTABLE = "public, max-age=31536000, immutable"
-"""Under a URL that names the sha256 of what it yields."""
+"""Under a URL that names the sha256 of its content."""
 
-ASK_AGAIN = "no-cache"
-"""Kept by the client, but asked for again."""
+REVALIDATE = "no-cache"
+"""May be stored, but must be revalidated."""
 
 
-def validators(sha256: str, control: str = ASK_AGAIN) -> dict[str, str]:
-    """Headers by which a client knows a version again."""
+def validators(sha256: str, control: str = REVALIDATE) -> dict[str, str]:
+    """Headers that identify a version."""
     return {"ETag": f'"{sha256}"', "Cache-Control": control}
 
 
-def not_modified(request: Request, sha256: str, control: str = ASK_AGAIN) -> Response | None:
-    """304 if the client has this version already (If-None-Match: a list, weak tags, or *)."""
-    asked = request.headers.get("if-none-match")
-    if asked is None:
+def not_modified(request: Request, sha256: str, control: str = REVALIDATE) -> Response | None:
+    """304 if the client has this version (If-None-Match: a list, weak tags, or *)."""
+    requested = request.headers.get("if-none-match")
+    if requested is None:
         return None
-    known = [tag.strip().removeprefix("W/") for tag in asked.split(",")]
+    known = [tag.strip().removeprefix("W/") for tag in requested.split(",")]
     if f'"{sha256}"' in known or "*" in known:
         return Response(status_code=304, headers=validators(sha256, control))
     return None
 
 
 def revalidated(request: Request, response: Response) -> Response:
-    """The response with an ETag of its body, or 304 in its place; untouched if it says itself how long it may be kept,
-    is an error, or is sent piece by piece.
+    """The response with an ETag of its body, or 304 in its place.
+
+    It is unchanged if it has a Cache-Control header, is an error, or is streamed.
     """
     body = getattr(response, "body", None)
     controlled = any(name == b"cache-control" for name, _ in response.raw_headers)

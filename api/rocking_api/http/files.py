@@ -14,12 +14,12 @@ from starlette.types import Message, Receive, Scope, Send
 
 from rocking.datasets.catalogue import DataFile, DatasetFile
 from rocking.datasets.checksum import sha256_of
-from rocking_api.http.caching import ASK_AGAIN, not_modified, validators
-from rocking_api.http.problems import problem
+from rocking_api.http.caching import REVALIDATE, not_modified, validators
+from rocking_api.http.errors import problem_response
 
 
-def file_response(request: Request, file: DataFile, product: DatasetFile, control: str = ASK_AGAIN) -> Response:
-    """The open file of a data set, whole or in ranges, closed at the end; `control` says how long it may be kept."""
+def file_response(request: Request, file: DataFile, product: DatasetFile, control: str = REVALIDATE) -> Response:
+    """The open file of a data set, whole or in ranges; closed at the end. `control` is its Cache-Control header."""
     unchanged = not_modified(request, product.sha256, control)
     if unchanged is not None:
         file.close()
@@ -27,22 +27,24 @@ def file_response(request: Request, file: DataFile, product: DatasetFile, contro
     digest = base64.b64encode(bytes.fromhex(product.sha256)).decode()
     headers = {**validators(product.sha256, control), "Repr-Digest": f"sha-256=:{digest}:"}  # RFC 9530
     filename = product.name.replace("/", "-") + ".nc"
-    return _OneVersion(file, product.sha256, headers=headers, media_type="application/x-netcdf", filename=filename)
+    return VersionedFileResponse(
+        file, product.sha256, headers=headers, media_type="application/x-netcdf", filename=filename
+    )
 
 
-class _OneVersion(FileResponse):
-    """One version of a file: what is sent is what was hashed, or the answer breaks off.
+class VersionedFileResponse(FileResponse):
+    """A file of one version: the bytes sent are those that were hashed, or the response is aborted.
 
-    The bytes come from the descriptor that they were hashed from, so that a file put in its place does not matter. One
-    that is written to while it is sent is hashed again before more of it is sent.
-    Refusals (400 for a malformed Range, 416 for one outside the file) are problem+json too.
+    The bytes come from the open descriptor, so that replacing the file has no effect. A file that is written to while
+    it is sent is hashed again before more of it is sent. Refusals (400 for a malformed Range, 416 for one outside the
+    file) are problem+json.
 
     Parameters
     ----------
     file : DataFile
-        To be sent, and closed.
+        File to send and close.
     sha256 : str
-        Of its bytes.
+        Digest of its bytes.
     **options
         Of `FileResponse`.
     """
@@ -77,7 +79,7 @@ def _check(file: DataFile, sha256: str) -> None:
 
 
 def _with_strong_range(scope: Scope, sha256: str) -> Scope:
-    """The request, without its Range if that has a condition (If-Range) but the digest: a date does not name bytes."""
+    """The request, without its Range if If-Range is not the digest: a date does not identify bytes."""
     conditions = [value for name, value in scope["headers"] if name == b"if-range"]
     if all(value == f'"{sha256}"'.encode() for value in conditions):
         return scope
@@ -85,14 +87,14 @@ def _with_strong_range(scope: Scope, sha256: str) -> Scope:
 
 
 def without_range(scope: Scope) -> Scope:
-    """The same request for all of a file."""
+    """The same request for the whole file."""
     return {**scope, "headers": [header for header in scope["headers"] if header[0] != b"range"]}
 
 
 def _refusal(status: int, headers: dict[bytes, bytes], scope: Scope) -> Response:
-    asked = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"range"), "")
+    requested = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"range"), "")
     extent = headers.get(b"content-range", b"").decode("latin-1")
     allowed = f"bytes 0 to {int(extent.rpartition('/')[2]) - 1}" if extent else "bytes=FIRST-LAST"
-    detail = f"the range `{asked}` cannot be served"
+    detail = f"the range `{requested}` cannot be served"
     kept = {"Content-Range": extent} if extent else None
-    return problem(status, detail, kept, parameter="Range", value=asked, allowed=allowed)
+    return problem_response(status, detail, kept, parameter="Range", value=requested, allowed=allowed)

@@ -1,4 +1,4 @@
-"""Counts and times for Prometheus: /metrics."""
+"""Prometheus metrics: /metrics."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from rocking_api.execution.executor import BoundedExecutor
 CONTENT_TYPE = CONTENT_TYPE_LATEST
 
 BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
-"""Upper ends of the classes of latency [s]: a point takes a millisecond, a batch a second, a curve some."""
+"""Bucket bounds of the latency [s]: a point takes a millisecond, a batch a second, a curve several."""
 
 
 class Metrics:
-    """What one application has done since it began.
+    """Metrics of one application.
 
     Parameters
     ----------
     executor : BoundedExecutor
-        Whose running and waiting requests are told.
+        Executor whose running and waiting requests are reported.
     """
 
     def __init__(self, executor: BoundedExecutor) -> None:
@@ -31,32 +31,32 @@ class Metrics:
         )
         self._seconds = Histogram(
             "rocking_request_seconds",
-            "Time from the request's headers to the last byte of the answer.",
+            "Time from the headers of the request to the last byte of the response.",
             ["route"],
             buckets=BUCKETS,
             registry=self.registry,
         )
-        self._request = cache(self._requests.labels)  # to find them again costs more than to count
+        self._request = cache(self._requests.labels)  # looking labels up costs more than counting
         self._time = cache(self._seconds.labels)
         self._points = Counter(
-            "rocking_points", "Blocks answered, by a data set or by the solver.", ["source"], registry=self.registry
+            "rocking_points", "Blocks computed, by a data set or by the solver.", ["source"], registry=self.registry
         )
-        running = Gauge("rocking_heavy_running", "Requests of heavy work that are worked on.", registry=self.registry)
+        running = Gauge("rocking_heavy_running", "Requests of heavy work being computed.", registry=self.registry)
         waiting = Gauge("rocking_heavy_waiting", "Requests of heavy work that wait.", registry=self.registry)
         running.set_function(lambda: executor.running)
         waiting.set_function(lambda: executor.waiting)
         ProcessCollector(registry=self.registry)  # memory, processor time, open files
 
     def request(self, method: str, route: str, status: int, seconds: float) -> None:
-        """Count a request; `route` is its pattern, so that names of data sets do not make series of their own."""
+        """Count a request; `route` is its pattern, so that names of data sets do not create time series."""
         self._request(method, route, status).inc()
         self._time(route).observe(seconds)
 
     def points(self, source: str, count: int) -> None:
-        """Count blocks that "cube" or "solver" answered."""
+        """Count blocks by source, "cube" or "solver"."""
         if count:
             self._points.labels(source).inc(count)
 
     def text(self) -> bytes:
-        """In Prometheus' text format."""
+        """In the text format of Prometheus."""
         return generate_latest(self.registry)

@@ -1,4 +1,4 @@
-"""A block in metres under a pulse in m/s2 and seconds: question and answer."""
+"""A block in metres under a pulse in m/s2 and seconds: parameters and response."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from pydantic_core import PydanticCustomError
 
 from rocking.errors import in_range
 from rocking.model.block import STANDARD_GRAVITY
-from rocking_api.models.params import Method, PulseName, Question, Tolerance, check_value
-from rocking_api.models.responses import VERSION, ResponseAnswer
+from rocking_api.models.params import Method, Params, PulseName, Tolerance, check_value
+from rocking_api.models.responses import VERSION, PointResponse
 
-BORDER = {
+RANGES = {
     "half_width": (1e-4, 1e4, "m"),
     "half_height": (1e-4, 1e4, "m"),
     "peak_acceleration": (1e-6, 1e6, "m/s2"),
     "pulse_period": (1e-4, 1e4, "s"),
     "gravity": (1e-3, 1e3, "m/s2"),
 }
-"""What the service takes, far outside of all practice, so that no number leaves the range of doubles."""
+"""Ranges of the service, far outside of practice, within which all numbers are representable as doubles."""
 
 
 def _quantity(name: str, text: str, **more: Any) -> Any:
-    low, high, unit = BORDER[name]
+    low, high, unit = RANGES[name]
     return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
 
 
 def _housner_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
-    """One message about both, not one about each."""
+    """One error message for both alternatives."""
     try:
         return read(value)
     except ValidationError:
@@ -38,7 +38,7 @@ def _housner_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
 HousnerOrNumber = Annotated[Literal["housner"] | float, WrapValidator(_housner_or_number)]
 
 
-class BlockQuestion(Question):
+class BlockParams(Params):
     """A block and a pulse in SI units."""
 
     pulse: PulseName
@@ -53,63 +53,63 @@ class BlockQuestion(Question):
 
     def check(self) -> None:
         for name, value in self:
-            if name in BORDER:
-                low, high, unit = BORDER[name]
+            if name in RANGES:
+                low, high, unit = RANGES[name]
                 in_range(name, value, low, high, unit=unit)
             elif value != "housner":
                 check_value(name, value)
 
 
 class Threshold(BaseModel):
-    """An amplitude at which the fate changes."""
+    """An amplitude at which the outcome changes."""
 
     peak_acceleration: float = Field(description="a_g [m/s2]")
-    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
 
 
 class PeriodThreshold(BaseModel):
-    """A period at which the fate changes, the amplitude being what it is."""
+    """A period at which the outcome changes, the amplitude being what it is."""
 
     pulse_period: float = Field(description="T_p [s]")
-    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
 
 
 class SizeThreshold(BaseModel):
-    """A size at which the fate of blocks of this shape changes under this pulse."""
+    """A size at which the outcome of blocks of this shape changes under this pulse."""
 
     half_diagonal: float = Field(description="R [m]")
-    overturns_above: bool = Field(description="true: falls just above and stands just below; false: the other way")
+    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
 
 
 class Margins(BaseModel):
-    """How far the block is from another fate, by the rigid equation itself."""
+    """How far the block is from another outcome, by the rigid equation itself."""
 
     nearest_acceleration: float | None = Field(
-        description="amplitude nearest in its logarithm at which the fate changes, this period [m/s2]; null: none found"
+        description="amplitude nearest in its logarithm at which the outcome changes [m/s2]; null: none found"
     )
-    acceleration_factor: float | None = Field(description="that over the peak acceleration asked for [-]")
+    acceleration_factor: float | None = Field(description="that over the peak acceleration of the request [-]")
     nearest_period: float | None = Field(
-        description="period nearest in its logarithm at which the fate changes, this amplitude [s]; null: none found"
+        description="period nearest in its logarithm at which the outcome changes, this amplitude [s]; null: none found"
     )
-    period_factor: float | None = Field(description="that over the period asked for [-]")
-    periods: list[PeriodThreshold] = Field(description="all periods at which the fate changes, ascending")
-    periods_searched: tuple[float, float] = Field(description="smallest and largest period looked at [s]")
+    period_factor: float | None = Field(description="that over the period of the request [-]")
+    periods: list[PeriodThreshold] = Field(description="all periods at which the outcome changes, ascending")
+    periods_searched: tuple[float, float] = Field(description="smallest and largest period searched [s]")
     smallest_surviving_half_diagonal: float | None = Field(
-        description="smallest R of this shape that survives this pulse, of those looked at [m]; a larger one may fall"
+        description="smallest R of this shape searched that survives this pulse [m]; a larger one may overturn"
     )
     surviving_from_half_diagonal: float | None = Field(
-        description="R from which every larger size looked at survives [m]; null: the largest falls"
+        description="R from which every larger size searched survives [m]; null: the largest overturns"
     )
-    sizes: list[SizeThreshold] = Field(description="all sizes of this shape at which the fate changes, ascending")
-    sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal looked at [m]")
+    sizes: list[SizeThreshold] = Field(description="all sizes of this shape at which the outcome changes, ascending")
+    sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal searched [m]")
 
 
-class BlockAnswer(BaseModel):
+class BlockResponse(BaseModel):
     """What happens to the block."""
 
-    query: BlockQuestion
-    url: str = Field(description="path that repeats the question, defaults included")
-    response: ResponseAnswer = Field(description="the same question and answer in dimensionless groups")
+    query: BlockParams
+    url: str = Field(description="path of the request, defaults included")
+    response: PointResponse = Field(description="the same request and response in dimensionless groups")
     overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
     rocking_model_applies: bool = Field(
         description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off; what is "
@@ -126,18 +126,18 @@ class BlockAnswer(BaseModel):
     restitution: float = Field(description="eta [-]; with housner 0 where (2.4) is negative")
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
     thresholds: list[Threshold] | None = Field(
-        description="all amplitudes at which the fate changes, this period, ascending; null if they were not found in "
-        "time, which `warnings` tells"
+        description="all amplitudes at which the outcome changes, this period, ascending; null if not found in time, "
+        "see `warnings`"
     )
     largest_safe_acceleration: float | None = Field(
         description="peak acceleration below which this block, of this size, does not overturn under this pulse at "
         "this period [m/s2]; a smaller block of the same shape may; null: no change of outcome was found, or the "
-        "rocking model does not apply just below the lowest of `thresholds`, as `warnings` tells"
+        "rocking model does not apply just below the lowest of `thresholds`, see `warnings`"
     )
     largest_safe_friction_demand: float | None = Field(
         description="coefficient of friction that it needs to be safe just below that acceleration [-]; null likewise"
     )
-    margins: Margins | None = Field(description="null if they were not found in time, which `warnings` tells")
+    margins: Margins | None = Field(description="null if they were not found in time, see `warnings`")
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"
     )

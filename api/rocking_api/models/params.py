@@ -1,4 +1,4 @@
-"""The parameters of the routes. Their ranges stand here for the description; `rocking` itself checks them."""
+"""Parameters of the routes and their ranges."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
 _KNOWN = frozenset(PULSES)
 
-# The border of the service, far outside of all practice: beyond it the solver's numbers leave the range of doubles.
-SMALLEST_SLENDERNESS = 1e-9
-FREQUENCY_RATIOS = (1e-6, 1e6)
-SMALLEST_ALPHA_DEG = 1e-6
-LARGEST_ALPHA_DEG = 89.9
+# Ranges of the service, far outside of practice: beyond them the numbers of the solver leave the range of doubles.
+MIN_SLENDERNESS = 1e-9
+FREQUENCY_RATIO_RANGE = (1e-6, 1e6)
+MIN_ALPHA_DEG = 1e-6
+MAX_ALPHA_DEG = 89.9
 
-LONGEST_DURATION = 1e9
-"""Of a history, in tau = p t [-]."""
+MAX_DURATION = 1e9
+"""Duration of a history, tau = p t [-]."""
 
 PulseName = Annotated[
     str,
@@ -37,7 +37,7 @@ Slenderness = Annotated[
     Field(
         description=f"{SLENDERNESS.help}; from 1 on the block does not uplift",
         examples=[0.4],
-        json_schema_extra={"minimum": SMALLEST_SLENDERNESS},
+        json_schema_extra={"minimum": MIN_SLENDERNESS},
     ),
 ]
 FrequencyRatio = Annotated[
@@ -45,7 +45,7 @@ FrequencyRatio = Annotated[
     Field(
         description=FREQUENCY_RATIO.help,
         examples=[5.0],
-        json_schema_extra={"minimum": FREQUENCY_RATIOS[0], "maximum": FREQUENCY_RATIOS[1]},
+        json_schema_extra={"minimum": FREQUENCY_RATIO_RANGE[0], "maximum": FREQUENCY_RATIO_RANGE[1]},
     ),
 ]
 Restitution = Annotated[
@@ -70,12 +70,12 @@ Tolerance = Annotated[
 ]
 Format = Annotated[
     Literal["json", "csv", "nc"] | None,
-    Field(description="form of the answer; absent: by the Accept header, else JSON (nc: netCDF-3)"),
+    Field(description="format of the response; absent: by the Accept header, else JSON (nc: netCDF-3)"),
 ]
 
 
-class Question(BaseModel):
-    """What all questions share. An unknown parameter is refused, so that a slip of the pen is not ignored."""
+class Params(BaseModel):
+    """Base of all parameter models. Unknown parameters are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -91,8 +91,8 @@ class Question(BaseModel):
             check_value(name, value)
 
 
-class LookupOptions(Question):
-    """How a response is to be found."""
+class LookupOptions(Params):
+    """Options of a lookup."""
 
     pulse: PulseName
     alpha_deg: AlphaDeg = None
@@ -100,7 +100,7 @@ class LookupOptions(Question):
     tolerance: Tolerance = 1e-4
 
 
-class ResponseQuestion(LookupOptions):
+class ResponseParams(LookupOptions):
     """One block."""
 
     slenderness: Slenderness
@@ -108,7 +108,7 @@ class ResponseQuestion(LookupOptions):
     restitution: Restitution
 
 
-class BatchQuestion(LookupOptions):
+class BatchParams(LookupOptions):
     """Many blocks: numbers, or arrays of one length."""
 
     slenderness: Slenderness | list[Slenderness]
@@ -116,7 +116,7 @@ class BatchQuestion(LookupOptions):
     restitution: Restitution | list[Restitution]
 
 
-class SpectrumQuestion(LookupOptions):
+class SpectrumParams(LookupOptions):
     """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
 
     slenderness: Slenderness
@@ -127,8 +127,8 @@ class SpectrumQuestion(LookupOptions):
     format: Format = None
 
 
-class OverturningQuestion(Question):
-    """The curves that separate standing from falling."""
+class OverturningParams(Params):
+    """Boundary curves of overturning."""
 
     pulse: PulseName
     restitution: Restitution
@@ -136,7 +136,7 @@ class OverturningQuestion(Question):
     format: Format = None
 
 
-class HistoryQuestion(Question):
+class HistoryParams(Params):
     """The motion of one block."""
 
     pulse: PulseName
@@ -147,7 +147,7 @@ class HistoryQuestion(Question):
     duration: float | None = Field(
         None,
         description="length tau = p t [-]; absent: the pulse and some free rocking",
-        json_schema_extra={"exclusiveMinimum": 0, "maximum": LONGEST_DURATION},
+        json_schema_extra={"exclusiveMinimum": 0, "maximum": MAX_DURATION},
     )
     samples: int = Field(400, description="uniform samples [-]; the events are added", json_schema_extra={"minimum": 2})
     contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
@@ -155,7 +155,7 @@ class HistoryQuestion(Question):
 
 
 def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """A slenderness or a frequency ratio inside the border of the service.
+    """A slenderness or a frequency ratio within the range of the service.
 
     Raises
     ------
@@ -163,8 +163,8 @@ def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
         If one is outside.
     """
     if name == "slenderness":
-        return in_range(name, value, SMALLEST_SLENDERNESS, np.inf, closed="left")
-    return in_range(name, value, *FREQUENCY_RATIOS)
+        return in_range(name, value, MIN_SLENDERNESS, np.inf, closed="left")
+    return in_range(name, value, *FREQUENCY_RATIO_RANGE)
 
 
 def alpha_of(alpha_deg: float | None) -> float | None:
@@ -177,7 +177,7 @@ def alpha_of(alpha_deg: float | None) -> float | None:
     """
     if not alpha_deg:
         return None
-    return math.radians(float(in_range("alpha_deg", alpha_deg, SMALLEST_ALPHA_DEG, LARGEST_ALPHA_DEG, unit="deg")))
+    return math.radians(float(in_range("alpha_deg", alpha_deg, MIN_ALPHA_DEG, MAX_ALPHA_DEG, unit="deg")))
 
 
 _CHECKS: dict[str, Callable[[Any], object]] = {
@@ -188,7 +188,7 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "alpha_deg": alpha_of,
     "tolerance": partial(in_range, "tolerance", low=0.0, high=np.inf, closed="left"),
     "highest_amplitude": partial(in_range, "highest_amplitude", low=1.0, high=1e6, closed="right"),
-    "duration": partial(in_range, "duration", low=0.0, high=LONGEST_DURATION, closed="right"),
+    "duration": partial(in_range, "duration", low=0.0, high=MAX_DURATION, closed="right"),
     "samples": partial(in_range, "samples", low=2, high=1_000_000),
     "points": partial(in_range, "points", low=2, high=np.inf, closed="left"),
     "columns": partial(in_range, "columns", low=2, high=np.inf, closed="left"),
@@ -209,20 +209,20 @@ def check_value(name: str, value: Any) -> None:
         check(value)
 
 
-def check_point(question: ResponseQuestion) -> None:
-    """Refuse an unknown pulse and a block outside the border of the service; a microsecond where all is well.
+def check_point(params: ResponseParams) -> None:
+    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond.
 
     Raises
     ------
     InvalidArgumentError
-        For the first that is wrong.
+        For the first invalid parameter.
     """
-    if question.pulse not in _KNOWN:
-        get_pulse(question.pulse)
-    lowest, highest = FREQUENCY_RATIOS
-    if not SMALLEST_SLENDERNESS <= question.slenderness < math.inf:
-        checked("slenderness", question.slenderness)
-    if not lowest <= question.frequency_ratio <= highest:
-        checked("frequency_ratio", question.frequency_ratio)
-    if not RESTITUTION.lower <= question.restitution <= RESTITUTION.upper:
-        check(RESTITUTION, question.restitution)
+    if params.pulse not in _KNOWN:
+        get_pulse(params.pulse)
+    lowest, highest = FREQUENCY_RATIO_RANGE
+    if not MIN_SLENDERNESS <= params.slenderness < math.inf:
+        checked("slenderness", params.slenderness)
+    if not lowest <= params.frequency_ratio <= highest:
+        checked("frequency_ratio", params.frequency_ratio)
+    if not RESTITUTION.lower <= params.restitution <= RESTITUTION.upper:
+        check(RESTITUTION, params.restitution)

@@ -1,44 +1,53 @@
-"""The answers of the routes. Missing numbers are null: there is no peak where a block overturns."""
+"""Responses of the routes. Missing numbers are null: there is no peak where a block overturns."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
-from rocking.model import fields
+from rocking.model.fields import (
+    COLUMN_FIELDS,
+    ERROR_BOUND,
+    EXCEEDED_ALPHA,
+    IMPACTS,
+    OUTCOME,
+    OVERTURNED,
+    PEAK_ROTATION,
+    SOURCE,
+)
 from rocking.model.response import Outcome
-from rocking.solver.bounded_response import BoundedResponse
-from rocking_api.http.formats import Column
-from rocking_api.models.params import HistoryQuestion, OverturningQuestion, ResponseQuestion
-from rocking_api.models.point import Point
+from rocking_api.execution.evaluation import BatchResult, PointResult
+from rocking_api.http.encoding import Column
+from rocking_api.models.params import HistoryParams, OverturningParams, ResponseParams
 
 VERSION = version("rocking")
 OUTCOMES = [outcome.name for outcome in Outcome]
 
-_OUTCOME = Field(description=f"{fields.OUTCOME.meaning}, one of {', '.join(OUTCOMES)}")
-_BOUND = Field(description=f"{fields.ERROR_BOUND.meaning} [-]; null if there is no peak or no bound")
-_SOURCE = Field(description=fields.SOURCE.description())
-_PEAK = Field(description=fields.PEAK_ROTATION.description())
-_IMPACTS = Field(
-    description=f"{fields.IMPACTS.description()}; -1 if a data set was interpolated whose nodes there differ"
-)
-_EXCEEDED = Field(description=fields.EXCEEDED_ALPHA.description())
+_PEAK = Field(description=PEAK_ROTATION.description())
+_OVERTURNED = Field(description=OVERTURNED.description())
+_OUTCOME = Field(description=f"{OUTCOME.description()}, one of {', '.join(OUTCOMES)}")
+_IMPACTS = Field(description=f"{IMPACTS.description()}; -1 if nodes of a data set differ there")
+_EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
+_BOUND = Field(description=ERROR_BOUND.description())
+_SOURCE = Field(description=SOURCE.description())
 _DATA = Field(
     description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
     "solver did"
 )
 
 
-class ResponseAnswer(BaseModel):
+class PointResponse(BaseModel):
     """One block."""
 
-    query: ResponseQuestion
+    query: ResponseParams
     peak_rotation: float | None = _PEAK
-    overturned: bool
+    overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     meaning: str = Field(description="the outcome in words")
     impacts: int = _IMPACTS
@@ -51,26 +60,26 @@ class ResponseAnswer(BaseModel):
 
 
 class Columns(BaseModel):
-    """Many blocks, in the order of the question."""
+    """Many blocks, in the order of the request."""
 
     peak_rotation: list[float | None] = _PEAK
-    overturned: list[bool]
+    overturned: list[bool] = _OVERTURNED
     outcome: list[str] = _OUTCOME
     impacts: list[int] = _IMPACTS
     exceeded_alpha: list[bool] = _EXCEEDED
     error_bound: list[float | None] = _BOUND
     source: list[str] = _SOURCE
-    data_versions: list[str] = Field(description="sha256 of each data set that answered some")
+    data_versions: list[str] = Field(description="sha256 of each data set used")
     version: str = VERSION
 
 
-class BatchAnswer(Columns):
+class BatchResponse(Columns):
     """A batch."""
 
-    query: dict[str, Any] = Field(description="the options of the question, and how many points it had")
+    query: dict[str, Any] = Field(description="options of the request, and its number of points")
 
 
-class SpectrumAnswer(Columns):
+class SpectrumResponse(Columns):
     """A spectrum."""
 
     query: dict[str, Any]
@@ -80,24 +89,24 @@ class SpectrumAnswer(Columns):
 class Curve(BaseModel):
     """One boundary curve."""
 
-    outcome: str = Field(description="fate on the side where the block overturns")
+    outcome: str = Field(description="outcome on the side where the block overturns")
     impacts: int = Field(description="impacts before it overturns there")
     slenderness: list[float] = Field(description="1/a [-]")
     frequency_ratio: list[float] = Field(description="omega_g/p [-]")
 
 
-class OverturningAnswer(BaseModel):
+class OverturningResponse(BaseModel):
     """The boundary curves of a pulse and a restitution."""
 
-    query: OverturningQuestion
+    query: OverturningParams
     curves: list[Curve]
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
     version: str = VERSION
 
 
-class ContactAnswer(BaseModel):
-    """What the ground has to supply through a motion; of a block that overturns, until it passes alpha for good."""
+class ContactResponse(BaseModel):
+    """Reactions of the ground during a motion; of a block that overturns, until it passes alpha for the last time."""
 
     horizontal_reaction: list[float] = Field(description="H/(m g) at the pivot [-]; 0 in the slender limit")
     normal_reaction: list[float] = Field(description="N/(m g) [-]; 0 and below: the block lifts off")
@@ -110,14 +119,14 @@ class ContactAnswer(BaseModel):
         description="horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
     )
     lifts_off: bool
-    warnings: str = Field(description="where pure rocking is in doubt, in words")
+    warnings: str = Field(description="where the assumption of pure rocking is doubtful, in words")
 
 
-class HistoryAnswer(BaseModel):
+class HistoryResponse(BaseModel):
     """A motion."""
 
-    query: HistoryQuestion
-    overturned: bool
+    query: HistoryParams
+    overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     peak_rotation: float | None = _PEAK
     impacts: int = _IMPACTS
@@ -126,20 +135,20 @@ class HistoryAnswer(BaseModel):
     angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
     ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
     impact_time: list[float] = Field(description="tau of the impacts [-]")
-    contact: ContactAnswer | None = Field(None, description="null unless asked for")
+    contact: ContactResponse | None = Field(None, description="null unless requested")
     source: str = "solver"
     version: str = VERSION
 
 
 class DatasetSummary(BaseModel):
-    """A line of the catalogue."""
+    """An entry of the catalogue."""
 
     name: str
     size: int = Field(description="bytes of the netCDF file")
     sha256: str
     metadata: str = Field(description="path of its description")
     netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
-    version: str = Field(description="path of this very version of the file: may be kept for ever")
+    version: str = Field(description="path of this version of the file; immutable")
     zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
 
 
@@ -159,7 +168,7 @@ class VariableDescription(BaseModel):
 
 
 class DatasetDescription(DatasetSummary):
-    """What a data set holds."""
+    """Contents of a data set."""
 
     dimensions: dict[str, int]
     coordinates: dict[str, VariableDescription]
@@ -170,42 +179,57 @@ class DatasetDescription(DatasetSummary):
 class Health(BaseModel):
     """State of the service."""
 
-    status: str = Field(description="ok, or degraded: it answers by the solver where data sets are missing or damaged")
+    status: str = Field(description="ok, or degraded: data sets are missing or damaged, and the solver replaces them")
     version: str = VERSION
     datasets: int = Field(description="data sets found")
-    unchecked: int = Field(0, description="of these, not yet read and checked: ask again in a moment")
+    unchecked: int = Field(0, description="of these, not yet checked; retry in a moment")
     problems: dict[str, str] = Field(description="what is missing or damaged, by name")
 
 
-def columns_of(found: BoundedResponse) -> dict[str, Any]:
-    """The fields of `Columns` as plain lists."""
-    return {name: column.tolist() for name, column in arrays_of(found).items()}
+class Names:
+    """A column of names, stored as codes.
+
+    Parameters
+    ----------
+    codes : int or bool array, shape (points,)
+        Index of each name.
+    names : sequence of str
+        All names.
+    """
+
+    def __init__(self, codes: NDArray[Any], names: Sequence[str]) -> None:
+        self._codes = codes
+        self._names = np.array(names, dtype=np.object_)  # one object per name, not per point
+
+    def __len__(self) -> int:
+        return len(self._codes)
+
+    def __getitem__(self, points: slice) -> NDArray[np.object_]:
+        return np.asarray(self._names[self._codes[points].astype(np.intp)])
 
 
-def arrays_of(found: BoundedResponse) -> dict[str, Column]:
-    """The same as arrays (points,)."""
-    return {
-        "peak_rotation": found.peak_rotation,
-        "overturned": found.overturned,
-        "outcome": np.array(OUTCOMES, dtype=np.object_)[found.outcome],  # each name once, not once a point
-        "impacts": found.impacts,
-        "exceeded_alpha": found.exceeded_alpha,
-        "error_bound": found.error_bound,
-        "source": found.source,
+def columns_of(result: BatchResult) -> dict[str, Column]:
+    """The fields of `Columns` with one value for each point."""
+    columns: dict[str, Column] = {
+        **result.fields,
+        OVERTURNED.name: result.fields[OUTCOME.name] >= Outcome.OVERTURNED_DIRECTLY,
+        OUTCOME.name: Names(result.fields[OUTCOME.name], OUTCOMES),
+        SOURCE.name: Names(result.from_cube, ["solver", "cube"]),
     }
+    return {field.name: columns[field.name] for field in COLUMN_FIELDS}
 
 
-def response_answer(question: ResponseQuestion, point: Point) -> ResponseAnswer:
-    """The answer about one block."""
+def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
+    """The response for one block."""
     outcome = Outcome(point.outcome)
     overturned = outcome >= Outcome.OVERTURNED_DIRECTLY
     note = None
     if overturned:
         note = "the block overturns: there is no peak"
     elif math.isinf(point.error_bound):
-        note = "the fate changes within the rounding of the question: there is no bound"
-    return ResponseAnswer(
-        query=question,
+        note = "the outcome changes within the rounding of the question: there is no bound"
+    return PointResponse(
+        query=params,
         peak_rotation=finite(point.peak_rotation),
         overturned=overturned,
         outcome=outcome.name,
@@ -220,5 +244,5 @@ def response_answer(question: ResponseQuestion, point: Point) -> ResponseAnswer:
 
 
 def finite(value: float) -> float | None:
-    """The number, None where there is none."""
+    """The number, None if it is not finite."""
     return value if math.isfinite(value) else None

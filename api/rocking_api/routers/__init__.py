@@ -1,1 +1,1 @@
-"""The routes, one file per kind of question."""
+"""The routes, one file per resource."""

@@ -1,4 +1,4 @@
-"""A map of the control space: fate and peak over a grid of frequency ratio and slenderness (figures 4 and 8 in one)."""
+"""A map of the control space: outcome and peak over a grid of frequency ratio and slenderness (figures 4 and 8)."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ from rocking.errors import in_range
 from rocking.model.response import Response as Found
 from rocking.solver.peak_response import peak_response
 from rocking_api.http.caching import not_modified
-from rocking_api.http.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
-from rocking_api.http.problems import TooLargeError
+from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import (
-    FREQUENCY_RATIOS,
-    SMALLEST_SLENDERNESS,
+    FREQUENCY_RATIO_RANGE,
+    MIN_SLENDERNESS,
     AlphaDeg,
     Format,
     FrequencyRatio,
+    Params,
     PulseName,
-    Question,
     Restitution,
     Slenderness,
     alpha_of,
@@ -34,17 +35,17 @@ from rocking_api.models.params import (
 from rocking_api.models.responses import OUTCOMES, VERSION
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["curves"])
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
 DIGITS = 4
-"""Decimals of the peaks in JSON: a picture shows no more, and the text is a third as long [-]."""
+"""Decimals of the peaks in JSON [-]: enough for a picture, at a third of the length."""
 
 MAX_AGE = 600
-"""How long a client may keep a map without asking again [s]; the same question has the same answer."""
+"""How long a client may store a map without revalidation [s]."""
 
 
-class MapQuestion(Question):
-    """A window of the control space: columns even in the logarithm of the frequency ratio, rows even in slenderness."""
+class MapParams(Params):
+    """A window of the control space: columns uniform in log frequency ratio, rows uniform in slenderness."""
 
     pulse: PulseName
     restitution: Restitution
@@ -58,8 +59,8 @@ class MapQuestion(Question):
     format: Format = None
 
 
-class MapAnswer(BaseModel):
-    """The map, row after row: the first row is the smallest slenderness, and begins at the smallest frequency ratio."""
+class MapResponse(BaseModel):
+    """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
     query: dict[str, Any]
     frequency_ratio: list[float] = Field(description="omega_g/p of the columns [-]")
@@ -67,23 +68,23 @@ class MapAnswer(BaseModel):
     peak_rotation: list[float | None] = Field(
         description=f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
     )
-    outcome: list[int] = Field(description="final fate as an index into `outcomes`")
-    outcomes: list[str] = Field(description="names of the fates")
+    outcome: list[int] = Field(description="final outcome as an index into `outcomes`")
+    outcomes: list[str] = Field(description="names of the outcomes")
     source: str = "solver"
     version: str = VERSION
 
 
 @router.get(
     "/map",
-    summary="Fate and peak rotation over a window of frequency ratio and slenderness",
-    response_model=MapAnswer,
+    summary="Outcome and peak rotation over a window of frequency ratio and slenderness",
+    response_model=MapResponse,
     responses=CONTENT | {304: {"description": "not modified"}},
 )
-async def get_map(question: Annotated[MapQuestion, Query()], request: Request, service: ServiceDep) -> Response:
-    """Many blocks in few bytes, for pictures; the solver always answers, and without error bounds."""
-    form = form_of(request, question.format)
-    axes = _axes(service, question)
-    answer = await service.off_loop(question, lambda stop: _map(question, *axes, form, stop), request)
+async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
+    form = negotiated_form(request, params.format)
+    axes = _axes(service, params)
+    answer = await service.run_heavy(params, lambda stop: _map(params, *axes, form, stop), request)
     digest = hashlib.sha256(answer.body).hexdigest()
     known = not_modified(request, digest)
     response = answer if known is None else known
@@ -93,21 +94,21 @@ async def get_map(question: Annotated[MapQuestion, Query()], request: Request, s
 
 
 def _map(
-    question: MapQuestion,
+    params: MapParams,
     frequency_ratio: NDArray[np.float64],
     slenderness: NDArray[np.float64],
     form: str,
     stop: StopFlag,
 ) -> Response:
     found = peak_response(
-        question.pulse,
+        params.pulse,
         slenderness=slenderness[:, None],
         frequency_ratio=frequency_ratio,
-        restitution=question.restitution,
-        alpha=alpha_of(question.alpha_deg),
+        restitution=params.restitution,
+        alpha=alpha_of(params.alpha_deg),
         stop=stop,
     )
-    query = question.model_dump(exclude={"format"})
+    query = params.model_dump(exclude={"format"})
     if form == "nc":
         return netcdf_response(_dataset(query, frequency_ratio, slenderness, found), "map")
     if form == "csv":
@@ -118,7 +119,7 @@ def _map(
         columns |= {"exceeded_alpha": found.exceeded_alpha}
         return csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
     return json_response(
-        MapAnswer.model_construct(
+        MapResponse.model_construct(
             query=query,
             frequency_ratio=frequency_ratio.tolist(),
             slenderness=slenderness.tolist(),
@@ -129,20 +130,20 @@ def _map(
     )
 
 
-def _axes(service: Service, question: MapQuestion) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The columns and the rows, both inside the border of the service."""
-    least, most = FREQUENCY_RATIOS
-    left = float(in_range("frequency_ratio_min", question.frequency_ratio_min, least, most))
-    right = float(in_range("frequency_ratio_max", question.frequency_ratio_max, left, most, closed="right"))
-    low = float(in_range("slenderness_min", question.slenderness_min, SMALLEST_SLENDERNESS, np.inf, closed="left"))
-    high = float(in_range("slenderness_max", question.slenderness_max, low, np.inf, closed="neither"))
-    in_range("columns", question.columns, 2, np.inf, closed="left")
-    in_range("rows", question.rows, 2, np.inf, closed="left")
-    if question.columns * question.rows > service.settings.max_samples:
-        larger = "columns" if question.columns >= question.rows else "rows"
+def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The columns and the rows, within the ranges of the service."""
+    least, most = FREQUENCY_RATIO_RANGE
+    left = float(in_range("frequency_ratio_min", params.frequency_ratio_min, least, most))
+    right = float(in_range("frequency_ratio_max", params.frequency_ratio_max, left, most, closed="right"))
+    low = float(in_range("slenderness_min", params.slenderness_min, MIN_SLENDERNESS, np.inf, closed="left"))
+    high = float(in_range("slenderness_max", params.slenderness_max, low, np.inf, closed="neither"))
+    in_range("columns", params.columns, 2, np.inf, closed="left")
+    in_range("rows", params.rows, 2, np.inf, closed="left")
+    if params.columns * params.rows > service.settings.max_samples:
+        larger = "columns" if params.columns >= params.rows else "rows"
         allowed = f"columns times rows at most {service.settings.max_samples}"
-        raise TooLargeError(larger, getattr(question, larger), allowed)
-    return np.geomspace(left, right, question.columns), np.linspace(low, high, question.rows)
+        raise TooLargeError(larger, getattr(params, larger), allowed)
+    return np.geomspace(left, right, params.columns), np.linspace(low, high, params.rows)
 
 
 def _dataset(

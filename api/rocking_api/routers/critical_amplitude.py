@@ -1,4 +1,4 @@
-"""The inverse question: the amplitudes at which the fate of a block changes."""
+"""The inverse problem: amplitudes at which the outcome of a block changes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from pydantic import BaseModel, Field
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.amplitude import Thresholds, critical_amplitude
 from rocking.model.response import Outcome
-from rocking_api.http.params_route import QuestionRoute
-from rocking_api.models.params import AlphaDeg, FrequencyRatio, PulseName, Question, Restitution, alpha_of
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
 from rocking_api.models.responses import VERSION
 from rocking_api.service import ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
+router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
 
-class AmplitudeQuestion(Question):
-    """A block and a pulse, but for its amplitude."""
+class AmplitudeParams(Params):
+    """A block and a pulse without amplitude."""
 
     pulse: PulseName
     frequency_ratio: FrequencyRatio
@@ -27,54 +27,56 @@ class AmplitudeQuestion(Question):
     alpha_deg: AlphaDeg = None
     highest_amplitude: float = Field(
         100.0,
-        description="largest a = a_g/(g tan alpha) looked at [-]",
+        description="largest a = a_g/(g tan alpha) searched [-]",
         json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6},
     )
 
 
 class AmplitudeThreshold(BaseModel):
-    """An amplitude at which the fate changes."""
+    """An amplitude at which the outcome changes."""
 
     amplitude: float = Field(description="a = a_g/(g tan alpha) [-]")
     slenderness: float = Field(description="1/a [-]")
-    overturns_above: bool = Field(description="true: falls just above and stands just below it; false: the other way")
-    outcome: str = Field(description="fate on the side where it overturns")
-    meaning: str = Field(description="that fate in words")
+    overturns_above: bool = Field(
+        description="true: overturns just above and survives just below it; false: the reverse"
+    )
+    outcome: str = Field(description="outcome on the side where it overturns")
+    meaning: str = Field(description="that outcome in words")
     impacts: int = Field(description="impacts before it overturns there")
 
 
-class AmplitudeAnswer(BaseModel):
-    """All amplitudes at which the fate changes."""
+class AmplitudeResponse(BaseModel):
+    """All amplitudes at which the outcome changes."""
 
-    query: AmplitudeQuestion
+    query: AmplitudeParams
     thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
     largest_safe_amplitude: float | None = Field(
-        description="amplitude below which the block never falls [-]; null: it falls at none that was looked at"
+        description="amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
     source: str = "solver"
     version: str = VERSION
 
 
-@router.get("/critical_amplitude", summary="Amplitudes at which the fate of a block changes")
+@router.get("/critical_amplitude", summary="Amplitudes at which the outcome of a block changes")
 async def get_critical_amplitude(
-    question: Annotated[AmplitudeQuestion, Query()], request: Request, service: ServiceDep
-) -> AmplitudeAnswer:
-    """Every threshold between standing and falling; the solver always answers, each good to 1e-12 in 1/a."""
-    return await service.off_loop(question, lambda stop: _answer(question, stop), request)
+    params: Annotated[AmplitudeParams, Query()], request: Request, service: ServiceDep
+) -> AmplitudeResponse:
+    """Every threshold between survival and overturning, by the solver, each accurate to 1e-12 in 1/a."""
+    return await service.run_heavy(params, lambda stop: _answer(params, stop), request)
 
 
-def _answer(question: AmplitudeQuestion, stop: StopFlag) -> AmplitudeAnswer:
+def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
     found = critical_amplitude(
-        question.pulse,
-        frequency_ratio=question.frequency_ratio,
-        restitution=question.restitution,
-        alpha=alpha_of(question.alpha_deg),
-        highest_amplitude=question.highest_amplitude,
+        params.pulse,
+        frequency_ratio=params.frequency_ratio,
+        restitution=params.restitution,
+        alpha=alpha_of(params.alpha_deg),
+        highest_amplitude=params.highest_amplitude,
         stop=stop,
     )
     thresholds = _thresholds(found)
     lowest = thresholds[0].amplitude if thresholds else None
-    return AmplitudeAnswer(query=question, thresholds=thresholds, largest_safe_amplitude=lowest)
+    return AmplitudeResponse(query=params, thresholds=thresholds, largest_safe_amplitude=lowest)
 
 
 def _thresholds(found: Thresholds) -> list[AmplitudeThreshold]:

@@ -1,4 +1,4 @@
-"""The data sets themselves: catalogue, description, netCDF file, zarr store."""
+"""Data sets: catalogue, description, netCDF file, zarr store."""
 
 from __future__ import annotations
 
@@ -13,28 +13,31 @@ from starlette.exceptions import HTTPException
 
 from rocking.datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError
 from rocking.errors import DatasetError
-from rocking_api.http.caching import IMMUTABLE, not_modified, validators
+from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
+from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
+from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, VariableDescription
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1/datasets", tags=["datasets"])
+router = APIRouter(prefix="/v1/datasets", tags=["datasets"], route_class=ParamsRoute)
 
 
-@router.get("", summary="Catalogue")
-async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
+@router.get("", summary="Catalogue", response_model=DatasetCatalogue)
+async def get_datasets(service: ServiceDep) -> Response:
     """All data sets in the results folder that can be read."""
 
     def work() -> list[DatasetFile]:
-        catalogue = service.atlas.catalogue
+        catalogue = service.cubes.catalogue
         found = []
         for name in catalogue.names():
-            with suppress(UnknownDatasetError, DatasetError):  # gone meanwhile, or unreadable: /health tells
+            with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or unreadable: see /health
                 found.append(catalogue.product(name))
         return found
 
-    products = await service.reading(work)
-    return DatasetCatalogue(datasets=[DatasetSummary(**_summary(product)) for product in products])
+    products = await service.run_io(work)
+    catalogue = DatasetCatalogue(datasets=[DatasetSummary(**_summary(product)) for product in products])
+    return json_response(catalogue, {"Cache-Control": REVALIDATE})
 
 
 @router.head("/{name:path}.nc", include_in_schema=False)
@@ -44,7 +47,7 @@ async def get_datasets(service: ServiceDep) -> DatasetCatalogue:
     response_class=Response,
     responses={
         200: {"content": {"application/x-netcdf": {}}},
-        206: {"description": "the ranges asked for"},
+        206: {"description": "the requested ranges"},
         304: {"description": "not modified"},
     },
 )
@@ -52,13 +55,13 @@ async def get_netcdf(
     name: str,
     request: Request,
     service: ServiceDep,
-    sha256: Annotated[str | None, Query(description="only this version: 404 once the file is another")] = None,
+    sha256: Annotated[str | None, Query(description="only this version: 404 once the file has changed")] = None,
 ) -> Response:
-    """The file as the workflow wrote it; its ETag is its sha256, and ranges may be asked for.
+    """The file as written by the workflow; its ETag is its sha256, and ranges are supported.
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
-    file, product = await service.reading(partial(_sound, service, name))
+    file, product = await service.run_io(partial(_sound, service, name))
     if sha256 is None:
         return file_response(request, file, product)
     if sha256 != product.sha256:
@@ -79,7 +82,7 @@ async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -
 
     `xarray.open_dataset(".../{name}.zarr", engine="zarr")` reads it.
     """
-    sha256, store = await service.reading(partial(service.zarr_views.store, name))
+    sha256, store = await service.run_io(partial(service.zarr_stores.store, name))
     if key not in store:
         raise HTTPException(404, f"the zarr store of `{name}` has no key `{key}`")
     unchanged = not_modified(request, sha256)
@@ -90,18 +93,25 @@ async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -
     return Response(store[key], media_type=media_type, headers=validators(sha256))
 
 
-@router.get("/{name:path}", summary="Description")
-async def get_dataset(name: str, service: ServiceDep) -> DatasetDescription:
+@router.get("/{name:path}", summary="Description", response_model=DatasetDescription)
+async def get_dataset(name: str, service: ServiceDep) -> Response:
     """Dimensions, variables and attributes of a data set, its size and its sha256."""
-    return await service.reading(partial(_description, service, name))
+    description = await service.run_io(partial(_description, service, name))
+    return json_response(description, {"Cache-Control": REVALIDATE})
 
 
 def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
-    """The open file of a data set, unless it is damaged: a broken file is refused rather than handed on."""
-    file = service.atlas.catalogue.open(name)
+    """The open file of a data set.
+
+    Raises
+    ------
+    DatasetError
+        If it is damaged.
+    """
+    file = service.cubes.catalogue.open(name)
     try:
-        product = service.atlas.catalogue.product_of(file)
-        problem = service.atlas.problem_of(file)
+        product = service.cubes.catalogue.product_of(file)
+        problem = service.cubes.problem_of(file)
         if problem is not None:
             raise DatasetError(problem)
     except BaseException:
@@ -111,7 +121,7 @@ def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
 
 
 def _description(service: Service, name: str) -> DatasetDescription:
-    product, dataset = service.atlas.catalogue.dataset(name)
+    product, dataset = service.cubes.catalogue.dataset(name)
     return DatasetDescription(
         **_summary(product),
         dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},

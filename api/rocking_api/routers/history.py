@@ -10,64 +10,64 @@ from fastapi import APIRouter, Query, Request, Response
 from rocking._numba.cancellation import StopFlag
 from rocking.history.contact import ATTRIBUTES, COLUMNS
 from rocking.history.time_history import time_history
-from rocking_api.http.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
-from rocking_api.http.params_route import QuestionRoute
-from rocking_api.http.problems import TooLargeError
-from rocking_api.models.params import HistoryQuestion, alpha_of
-from rocking_api.models.responses import ContactAnswer, HistoryAnswer, finite
+from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.params import HistoryParams, alpha_of
+from rocking_api.models.responses import ContactResponse, HistoryResponse, finite
 from rocking_api.service import ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
 
-@router.get("/history", summary="Motion of one block", response_model=HistoryAnswer, responses=CONTENT)
-async def get_history(question: Annotated[HistoryQuestion, Query()], request: Request, service: ServiceDep) -> Response:
-    """Rotation and angular velocity from the start of the pulse through free rocking; the solver always answers.
+@router.get("/history", summary="Motion of one block", response_model=HistoryResponse, responses=CONTENT)
+async def get_history(params: Annotated[HistoryParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Rotation and angular velocity from the start of the pulse through free rocking, always computed by the solver.
 
-    With `contact`, the reactions of the ground too, and the friction that pure rocking needs.
+    With `contact`, also the reactions of the ground and the friction demand.
     """
-    if question.samples > service.settings.max_samples:
-        raise TooLargeError("samples", question.samples, f"at most {service.settings.max_samples}")
-    form = form_of(request, question.format)
-    return await service.off_loop(question, lambda stop: _history(question, form, stop), request)
+    if params.samples > service.settings.max_samples:
+        raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
+    form = negotiated_form(request, params.format)
+    return await service.run_heavy(params, lambda stop: _history(params, form, stop), request)
 
 
-def _history(question: HistoryQuestion, form: str, stop: StopFlag) -> Response:
+def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:
     motion = time_history(
-        question.pulse,
-        slenderness=question.slenderness,
-        frequency_ratio=question.frequency_ratio,
-        restitution=question.restitution,
-        alpha=alpha_of(question.alpha_deg),
-        duration=question.duration,
-        samples=question.samples,
-        contact=question.contact,
+        params.pulse,
+        slenderness=params.slenderness,
+        frequency_ratio=params.frequency_ratio,
+        restitution=params.restitution,
+        alpha=alpha_of(params.alpha_deg),
+        duration=params.duration,
+        samples=params.samples,
+        contact=params.contact,
         stop=stop,
     )
     if form == "nc":
         return netcdf_response(motion, "history")
     sampled = ("tau", "rotation", "angular_velocity", "ground_acceleration")
     columns: dict[str, Any] = {name: motion[name].values.tolist() for name in sampled}
-    reactions: dict[str, Any] = {name: motion[name].values.tolist() for name in COLUMNS if question.contact}
+    reactions: dict[str, Any] = {name: motion[name].values.tolist() for name in COLUMNS if params.contact}
     if form == "csv":
         return csv_response(columns | reactions, "history")
-    contact = _contact(motion, reactions) if question.contact else None
-    return json_response(_answer(question, motion, columns, contact))
+    contact = _contact(motion, reactions) if params.contact else None
+    return json_response(_answer(params, motion, columns, contact))
 
 
-def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactAnswer:
+def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
     fields: dict[str, Any] = {name: [finite(value) for value in column] for name, column in reactions.items()}
     fields |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES}
-    return ContactAnswer.model_construct(
+    return ContactResponse.model_construct(
         **fields, lifts_off=bool(motion.attrs["lifts_off"]), warnings=motion.attrs["warnings"]
     )
 
 
 def _answer(
-    question: HistoryQuestion, motion: xr.Dataset, columns: dict[str, Any], contact: ContactAnswer | None
-) -> HistoryAnswer:
-    return HistoryAnswer.model_construct(
-        query=question,
+    params: HistoryParams, motion: xr.Dataset, columns: dict[str, Any], contact: ContactResponse | None
+) -> HistoryResponse:
+    return HistoryResponse.model_construct(
+        query=params,
         overturned=bool(motion.attrs["overturned"]),
         outcome=motion.attrs["outcome"],
         peak_rotation=finite(float(motion.attrs["peak_rotation"])),

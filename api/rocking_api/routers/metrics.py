@@ -1,13 +1,14 @@
-"""Counts and times, for Prometheus."""
+"""Metrics for Prometheus."""
 
 from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
 from rocking_api.http.metrics import CONTENT_TYPE
+from rocking_api.http.params_route import ParamsRoute
 from rocking_api.service import ServiceDep
 
-router = APIRouter(tags=["health"])
+router = APIRouter(tags=["health"], route_class=ParamsRoute)
 
 
 @router.get(
@@ -17,5 +18,5 @@ router = APIRouter(tags=["health"])
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
 async def get_metrics(service: ServiceDep) -> Response:
-    """Requests by route and status, their times, blocks by source, heavy work; of this process since it began."""
+    """Requests by route and status, their times, blocks by source, heavy work; since the process started."""
     return Response(service.metrics.text(), media_type=CONTENT_TYPE, headers={"Cache-Control": "no-store"})

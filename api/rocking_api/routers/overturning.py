@@ -1,4 +1,4 @@
-"""The curves that separate standing from falling (figure 4)."""
+"""Boundary curves of overturning (figure 4)."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from rocking.boundary.curves import curves_at
 from rocking.boundary.tracing import overturning_boundary
 from rocking.datasets.catalogue import UnknownDatasetError
 from rocking.errors import DatasetError
-from rocking_api.http.formats import CONTENT, csv_response, form_of, json_response, netcdf_response
-from rocking_api.http.params_route import QuestionRoute
-from rocking_api.models.params import OverturningQuestion, alpha_of
-from rocking_api.models.responses import OUTCOMES, Curve, OverturningAnswer
+from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.params import OverturningParams, alpha_of
+from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
 NODES = 201
-"""Grid on which curves are looked for on request: half as fine as the workflow's, seconds for the wavelets [-]."""
+"""Nodes of the grid on which curves are traced on request [-]: half as fine as the workflow, seconds for wavelets."""
 
-KEPT = 64
-"""Questions whose traced curves are kept [-]: some tens of kB each."""
+MAX_KEPT = 64
+"""Requests whose traced curves are cached [-]: some tens of kB each."""
 
 
-@router.get("/overturning", summary="Boundary curves", response_model=OverturningAnswer, responses=CONTENT)
+@router.get("/overturning", summary="Boundary curves", response_model=OverturningResponse, responses=CONTENT)
 async def get_overturning(
-    question: Annotated[OverturningQuestion, Query()], request: Request, service: ServiceDep
+    params: Annotated[OverturningParams, Query()], request: Request, service: ServiceDep
 ) -> Response:
-    """The curves of the workflow; where there are none for this restitution, they are traced, once for all who ask."""
-    form = form_of(request, question.format)
-    return await service.off_loop(question, lambda stop: _overturning(service, question, form, stop), request)
+    """The curves of the workflow; without those for this restitution they are traced, and cached."""
+    form = negotiated_form(request, params.format)
+    return await service.run_heavy(params, lambda stop: _overturning(service, params, form, stop), request)
 
 
-def _overturning(service: Service, question: OverturningQuestion, form: str, stop: StopFlag) -> Response:
-    curves, version = _read(service, question)
+def _overturning(service: Service, params: OverturningParams, form: str, stop: StopFlag) -> Response:
+    curves, version = _read(service, params)
     if curves is None:
-        curves = _traced(question.pulse, question.restitution, alpha_of(question.alpha_deg), stop)
+        curves = _traced(params.pulse, params.restitution, alpha_of(params.alpha_deg), stop)
     if form == "nc":
         return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
     if form == "csv":
@@ -56,35 +56,35 @@ def _overturning(service: Service, question: OverturningQuestion, form: str, sto
         }
         return csv_response(columns, "overturning")
     source = "dataset" if version else "solver"
-    return json_response(OverturningAnswer(query=question, curves=_curves(curves), source=source, data_version=version))
+    return json_response(OverturningResponse(query=params, curves=_curves(curves), source=source, data_version=version))
 
 
-def _read(service: Service, question: OverturningQuestion) -> tuple[xr.Dataset | None, str | None]:
-    """The curves of this question in the data set of its pulse and restitution, and its sha256; None if not there."""
+def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | None, str | None]:
+    """The curves for the parameters from the data set, and its sha256; None if there are none."""
     # a mirrored pulse overturns the same blocks
-    name = f"overturning/{question.pulse.removeprefix('-')}/eta-{question.restitution:.2f}"
-    catalogue = service.atlas.catalogue
+    name = f"overturning/{params.pulse.removeprefix('-')}/eta-{params.restitution:.2f}"
+    catalogue = service.cubes.catalogue
     try:
         product, stored = catalogue.dataset(name)
     except (UnknownDatasetError, DatasetError):
-        return None, None  # /health tells of a damaged or unreadable one
-    found = curves_at(stored, alpha_of(question.alpha_deg) or 0.0)
-    if float(stored["restitution"]) != question.restitution or not found.sizes["curve"]:
+        return None, None  # see /health for a damaged or unreadable one
+    found = curves_at(stored, alpha_of(params.alpha_deg) or 0.0)
+    if float(stored["restitution"]) != params.restitution or not found.sizes["curve"]:
         return None, None
     return found, product.sha256
 
 
 def _traced(pulse: str, restitution: float, alpha: float | None, stop: StopFlag) -> xr.Dataset:
-    """Curves for which there is no data set; whoever moves a slider back and forth does not trace them again."""
+    """Traced curves, cached."""
     kept = _kept(pulse, restitution, alpha)
     if not kept:
         kept.append(overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=NODES, stop=stop))
     return kept[0]
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=MAX_KEPT)
 def _kept(_pulse: str, _restitution: float, _alpha: float | None) -> list[xr.Dataset]:
-    """Where the curves of a question are kept once they are traced."""
+    """The cache entry of traced curves, empty at first."""
     return []
 
 

@@ -1,4 +1,4 @@
-"""The pages: `/` and `/docs`, which load nothing from outside."""
+"""The pages `/` and `/docs`, which load nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -11,38 +11,39 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
 from rocking_api.http.files import without_range
+from rocking_api.http.params_route import ParamsRoute
 
 STATIC = Path(__file__).parents[1] / "static"
 
-_OURS = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
-# styles inside elements and data: images are what swagger-ui needs
-_SWAGGER = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
-_ASK_AGAIN = {"Cache-Control": "no-cache"}  # kept by the browser, but asked for again by ETag: no page of two versions
+_EXPLORER_POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+# swagger-ui needs styles inside elements and data: images
+_SWAGGER_POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
+_REVALIDATE = {"Cache-Control": "no-cache"}  # revalidated by ETag: no page mixes two versions
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=ParamsRoute)
 
 
 @router.get("/")
 async def get_explorer() -> FileResponse:
-    """The explorer: a block in metres, the map of all blocks, and how each of them rocks."""
-    return _page("index.html", _OURS)
+    """The explorer: a block in metres, the map of the control space, time histories."""
+    return _page("index.html", _EXPLORER_POLICY)
 
 
 @router.get("/docs")
 async def get_documentation() -> FileResponse:
-    """The OpenAPI description, readable."""
-    return _page("docs.html", _SWAGGER)
+    """The OpenAPI description as a page."""
+    return _page("docs.html", _SWAGGER_POLICY)
 
 
 class _Page(FileResponse):
-    """A page, always as a whole."""
+    """A page, without ranges."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         await super().__call__(without_range(scope), receive, send)
 
 
 class PageFiles(StaticFiles):
-    """Scripts, styles and libraries of the pages, always as a whole."""
+    """Scripts, styles and libraries of the pages, without ranges."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         await super().__call__(without_range(scope), receive, send)
@@ -51,10 +52,10 @@ class PageFiles(StaticFiles):
         self, full_path: str | os.PathLike[str], stat_result: os.stat_result, scope: Scope, status_code: int = 200
     ) -> Response:
         response = super().file_response(full_path, stat_result, scope, status_code)
-        response.headers.update(_ASK_AGAIN)
+        response.headers.update(_REVALIDATE)
         return response
 
 
 def _page(name: str, policy: str) -> FileResponse:
-    headers = {"Content-Security-Policy": policy, **_ASK_AGAIN}
+    headers = {"Content-Security-Policy": policy, **_REVALIDATE}
     return _Page(STATIC / name, media_type="text/html", headers=headers)

@@ -1,4 +1,4 @@
-"""One block, or many: fate and peak rotation with an error bound."""
+"""One block, or many: outcome and peak rotation with an error bound."""
 
 from __future__ import annotations
 
@@ -8,37 +8,40 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.batch_body import Batch, body_form, limited_body, read_batch
-from rocking_api.http.batch_response import answer_batch, batch_response
-from rocking_api.http.formats import CONTENT, MEDIA_TYPES, Form, form_of
-from rocking_api.http.in_flight import Holding, holding_of
-from rocking_api.http.params_route import QuestionRoute, single_parameters
-from rocking_api.models.params import ResponseQuestion
-from rocking_api.models.responses import BatchAnswer, ResponseAnswer, response_answer
+from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate_many
+from rocking_api.http.batch import Batch, batch_response, body_form, limited_body, read_batch
+from rocking_api.http.encoding import CONTENT, MEDIA_TYPES, Form, negotiated_form
+from rocking_api.http.memory_budget import Reservation, reservation_of
+from rocking_api.http.params_route import ParamsRoute, query_parameters
+from rocking_api.models.params import ResponseParams
+from rocking_api.models.responses import BatchResponse, PointResponse, point_response
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=QuestionRoute)
+router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+
+LARGE_BODY = 1_000_000
+"""Bytes beyond which bodies are parsed one at a time: the numbers of a JSON body take five times its memory."""
 
 
 @router.get("/response", summary="One block")
-async def get_response(question: Annotated[ResponseQuestion, Query()], service: ServiceDep) -> ResponseAnswer:
-    """Whether it falls, and how far it rocks."""
+async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep) -> PointResponse:
+    """Whether it overturns, and its peak rotation."""
     await service.kernels.wait()
-    point = await service.together.ask(question)
+    point = await service.batcher.evaluate(params)
     service.metrics.points(point.source, 1)
-    return response_answer(question, point)
+    return point_response(params, point)
 
 
 @router.post(
     "/response",
     summary="Many blocks",
-    response_model=BatchAnswer,
+    response_model=BatchResponse,
     responses=CONTENT,
     openapi_extra={
         "requestBody": {
             "required": True,
             "content": {
-                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/BatchQuestion"}},
+                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/BatchParams"}},
                 MEDIA_TYPES["csv"]: {"schema": {"type": "string"}, "example": "slenderness,frequency_ratio\n0.4,5\n"},
                 MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
             },
@@ -46,24 +49,30 @@ async def get_response(question: Annotated[ResponseQuestion, Query()], service: 
     },
 )
 async def post_response(request: Request, service: ServiceDep) -> Response:
-    """Arrays as JSON, CSV or netCDF-3; the answer comes in the same form, or as the Accept header asks.
+    """Arrays as JSON, CSV or netCDF-3; the response has the same format, or that of the Accept header.
 
     With CSV and netCDF-3, `pulse`, `method`, `tolerance`, `alpha_deg` and any of the three groups that the body does
-    not hold are parameters of the URL.
+    not hold are query parameters.
     """
     given = body_form(request)
-    form = form_of(request, None, default=given)
-    parameters = single_parameters(request)
+    form = negotiated_form(request, None, default=given)
+    reservation = reservation_of(request)
+    batch = await _read(request, service, given, reservation)
+    reservation.replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
+    return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, form, stop), request)
+
+
+async def _read(request: Request, service: Service, form: Form, reservation: Reservation) -> Batch:
+    parameters = query_parameters(request)
     settings = service.settings
-    holding = holding_of(request)
-    body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds, holding)
-    batch = await service.reading(partial(read_batch, body, given, parameters, settings.max_points))
-    return await service.off_loop(batch.options, lambda stop: _answered(service, batch, form, holding, stop), request)
+    body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds, reservation)
+    read = partial(read_batch, body, form, parameters, settings.max_points)
+    return await service.run_io(read, large=len(body) > LARGE_BODY)
 
 
-def _answered(service: Service, batch: Batch, form: Form, holding: Holding, stop: StopFlag) -> Response:
-    found, versions = answer_batch(service.atlas, batch, stop)
-    from_cubes = int((found.source == "cube").sum())
+def _answered(service: Service, batch: Batch, form: Form, stop: StopFlag) -> Response:
+    result = evaluate_many(service.cubes, batch.options, batch.groups, stop)
+    from_cubes = int(result.from_cube.sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)
-    return batch_response(batch, found, versions, form, holding)
+    return batch_response(batch, result, form)

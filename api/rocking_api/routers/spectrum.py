@@ -10,58 +10,56 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
-from rocking_api.execution.evaluation import ask
-from rocking_api.http.formats import CONTENT, csv_response, dataset_of, form_of, json_response, netcdf_response
-from rocking_api.http.params_route import QuestionRoute
-from rocking_api.http.problems import TooLargeError
-from rocking_api.models.params import FREQUENCY_RATIOS, SpectrumQuestion
-from rocking_api.models.responses import SpectrumAnswer, columns_of
+from rocking_api.execution.evaluation import evaluate_many
+from rocking_api.http.encoding import CONTENT, csv_stream, dataset_of, json_response, negotiated_form, netcdf_response
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.params import FREQUENCY_RATIO_RANGE, SpectrumParams
+from rocking_api.models.responses import SpectrumResponse, columns_of
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["curves"], route_class=QuestionRoute)
+router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
 
 @router.get(
-    "/spectrum", summary="Peak rotation against frequency ratio", response_model=SpectrumAnswer, responses=CONTENT
+    "/spectrum", summary="Peak rotation against frequency ratio", response_model=SpectrumResponse, responses=CONTENT
 )
-async def get_spectrum(
-    question: Annotated[SpectrumQuestion, Query()], request: Request, service: ServiceDep
-) -> Response:
+async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Blocks of one slenderness over a window of the frequency ratio."""
-    form = form_of(request, question.format)
-    frequency_ratio = _axis(service, question)
-    return await service.off_loop(
-        question, lambda stop: _spectrum(service, question, frequency_ratio, form, stop), request
+    form = negotiated_form(request, params.format)
+    frequency_ratio = _axis(service, params)
+    return await service.run_heavy(
+        params, lambda stop: _spectrum(service, params, frequency_ratio, form, stop), request
     )
 
 
-def _axis(service: Service, question: SpectrumQuestion) -> NDArray[np.float64]:
-    """The points of the curve, inside the border of the service."""
-    smallest, largest = FREQUENCY_RATIOS
-    low = float(in_range("frequency_ratio_min", question.frequency_ratio_min, smallest, largest))
-    high = float(in_range("frequency_ratio_max", question.frequency_ratio_max, low, largest, closed="right"))
-    in_range("points", question.points, 2, np.inf, closed="left")
-    if question.points > service.settings.max_samples:
-        raise TooLargeError("points", question.points, f"at most {service.settings.max_samples}")
-    return np.geomspace(low, high, question.points)
+def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
+    """The frequency ratios of the curve, within the range of the service."""
+    smallest, largest = FREQUENCY_RATIO_RANGE
+    low = float(in_range("frequency_ratio_min", params.frequency_ratio_min, smallest, largest))
+    high = float(in_range("frequency_ratio_max", params.frequency_ratio_max, low, largest, closed="right"))
+    in_range("points", params.points, 2, np.inf, closed="left")
+    if params.points > service.settings.max_samples:
+        raise TooLargeError("points", params.points, f"at most {service.settings.max_samples}")
+    return np.geomspace(low, high, params.points)
 
 
 def _spectrum(
-    service: Service, question: SpectrumQuestion, frequency_ratio: NDArray[np.float64], form: str, stop: StopFlag
+    service: Service, params: SpectrumParams, frequency_ratio: NDArray[np.float64], form: str, stop: StopFlag
 ) -> Response:
-    found, versions = ask(
-        service.atlas,
-        question,
-        slenderness=question.slenderness,
-        frequency_ratio=frequency_ratio,
-        restitution=question.restitution,
-        stop=stop,
-    )
-    query = question.model_dump(exclude={"format"})
+    shape = frequency_ratio.shape
+    groups = {
+        "slenderness": np.broadcast_to(np.float64(params.slenderness), shape),
+        "frequency_ratio": frequency_ratio,
+        "restitution": np.broadcast_to(np.float64(params.restitution), shape),
+    }
+    result = evaluate_many(service.cubes, params, groups, stop)
+    query = params.model_dump(exclude={"format"})
     if form == "nc":
         attributes = {name: value for name, value in query.items() if value is not None}
-        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, found, attributes), "spectrum")
-    curve = {"frequency_ratio": frequency_ratio.tolist()} | columns_of(found)
+        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum")
+    curve = {"frequency_ratio": frequency_ratio} | columns_of(result)
     if form == "csv":
-        return csv_response(curve, "spectrum")
-    return json_response(SpectrumAnswer.model_construct(query=query, data_versions=list(versions), **curve))
+        return csv_stream(curve, "spectrum")
+    lists = {name: column[:].tolist() for name, column in curve.items()}
+    return json_response(SpectrumResponse.model_construct(query=query, data_versions=list(result.versions), **lists))

@@ -1,7 +1,7 @@
-"""A Chromium for the tests of the page: the machine's own, else one that a package manager at hand can fetch.
+"""A Chromium for the tests of the page: the installed one, else one from a package manager.
 
-`python -m tests.api.explorer.chromium` finds one, fetches it if there is none, and prints its path. Nobody but
-root can install a system package, so others get the headless build inside an npm package, unpacked into build/chromium.
+`python -m tests.api.explorer.chromium` finds one, fetches it if there is none, and prints its path. Only root can
+install a system package; others get the headless build inside an npm package, unpacked into build/chromium.
 """
 
 from __future__ import annotations

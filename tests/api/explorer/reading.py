@@ -1,4 +1,4 @@
-"""What the tests read off the page: its address, its pixels, where on the map a point stands."""
+"""Helpers that read the page: its address, its pixels, the position of a point on the map."""
 
 import base64
 import io
@@ -34,7 +34,7 @@ def pixels(page: Page, canvas):
 
 
 def place_of(page: Page, frequency_ratio, slenderness):
-    """Where a point stands on the whole map without a block [px], by the frame that the page draws."""
+    """Position of a point on the whole map without a block [px]."""
     box = page.locator("#map").bounding_box()
     left, right, top, bottom = 58, 58, 14, 44
     x = np.log(frequency_ratio / 0.5) / np.log(12.0 / 0.5)

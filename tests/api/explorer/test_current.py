@@ -1,4 +1,4 @@
-"""What the page shows is what its controls say, or is dimmed, or is cleared: with a slow and a stopped server."""
+"""Views belong to the current controls, or are dimmed or cleared, with a slow and a stopped server."""
 
 import re
 import time
@@ -25,7 +25,7 @@ WATCH = """() => {
     };
     look();
 }"""
-"""In each frame: is a map shown, not dimmed, that is not the one of the controls?"""
+"""Record in each frame whether an undimmed map differs from the controls."""
 
 
 def set_pulse(page, name):
@@ -66,13 +66,13 @@ def test_a_change_dims_the_views_at_once(open_page, service, change):
         [field, value, event, VIEWS],
     )
     assert dimmed == [True, True, True]
-    assert page.locator("[data-picture]:enabled").count() == 0  # nor can it be kept under the new label
+    assert page.locator("[data-picture]:enabled").count() == 0  # it cannot be saved under the new label
     for view in VIEWS:
         expect(page.locator(view)).to_have_attribute("aria-busy", "false")
         assert "0.9" in page.locator(view).get_attribute("data-shown") or change == "pulse"
 
 
-def test_no_frame_shows_another_map_than_the_controls_say(open_page, service):
+def test_every_frame_shows_the_map_of_the_controls(open_page, service):
     page = open_page()
     settle(page)
     page.evaluate(WATCH)
@@ -90,8 +90,8 @@ def test_no_frame_shows_another_map_than_the_controls_say(open_page, service):
     assert page.evaluate("stale") == []
 
 
-def test_a_sharper_map_comes_after_the_coarse_one_of_a_slow_server(open_page, service):
-    """The two requests for one map do not end each other."""
+def test_the_fine_map_follows_the_coarse_one_of_a_slow_server(open_page, service):
+    """The two requests for one map do not cancel each other."""
     page = open_page()
     settle(page)
     service.seconds = 0.7
@@ -105,7 +105,7 @@ def test_a_sharper_map_comes_after_the_coarse_one_of_a_slow_server(open_page, se
     assert [request.failure for request in asked] == [None, None]
 
 
-def test_a_server_that_hangs_leaves_nothing_out_of_date(open_page, service):
+def test_outdated_views_are_cleared_if_the_server_hangs(open_page, service):
     page = open_page("about:blank")
     page.clock.install()
     page.goto(POINT)
@@ -126,7 +126,7 @@ def test_a_server_that_hangs_leaves_nothing_out_of_date(open_page, service):
         assert "cosine" in page.locator(view).get_attribute("data-shown")
 
 
-def test_a_stopped_server_is_told_and_can_be_asked_again(open_page, service):
+def test_a_stopped_server_is_reported_and_requests_can_be_repeated(open_page, service):
     page = open_page(POINT, failing=True)
     settle(page)
     expect(page.locator("#spectrum-chart canvas")).to_be_visible()
@@ -140,7 +140,7 @@ def test_a_stopped_server_is_told_and_can_be_asked_again(open_page, service):
         expect(page.locator(view)).to_have_attribute("aria-busy", "false")
     assert page.locator("#map-readout").inner_text() == ""
     service.start()
-    page.locator("#map-status button").click()  # asks for all that failed
+    page.locator("#map-status button").click()  # repeats all failed requests
     for view in VIEWS:
         expect(page.locator(view)).not_to_have_class(re.compile("blank"))
     settle(page)
@@ -148,7 +148,7 @@ def test_a_stopped_server_is_told_and_can_be_asked_again(open_page, service):
     assert page.locator(".status button").count() == 0
 
 
-def test_a_busy_server_is_asked_again(open_page, service):
+def test_a_busy_server_is_retried(open_page, service):
     page = open_page(failing=True)
     settle(page)
     service.refusals = 2
@@ -157,7 +157,7 @@ def test_a_busy_server_is_asked_again(open_page, service):
     expect(page.locator("#map-status")).to_be_hidden()
 
 
-def test_an_edited_block_keeps_no_verdict(open_page):
+def test_editing_the_form_dims_the_verdict(open_page):
     page = open_page(BLOCK)
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
     settle(page)
@@ -179,7 +179,7 @@ def test_an_edited_block_keeps_no_verdict(open_page):
     assert query(page)["width"] == "0.1 m"
 
 
-def test_another_control_takes_the_edited_block_along(open_page):
+def test_another_control_submits_the_edited_block(open_page):
     page = open_page(BLOCK)
     expect(page.locator(".verdict")).to_be_visible()
     page.locator("#width").fill("0.1")
@@ -189,7 +189,7 @@ def test_another_control_takes_the_edited_block_along(open_page):
     assert (query(page)["width"], query(page)["restitution"]) == ("0.1 m", "0.7")
 
 
-def test_a_verdict_waits_for_its_block(open_page, service):
+def test_a_verdict_appears_only_with_its_block(open_page, service):
     page = open_page(BLOCK)
     settle(page)
     service.seconds = 1.0
@@ -203,7 +203,7 @@ def test_a_verdict_waits_for_its_block(open_page, service):
         expect(page.locator(view)).to_have_attribute("aria-busy", "false")
 
 
-def test_a_block_that_is_not_answered_leaves_no_verdict(open_page, service):
+def test_a_failed_request_leaves_no_verdict(open_page, service):
     page = open_page(BLOCK, failing=True)
     expect(page.locator(".verdict")).to_be_visible()
     service.stop()
@@ -217,7 +217,7 @@ def test_a_block_that_is_not_answered_leaves_no_verdict(open_page, service):
     settle(page)
 
 
-def test_another_angle_says_that_the_block_is_left(open_page):
+def test_another_angle_shows_a_note_that_the_block_was_left(open_page):
     page = open_page(BLOCK)
     expect(page.locator(".verdict")).to_be_visible()
     settle(page)

@@ -1,4 +1,4 @@
-"""A block in metres: the page says of it what the package says, and explains what it cannot answer."""
+"""A block in metres: the page agrees with the package and explains invalid input."""
 
 import re
 
@@ -50,7 +50,7 @@ def test_the_form_gives_the_verdict_of_the_package(open_page, typed, metres):
     expect(page.locator("#stage")).to_be_visible()
 
 
-def test_the_three_blocks_have_three_outcomes():
+def test_three_blocks_have_three_outcomes():
     block, other = rocking.Block(half_width=0.2, half_height=0.8), rocking.Block(half_width=0.1524, half_height=0.4572)
     amplitudes = (
         rocking.critical_amplitude(
@@ -65,7 +65,7 @@ def test_the_three_blocks_have_three_outcomes():
     assert other.uplift_acceleration > 3.2
 
 
-def test_the_address_brings_back_the_block(open_page):
+def test_the_address_restores_the_block(open_page):
     page = open_page(BLOCK)
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
     assert page.locator("#width").input_value() == "0.4"
@@ -87,7 +87,7 @@ def test_the_address_brings_back_the_block(open_page):
         ("period", "1e9", "allowed"),
     ],
 )
-def test_bad_input_is_explained_beside_its_field(open_page, field, value, words):
+def test_an_invalid_value_is_explained_beside_its_field(open_page, field, value, words):
     page = open_page()
     page.locator(f"#{field}").fill(value)
     page.locator("#ask").click()

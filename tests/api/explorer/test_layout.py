@@ -1,4 +1,4 @@
-"""No control lies over another one, or outside the page, at any width."""
+"""No control overlaps another one or lies outside the page, at any width."""
 
 import pytest
 

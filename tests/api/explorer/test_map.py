@@ -1,4 +1,4 @@
-"""The map in a real browser: its fates are the solver's, and a point of it can be chosen, moved and magnified."""
+"""The map in a browser: outcomes equal the solver; a point can be chosen, moved and magnified."""
 
 import pytest
 from playwright.sync_api import expect
@@ -7,7 +7,7 @@ import rocking
 from tests.api.explorer.reading import BLOCK, POINT, pixels, place_of, query, settle
 
 
-def test_the_map_shows_the_fates_of_the_solver(open_page):
+def test_the_map_shows_the_outcomes_of_the_solver(open_page):
     page = open_page()
     settle(page)
     picture = pixels(page, "map")
@@ -20,7 +20,7 @@ def test_the_map_shows_the_fates_of_the_solver(open_page):
     brought_back = bool(found[-1].exceeded_alpha)
     assert brought_back
     assert shown[-1].tolist() == [236, 112, 74]
-    # on viridis the green of a standing block grows with its peak
+    # on viridis green increases with the peak of a block that survives
     standing = sorted((float(one.peak_rotation), colour[1]) for one, colour in zip(found[:3], shown[:3], strict=True))
     assert [green for _, green in standing] == sorted(green for _, green in standing)
 

@@ -1,4 +1,4 @@
-"""The block rocks on the page as it does in the package, and what is shown can be taken home."""
+"""The animation agrees with the time history of the package; downloads work."""
 
 import io
 
@@ -13,7 +13,7 @@ from tests.api.explorer.reading import POINT, pixels, settle
 STONE = [201, 194, 182]  # the block on a light page
 
 
-def test_the_block_moves_and_waits(open_page):
+def test_the_animation_plays_and_pauses(open_page):
     page = open_page(POINT)
     expect(page.locator("#play")).to_have_text("Pause")
     seen = set()
@@ -28,7 +28,7 @@ def test_the_block_moves_and_waits(open_page):
     assert page.locator("#stage").get_attribute("data-angle") == still
 
 
-def test_the_film_shows_the_angles_and_the_ground_of_the_history(open_page):
+def test_the_animation_shows_the_angles_and_the_ground_of_the_history(open_page):
     page = open_page(POINT + "&alpha_deg=15", reduced_motion="reduce")
     expect(page.locator("#play")).to_have_text("Play")
     motion = rocking.time_history(
@@ -49,7 +49,7 @@ def test_the_film_shows_the_angles_and_the_ground_of_the_history(open_page):
     assert float(page.locator("#stage").get_attribute("data-ground")) == pytest.approx(way, rel=1e-3)
 
 
-def test_the_picture_leans_as_far_as_the_block(open_page):
+def test_the_drawn_block_has_the_angle_of_the_history(open_page):
     page = open_page(POINT.replace("0.7", "0.5").replace("=4", "=6") + "&alpha_deg=20", reduced_motion="reduce")
     page.locator("#motion-caption").filter(has_text="comes to rest").wait_for()
     end = float(page.locator("#time").get_attribute("max"))
@@ -72,7 +72,7 @@ def test_the_picture_leans_as_far_as_the_block(open_page):
     assert max(seen) > 0.05
 
 
-def test_downloads_arrive(open_page):
+def test_downloads_have_content(open_page):
     page = open_page(POINT)
     settle(page)
     expect(page.locator("#rotation canvas")).to_be_visible()

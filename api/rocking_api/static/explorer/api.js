@@ -1,30 +1,30 @@
-// Questions to the service; answers are kept. Whoever asks owns the signal that ends the question.
+// Requests to the service, with a cache of responses. The caller owns the signal that cancels a request.
 
 const KEPT = 60;
 const ATTEMPTS = 4;
-const answers = new Map();
+const cache = new Map();
 
-/** A refusal of the service (problem+json): `parameter`, `value` and `allowed` as it names them. */
+/** An error response (problem+json) with its `parameter`, `value` and `allowed`. */
 export class Problem extends Error {
-  constructor(told) {
-    super(told.detail ?? "the service gave no reason");
-    this.parameter = told.parameter;
-    this.value = told.value;
-    this.allowed = told.allowed;
+  constructor(given) {
+    super(given.detail ?? "the service gave no reason");
+    this.parameter = given.parameter;
+    this.value = given.value;
+    this.allowed = given.allowed;
   }
 }
 
-/** Path and query of a question; empty parts are left out. */
-export function urlOf(path, question) {
-  const told = Object.entries(question).filter(([, value]) => value !== "" && value !== null && value !== undefined);
-  return `${path}?${new URLSearchParams(told)}`;
+/** Path and query; empty parameters are left out. */
+export function urlOf(path, params) {
+  const given = Object.entries(params).filter(([, value]) => value !== "" && value !== null && value !== undefined);
+  return `${path}?${new URLSearchParams(given)}`;
 }
 
-/** The answer. Throws Problem, or the reason with which the signal was aborted. */
-export async function ask(path, question, signal) {
-  const url = urlOf(path, question);
-  if (!answers.has(url)) keep(url, await fetched(url, signal));
-  return answers.get(url);
+/** The response. Throws Problem, or the reason with which the signal was aborted. */
+export async function ask(path, params, signal) {
+  const url = urlOf(path, params);
+  if (!cache.has(url)) keep(url, await fetched(url, signal));
+  return cache.get(url);
 }
 
 /** Wait some ms, or until the signal is aborted; throws its reason then. */
@@ -38,7 +38,7 @@ export function pause(milliseconds, signal) {
   });
 }
 
-/** A busy service says when to ask again. */
+/** A busy service says when to try again (Retry-After). */
 async function fetched(url, signal) {
   for (let attempt = 1; ; attempt += 1) {
     const { ok, found, after } = await exchanged(url, signal);
@@ -59,6 +59,6 @@ async function exchanged(url, signal) {
 }
 
 function keep(url, found) {
-  if (answers.size === KEPT) answers.delete(answers.keys().next().value);
-  answers.set(url, found);
+  if (cache.size === KEPT) cache.delete(cache.keys().next().value);
+  cache.set(url, found);
 }

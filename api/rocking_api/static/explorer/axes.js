@@ -1,20 +1,20 @@
-// Ticks of an axis, linear or logarithmic, and the way from values to places.
+// Scales and ticks of an axis, linear or logarithmic.
 
 /** A scale from [low, high] to [from, to]; `log` for logarithmic. */
 export function scale(low, high, from, to, log = false) {
-  const bend = log ? Math.log : (x) => x;
-  const back = log ? Math.exp : (x) => x;
-  const [a, b] = [bend(low), bend(high)];
+  const transform = log ? Math.log : (x) => x;
+  const inverse = log ? Math.exp : (x) => x;
+  const [a, b] = [transform(low), transform(high)];
   return {
     low,
     high,
     log,
-    place: (value) => from + ((bend(value) - a) / (b - a)) * (to - from),
-    value: (place) => back(a + ((place - from) / (to - from)) * (b - a)),
+    place: (value) => from + ((transform(value) - a) / (b - a)) * (to - from),
+    value: (place) => inverse(a + ((place - from) / (to - from)) * (b - a)),
   };
 }
 
-/** Round values between `low` and `high` whose places lie at least `apart` from each other. */
+/** Round values between `low` and `high` whose positions lie at least `apart` from each other. */
 export function ticks(low, high, place, apart) {
   const wanted = high / low > 4 && low > 0 ? decades(low, high) : even(low, high, place, apart);
   const kept = [];

@@ -1,8 +1,8 @@
-// The form for a block in metres, and the answer in plain words.
+// The form for a block in metres, and its response in words.
 
 import { element } from "./page.js";
 import { MISSING, split, UNITS } from "./units.js";
-import { length, number } from "./words.js";
+import { length, number } from "./labels.js";
 
 const GRAVITY = 9.80665;
 const QUANTITIES = Object.keys(UNITS);
@@ -10,7 +10,7 @@ const QUANTITIES = Object.keys(UNITS);
 const form = document.getElementById("block");
 const answer = document.getElementById("answer");
 
-/** Wire the form: `submit(parts)` gets what to write into the state, `edit()` is told of each edit. */
+/** Wire the form: `submit(parts)` gets the new parts of the state, `edit()` is called after each edit. */
 export function wireForm(submit, edit) {
   for (const name of QUANTITIES) {
     const units = form.elements[`${name}_unit`];
@@ -25,7 +25,7 @@ export function wireForm(submit, edit) {
   showHow();
 }
 
-/** What the form says of a block, as parts of a state. */
+/** The block of the form, as parts of a state. */
 export function formParts() {
   const parts = { pulse: form.elements.pulse.value };
   for (const name of QUANTITIES) {
@@ -49,7 +49,7 @@ export function fillForm(state) {
   showHow();
 }
 
-/** Show the answer about a block; null clears it. */
+/** Show the response of a block; null clears it. */
 export function showAnswer(found) {
   answer.replaceChildren();
   answer.hidden = found === null;
@@ -84,33 +84,33 @@ function sentence(found) {
 }
 
 function facts(found) {
-  const said = [["Uplifts at", acceleration(found.uplift_acceleration)]];
+  const pairs = [["Uplifts at", acceleration(found.uplift_acceleration)]];
   const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
-  said.push(["This block does not overturn below, at this period", largest === null ? whyNone(found) : acceleration(largest)]);
-  if (largest !== null) said.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
+  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : acceleration(largest)]);
+  if (largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
   const margin = applies && marginOf(found);
-  if (margin) said.push(margin);
+  if (margin) pairs.push(margin);
   const changes = (applies ? (found.thresholds ?? []) : []).map(
     (one) => `${one.overturns_above ? "overturns" : "survives"} from ${number(one.peak_acceleration / GRAVITY)} g`,
   );
-  if (changes.length > 1) said.push(["At this period it", changes.join(", ")]);
-  said.push(["Coefficient of friction that it needs, so as not to slide", friction === null ? "it lifts off" : number(friction, 2)]);
-  return said;
+  if (changes.length > 1) pairs.push(["At this period it", changes.join(", ")]);
+  pairs.push(["Coefficient of friction that it needs, so as not to slide", friction === null ? "it lifts off" : number(friction, 2)]);
+  return pairs;
 }
 
 /** Why there is no largest safe acceleration. */
-function whyNone({ thresholds }) {
+function reasonForNone({ thresholds }) {
   if (thresholds === null) return "not found in time";
   return thresholds.length ? "not known: the rocking model does not apply" : "no limit found";
 }
 
-/** The nearest change of outcome, as a share of the acceleration asked about. */
+/** The nearest change of outcome, relative to the peak acceleration. */
 function marginOf(found) {
-  const asked = found.query.peak_acceleration;
-  const apart = (threshold) => Math.abs(threshold.peak_acceleration / asked - 1);
+  const given = found.query.peak_acceleration;
+  const apart = (threshold) => Math.abs(threshold.peak_acceleration / given - 1);
   const [nearest] = [...(found.thresholds ?? [])].sort((one, other) => apart(one) - apart(other));
   if (!nearest) return null;
-  const way = nearest.peak_acceleration > asked ? "more" : "less";
+  const way = nearest.peak_acceleration > given ? "more" : "less";
   const share = `${number(100 * apart(nearest), 2)} %`;
   return ["Margin of acceleration", `${found.overturned ? "survives" : "overturns"} with ${share} ${way}`];
 }

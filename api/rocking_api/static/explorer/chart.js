@@ -1,7 +1,7 @@
-// A line chart by uPlot in the colours of the page, as wide as its place.
+// A line chart by uPlot in the colours of the page, as wide as its container.
 
 import { onTheme, themed } from "./colours.js";
-import { number } from "./words.js";
+import { number } from "./labels.js";
 
 const FONT = "12px system-ui, sans-serif";
 
@@ -22,7 +22,7 @@ export function axis(label, more = {}) {
   };
 }
 
-/** A chart in `place`, in the stead of the one that was there; the options are uPlot's, without width. */
+/** A chart in `place`, which replaces the one before; options as in uPlot, without width. */
 export function chart(place, options, data) {
   live.get(place)?.destroy();
   const made = new uPlot(

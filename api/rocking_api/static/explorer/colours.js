@@ -1,4 +1,4 @@
-// Colours: the peak on viridis (even in lightness, safe for colour-blind eyes), fates as neutral hatches.
+// Colours: the peak on viridis (even in lightness, safe for colour-blind eyes), outcomes as neutral hatches.
 
 // viridis at 17 even steps (CC0), between which we interpolate
 const STEPS = [
@@ -6,7 +6,7 @@ const STEPS = [
   "22a884", "35b779", "54c568", "7ad151", "a5db36", "d2e21b", "ece51b", "fde725",
 ].map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
 
-/** Beyond alpha and brought back: past the yellow end of the scale. */
+/** Peak beyond alpha, block survives: past the yellow end of the scale. */
 export const BROUGHT_BACK = [236, 112, 74];
 
 /** [red, green, blue] of a peak rotation theta/alpha. */
@@ -22,12 +22,12 @@ export function scaleGradient() {
   return `linear-gradient(to right, ${STEPS.map((rgb) => `rgb(${rgb})`).join(", ")})`;
 }
 
-/** A colour of the style sheet, light or dark as the reader's system asks. */
+/** A colour of the style sheet, for the light or dark theme. */
 export function themed(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
-/** Hatch of a fate, `scale` device pixels per pixel: one way after impacts, closer and crossed without. */
+/** Hatch of an outcome, `scale` device pixels per pixel: parallel lines after impacts, crossed without. */
 export function hatch(context, outcome, scale) {
   const size = Math.round(8 * scale);
   const tile = new OffscreenCanvas(size, size);

@@ -1,13 +1,13 @@
-// What is shown, to keep: numbers from the service, pictures from the page, and the address of it all.
+// Downloads: data from the service, pictures of the page, and the link to the page.
 
 import { canvasOf } from "./chart.js";
 import { themed } from "./colours.js";
 import { drawLegend } from "./legend.js";
-import { say } from "./page.js";
+import { setStatus } from "./page.js";
 
 const FOOT = 34;
 
-/** Set the links of one part of the page, `urls` by form; those without one go. */
+/** Set the links of one part of the page, `urls` by format; a link without one is removed. */
 export function setLinks(part, urls) {
   for (const link of document.querySelectorAll(`[data-links=${part}] a`)) {
     if (urls[link.dataset.form]) link.href = urls[link.dataset.form];
@@ -15,7 +15,7 @@ export function setLinks(part, urls) {
   }
 }
 
-/** Wire the picture buttons and the link button; `caption()` words what is shown. */
+/** Wire the picture buttons and the link button; `caption()` describes what is shown. */
 export function wireDownloads(caption) {
   const layers = {
     map: () => [["map", "map-marks"].map((id) => document.getElementById(id))],
@@ -38,19 +38,19 @@ function save(part, rows, caption) {
   const made = document.createElement("canvas");
   made.width = Math.max(...rows.map(([first]) => first.width));
   made.height = rows.reduce((sum, [first]) => sum + first.height, (FOOT + legend) * ratio);
-  const pen = made.getContext("2d");
-  pen.fillStyle = themed("paper");
-  pen.fillRect(0, 0, made.width, made.height);
+  const context = made.getContext("2d");
+  context.fillStyle = themed("paper");
+  context.fillRect(0, 0, made.width, made.height);
   let y = 0;
   for (const row of rows) {
-    for (const layer of row) pen.drawImage(layer, 0, y);
+    for (const layer of row) context.drawImage(layer, 0, y);
     y += row[0].height;
   }
-  if (legend) drawLegend(pen, 12 * ratio, y + 8 * ratio, Math.min(ratio, made.width / 820));
-  pen.fillStyle = themed("ink");
-  pen.font = `${12 * ratio}px system-ui, sans-serif`;
-  pen.textBaseline = "middle";
-  pen.fillText(caption, 12 * ratio, made.height - (FOOT / 2) * ratio, made.width - 24 * ratio);
+  if (legend) drawLegend(context, 12 * ratio, y + 8 * ratio, Math.min(ratio, made.width / 820));
+  context.fillStyle = themed("ink");
+  context.font = `${12 * ratio}px system-ui, sans-serif`;
+  context.textBaseline = "middle";
+  context.fillText(caption, 12 * ratio, made.height - (FOOT / 2) * ratio, made.width - 24 * ratio);
   made.toBlob((blob) => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
@@ -64,9 +64,9 @@ async function copyAddress() {
   const place = document.getElementById("copied");
   try {
     await navigator.clipboard.writeText(location.href);
-    say(place, "Copied.");
+    setStatus(place, "Copied.");
   } catch {
-    say(place, "Copy it from the address bar.");
+    setStatus(place, "Copy it from the address bar.");
   }
 }
 

@@ -12,43 +12,43 @@ const ENTRIES = [
 const legend = document.getElementById("legend");
 
 /** Draw the legend into a canvas from `x`, `y` on, `ratio` device pixels per pixel. */
-export function drawLegend(pen, x, y, ratio) {
-  pen.font = `${12 * ratio}px system-ui, sans-serif`;
-  pen.textBaseline = "middle";
-  pen.textAlign = "left";
-  const say = (text) => {
-    pen.fillStyle = themed("ink");
-    pen.fillText(text, x, y);
-    x += pen.measureText(text).width + 8 * ratio;
+export function drawLegend(context, x, y, ratio) {
+  context.font = `${12 * ratio}px system-ui, sans-serif`;
+  context.textBaseline = "middle";
+  context.textAlign = "left";
+  const drawText = (text) => {
+    context.fillStyle = themed("ink");
+    context.fillText(text, x, y);
+    x += context.measureText(text).width + 8 * ratio;
   };
-  say("peak θ/α   0");
+  drawText("peak θ/α   0");
   for (let step = 0; step < 100; step += 1) {
-    pen.fillStyle = `rgb(${colourOfPeak(step / 100)})`;
-    pen.fillRect(x + step * ratio, y - 6 * ratio, ratio + 1, 12 * ratio);
+    context.fillStyle = `rgb(${colourOfPeak(step / 100)})`;
+    context.fillRect(x + step * ratio, y - 6 * ratio, ratio + 1, 12 * ratio);
   }
   x += 108 * ratio;
-  say("1");
+  drawText("1");
   for (const [name, words] of ENTRIES) {
     x += 8 * ratio;
-    fillSwatch(pen, name, x, y - 6 * ratio, 20 * ratio, 12 * ratio, ratio);
+    fillSwatch(context, name, x, y - 6 * ratio, 20 * ratio, 12 * ratio, ratio);
     x += 26 * ratio;
-    say(words);
+    drawText(words);
   }
 }
 
-function fillSwatch(pen, name, x, y, width, height, ratio) {
-  if (name === "BROUGHT_BACK") pen.fillStyle = `rgb(${BROUGHT_BACK})`;
-  else pen.fillStyle = name === "NO_UPLIFT" ? themed("paper") : hatch(pen, name, ratio);
-  pen.fillRect(x, y, width, height);
-  pen.strokeStyle = themed("muted");
-  pen.lineWidth = ratio;
-  pen.strokeRect(x, y, width, height);
+function fillSwatch(context, name, x, y, width, height, ratio) {
+  if (name === "BROUGHT_BACK") context.fillStyle = `rgb(${BROUGHT_BACK})`;
+  else context.fillStyle = name === "NO_UPLIFT" ? themed("paper") : hatch(context, name, ratio);
+  context.fillRect(x, y, width, height);
+  context.strokeStyle = themed("muted");
+  context.lineWidth = ratio;
+  context.strokeRect(x, y, width, height);
 }
 
 function show() {
   legend.querySelector(".scale").style.backgroundImage = scaleGradient();
   for (const [name] of ENTRIES) {
-    const swatch = legend.querySelector(`[data-fate=${name}]`);
+    const swatch = legend.querySelector(`[data-outcome=${name}]`);
     const ratio = devicePixelRatio;
     [swatch.width, swatch.height] = [26 * ratio, 16 * ratio];
     fillSwatch(swatch.getContext("2d"), name, 0, 0, swatch.width, swatch.height, ratio);

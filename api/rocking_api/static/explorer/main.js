@@ -1,23 +1,23 @@
-// The page: the state is what the controls say; from it to what is looked at, and from there to every view.
+// The page: from the state (the address) to the scenario, and from there to every view.
 
 import { urlOf } from "./api.js";
 import { fillForm, formParts, showAnswer, wireForm } from "./block_form.js";
 import { showControls, wireControls } from "./controls.js";
 import { setLinks, wireDownloads } from "./downloads.js";
-import { curvesUrl, mapQuestion, showMap } from "./map.js";
-import { tellOf, wireMap } from "./map_pointer.js";
+import { curvesUrl, mapParams, showMap } from "./map.js";
+import { showReadout, wireMap } from "./map_pointer.js";
 import { motionUrl, showMotion } from "./motion.js";
-import { forgive } from "./page.js";
+import { clearErrors } from "./page.js";
 import { once, pane } from "./pane.js";
-import { blockQuestion, movedTo, situationOf, situationOfBlock, situationWithoutAnswer } from "./situation.js";
+import { blockParams, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state } from "./state.js";
 import { whole, windowOf } from "./view.js";
-import { number, PULSES } from "./words.js";
+import { number, PULSES } from "./labels.js";
 
-const ASK = "“Does it overturn?”";
-const EDITED = `The block has been edited: ${ASK} gives its answer.`;
-const LEFT = `The map no longer shows the block of this form: ${ASK} shows it again.`;
+const BUTTON = "“Does it overturn?”";
+const EDITED = `The block has been edited: press ${BUTTON} for its response.`;
+const LEFT = `The map no longer shows the block of this form: press ${BUTTON} to show it again.`;
 
 const block = pane({
   box: document.getElementById("answer"),
@@ -27,15 +27,15 @@ const block = pane({
   clear: () => showAnswer(null),
 });
 
-let situation = null; // of the state; null while it is not known
+let scenario = null; // of the state; null while it is unknown
 let view = null; // window of the map
-let turn = 0; // counts what changes the situation
-let edited = false; // the form holds another block than the state
-let left = false; // a block was shown before
+let turn = 0; // number of changes of the scenario, by which a late response is recognised
+let edited = false; // the form differs from the state
+let left = false; // a block was shown before the current scenario
 
 /** Show the state. */
 function show() {
-  forgive();
+  clearErrors();
   fillForm(state());
   resolve();
 }
@@ -44,74 +44,74 @@ async function resolve() {
   const wanted = state();
   const mine = ++turn;
   edited = false;
-  situation = null;
+  scenario = null;
   if (isBlock(wanted)) {
     left = true;
-    lookAt(null);
-    const question = blockQuestion(wanted);
-    const answer = await block.show(JSON.stringify(question), once("/v1/blocks/response", question));
+    showScenario(null);
+    const params = blockParams(wanted);
+    const answer = await block.show(JSON.stringify(params), once("/v1/blocks/response", params));
     if (mine !== turn) return;
-    situation = answer ? situationOfBlock(answer) : situationWithoutAnswer(wanted);
+    scenario = answer ? scenarioOfBlock(answer) : scenarioWithoutResponse(wanted);
   } else {
     block.nothing(left ? LEFT : "");
-    situation = situationOf(wanted);
+    scenario = scenarioOf(wanted);
   }
-  lookAt(situation);
+  showScenario(scenario);
 }
 
-/** Show a situation in every view; null: it is not known, and unless that may be `lasting` the views are cleared soon. */
-function lookAt(found, lasting = false) {
+/** Show a scenario in every view; null: it is unknown, and the views are cleared after a while unless `lasting`. */
+function showScenario(found, lasting = false) {
   if (found || !view) view = windowOf(state(), found?.point);
   showControls(state(), found);
   showMap(found, view, lasting);
-  tellOf(null, found);
+  showReadout(null, found);
   showMotion(found, lasting);
   showSpectrum(found, view, lasting);
   link(found);
 }
 
-/** What was typed is not asked yet: nothing that is shown of the block in the state belongs to the form. */
+/** The form was edited and not submitted: dim what is shown, which belongs to the block of the state. */
 function edit() {
-  if (!isBlock(state()) || (situation && !situation.answer)) return;
-  const question = (parts) => JSON.stringify(blockQuestion({ ...state(), ...parts }));
-  if (question(formParts()) === question({})) {
+  if (!isBlock(state()) || (scenario && !scenario.answer)) return;
+  const params = (parts) => JSON.stringify(blockParams({ ...state(), ...parts }));
+  if (params(formParts()) === params({})) {
     resolve();
     return;
   }
   turn += 1;
   edited = true;
-  situation = null;
+  scenario = null;
   block.wait({ lasting: true, words: EDITED });
-  lookAt(null, true);
+  showScenario(null, true);
 }
 
-/** Change the state, to the block in the form if that was edited. */
+/** Change the state; a form that was edited is taken over. */
 function set(parts, keep = true) {
   change({ ...(edited ? formParts() : {}), ...parts }, { keep });
 }
 
 function link(found) {
-  const map = (format) => urlOf("/v1/map", { ...mapQuestion(), format });
+  const map = (format) => urlOf("/v1/map", { ...mapParams(), format });
   const motion = (format) => motionUrl(found, format);
   const spectrum = (format) => spectrumUrl(found, view, format);
   setLinks("map", found ? { csv: map("csv"), nc: map("nc"), curves: `${curvesUrl()}&format=csv` } : {});
-  setLinks("block", found?.answer ? { json: urlOf("/v1/blocks/response", blockQuestion(state())) } : {});
+  setLinks("block", found?.answer ? { json: urlOf("/v1/blocks/response", blockParams(state())) } : {});
   setLinks("motion", found?.point ? { csv: motion("csv"), nc: motion("nc") } : {});
   setLinks("spectrum", found?.point ? { csv: spectrum("csv"), nc: spectrum("nc") } : {});
 }
 
 function caption() {
-  const { pulse, restitution, alpha_deg, point } = situation;
-  const said = [PULSES[pulse] ?? pulse, `η = ${number(restitution, 4)}`];
-  said.push(Number(alpha_deg) ? `α = ${number(alpha_deg, 4)}°` : "slender limit");
-  if (point) said.push(`ω = ${number(point.frequency_ratio, 5)}`, `1/a = ${number(point.slenderness, 5)}`);
-  return said.join(", ");
+  const { pulse, restitution, alpha_deg, point } = scenario;
+  const parts = [PULSES[pulse] ?? pulse, `η = ${number(restitution, 4)}`];
+  parts.push(Number(alpha_deg) ? `α = ${number(alpha_deg, 4)}°` : "slender limit");
+  if (point) parts.push(`ω = ${number(point.frequency_ratio, 5)}`, `1/a = ${number(point.slenderness, 5)}`);
+  return parts.join(", ");
 }
 
-const look = () => ({ state: state(), situation, view });
+const look = () => ({ state: state(), scenario, view });
 wireForm((parts) => change({ ...parts, frequency_ratio: "", slenderness: "", alpha_deg: "0" }), edit);
 wireControls(look, set);
-wireMap(look, (point, keep) => set(movedTo(state(), situation, point), keep), set);
+wireMap(look, (point, keep) => set(movedTo(state(), scenario, point), keep), set);
 wireDownloads(caption);
 document.getElementById("whole").addEventListener("click", () => set(whole()));
 onChange(show);

@@ -1,23 +1,23 @@
-// The frame of the map: ticks and titles, in groups, and in g and seconds where a block in metres is asked about.
+// The frame of the map: ticks and titles, in groups, and for a block in metres also in g and seconds.
 
 import { ticks } from "./axes.js";
 import { themed } from "./colours.js";
-import { number } from "./words.js";
+import { number } from "./labels.js";
 
 /** Room around the picture [px]. */
 export const MARGIN = { left: 58, right: 58, top: 14, bottom: 44 };
 export const MARGIN_OF_BLOCK = { ...MARGIN, top: 44 };
 
 /** Draw ticks and titles; `size` (or null) turns groups into the amplitude and the period of one block. */
-export function drawFrame(pen, frame, scales, size, ratio) {
+export function drawFrame(context, frame, scales, size, ratio) {
   const right = frame.left + frame.width;
   const bottom = frame.top + frame.height;
-  pen.strokeStyle = themed("muted");
-  pen.fillStyle = themed("ink");
-  pen.lineWidth = ratio;
-  pen.font = `${12 * ratio}px system-ui, sans-serif`;
-  pen.strokeRect(frame.left, frame.top, frame.width, frame.height);
-  const tick = { pen, ratio };
+  context.strokeStyle = themed("muted");
+  context.fillStyle = themed("ink");
+  context.lineWidth = ratio;
+  context.font = `${12 * ratio}px system-ui, sans-serif`;
+  context.strokeRect(frame.left, frame.top, frame.width, frame.height);
+  const tick = { context, ratio };
 
   const omegas = ticks(scales.x.low, scales.x.high, scales.x.place, 34 * ratio);
   for (const omega of omegas) markAcross(tick, scales.x.place(omega), bottom, 1, number(omega, 4));
@@ -41,45 +41,45 @@ export function drawFrame(pen, frame, scales, size, ratio) {
   title(tick, right + 46 * ratio, frame.top + frame.height / 2, 1, words);
 }
 
-function markAcross({ pen, ratio }, x, y, side, text) {
-  line(pen, x, y, x, y + 4 * ratio * side);
-  pen.textAlign = "center";
-  pen.textBaseline = side > 0 ? "top" : "bottom";
-  pen.fillText(text, x, y + 7 * ratio * side);
+function markAcross({ context, ratio }, x, y, side, text) {
+  line(context, x, y, x, y + 4 * ratio * side);
+  context.textAlign = "center";
+  context.textBaseline = side > 0 ? "top" : "bottom";
+  context.fillText(text, x, y + 7 * ratio * side);
 }
 
-function markBeside({ pen, ratio }, x, y, side, text) {
-  line(pen, x, y, x + 4 * ratio * side, y);
-  pen.textAlign = side > 0 ? "left" : "right";
-  pen.textBaseline = "middle";
-  pen.fillText(text, x + 7 * ratio * side, y);
+function markBeside({ context, ratio }, x, y, side, text) {
+  line(context, x, y, x + 4 * ratio * side, y);
+  context.textAlign = side > 0 ? "left" : "right";
+  context.textBaseline = "middle";
+  context.fillText(text, x + 7 * ratio * side, y);
 }
 
-/** A title in the middle of its place; the letter after a low line stands lower and smaller. */
-function title({ pen, ratio }, x, y, quarters, text) {
+/** A centred title; the letter after an underscore is a subscript. */
+function title({ context, ratio }, x, y, quarters, text) {
   const parts = text.split("_").flatMap((part, at) => (at ? [[part[0], true], [part.slice(1), false]] : [[part, false]]));
   const fontOf = (low) => `${(low ? 9 : 12) * ratio}px system-ui, sans-serif`;
   const widthOf = ([words, low]) => {
-    pen.font = fontOf(low);
-    return pen.measureText(words).width;
+    context.font = fontOf(low);
+    return context.measureText(words).width;
   };
-  pen.save();
-  pen.translate(x, y);
-  pen.rotate((quarters * Math.PI) / 2);
-  pen.textAlign = "left";
-  pen.textBaseline = "middle";
+  context.save();
+  context.translate(x, y);
+  context.rotate((quarters * Math.PI) / 2);
+  context.textAlign = "left";
+  context.textBaseline = "middle";
   let at = -parts.map(widthOf).reduce((sum, width) => sum + width) / 2;
   for (const part of parts) {
     const width = widthOf(part);
-    pen.fillText(part[0], at, part[1] ? 4 * ratio : 0);
+    context.fillText(part[0], at, part[1] ? 4 * ratio : 0);
     at += width;
   }
-  pen.restore();
+  context.restore();
 }
 
-function line(pen, x1, y1, x2, y2) {
-  pen.beginPath();
-  pen.moveTo(x1, y1);
-  pen.lineTo(x2, y2);
-  pen.stroke();
+function line(context, x1, y1, x2, y2) {
+  context.beginPath();
+  context.moveTo(x1, y1);
+  context.lineTo(x2, y2);
+  context.stroke();
 }

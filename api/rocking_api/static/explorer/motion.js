@@ -1,23 +1,23 @@
-// The time history of the chosen block: its film, its rotation and the ground under it, one clock for all.
+// The time history of the chosen block: animation, rotation and ground acceleration against one time.
 
 import { urlOf } from "./api.js";
 import { axis, chart } from "./chart.js";
 import { themed } from "./colours.js";
-import { DRAWN_ALPHA, filmOf } from "./film.js";
+import { DRAWN_ALPHA, trajectoryOf } from "./trajectory.js";
 import { once, pane } from "./pane.js";
-import { repeat, seek, unwind, wind } from "./player.js";
-import { caveatOf } from "./situation.js";
-import { showFrame } from "./stage.js";
-import { FATES, number } from "./words.js";
+import { repeat, seek, unload, load } from "./player.js";
+import { validityNote } from "./scenario.js";
+import { showFrame } from "./canvas.js";
+import { OUTCOMES, number } from "./labels.js";
 
 const section = document.getElementById("motion");
 const caption = document.getElementById("motion-caption");
 const clock = document.getElementById("clock");
-const places = [document.getElementById("rotation"), document.getElementById("acceleration-chart")];
+const containers = [document.getElementById("rotation"), document.getElementById("acceleration-chart")];
 
 const SMALL = { space: 22 };
 
-let asked = null; // the situation
+let current = null; // the scenario
 let charts = [];
 const motion = pane({
   box: section.querySelector(".motion"),
@@ -25,63 +25,63 @@ const motion = pane({
   doing: "Computing the time history …",
   delay: 120,
   picture: "motion",
-  draw: (history) => show(history, asked),
-  clear: unwind,
+  draw: (history) => show(history, current),
+  clear: unload,
 });
 
-/** Show the motion at the point of a situation; nothing without one; null: the situation is not known. */
-export function showMotion(situation, lasting) {
-  if (!situation) return motion.wait({ lasting });
-  section.classList.toggle("empty", !situation.point);
-  if (!situation.point) return motion.nothing();
-  asked = situation;
-  const question = motionQuestion(situation);
-  return motion.show(JSON.stringify([question, situation.size]), once("/v1/history", question));
+/** Show the motion at the point of a scenario; nothing without a point; null: the scenario is unknown. */
+export function showMotion(scenario, lasting) {
+  if (!scenario) return motion.wait({ lasting });
+  section.classList.toggle("empty", !scenario.point);
+  if (!scenario.point) return motion.nothing();
+  current = scenario;
+  const params = motionParams(scenario);
+  return motion.show(JSON.stringify([params, scenario.size]), once("/v1/history", params));
 }
 
-/** The question that the charts answer, for a download. */
-export function motionQuestion({ pulse, restitution, alpha_deg, point }) {
+/** Parameters of the charts, for a download. */
+export function motionParams({ pulse, restitution, alpha_deg, point }) {
   return { pulse, restitution, alpha_deg, ...point, samples: 800 };
 }
 
-/** The address of the motion with all its digits, in a form. */
-export function motionUrl(situation, format) {
-  return urlOf("/v1/history", { ...motionQuestion(situation), format });
+/** The URL of the time history in a format. */
+export function motionUrl(scenario, format) {
+  return urlOf("/v1/history", { ...motionParams(scenario), format });
 }
 
-function show(history, situation) {
-  const { size, alpha_deg } = situation;
+function show(history, scenario) {
+  const { size, alpha_deg } = scenario;
   const alpha = alpha_deg > 0 ? (alpha_deg * Math.PI) / 180 : DRAWN_ALPHA;
-  const film = filmOf(history, alpha);
+  const trajectory = trajectoryOf(history, alpha);
   const units = size
     ? { time: 1 / size.p, angle: size.alpha * (180 / Math.PI), ground: size.uplift_in_g }
     : { time: 1, angle: 1, ground: 1 };
   drawCharts(history, units, Boolean(size));
-  const notes = [caveatOf(situation), `It ${FATES[history.outcome]}.`].filter(Boolean);
+  const notes = [validityNote(scenario), `It ${OUTCOMES[history.outcome]}.`].filter(Boolean);
   if (!(alpha_deg > 0)) notes.push(`The slender limit has no shape; drawn with α = ${number((alpha * 180) / Math.PI)}°.`);
-  if (history.overturned) notes.push("The last part of the fall is drawn by gravity alone.");
+  if (history.overturned) notes.push("The end of the overturning is drawn without ground motion.");
   caption.textContent = notes.join(" ");
   const tell = (tau) => {
-    showFrame(film, size, tau);
+    showFrame(trajectory, size, tau);
     for (const one of charts) moveCursor(one, tau * units.time);
     clock.textContent = size ? `${(tau * units.time).toFixed(2)} s` : `τ = ${tau.toFixed(2)}`;
     return clock.textContent;
   };
-  wind(film.tau.at(-1), size, tell, true);
+  load(trajectory.tau.at(-1), size, tell, true);
 }
 
 function drawCharts(history, units, dimensional) {
   const time = history.tau.map((tau) => tau * units.time);
   const rotation = history.rotation.map((y) => y * units.angle);
   const acceleration = history.ground_acceleration.map((u) => u * units.ground);
-  const landings = history.impact_time.map((tau) => tau * units.time);
+  const impacts = history.impact_time.map((tau) => tau * units.time);
   const names = dimensional
     ? ["time t [s]", "rotation θ [°]", "ground [g]"]
     : ["time τ = p t", "rotation θ/α", "ground a f"];
-  const marks = { draw: [(u) => drawLines(u, [-units.angle, units.angle]), (u) => drawImpacts(u, landings)] };
+  const marks = { draw: [(u) => drawLines(u, [-units.angle, units.angle]), (u) => drawImpacts(u, impacts)] };
   charts = [
-    line(places[0], 220, [axis(null, { size: 24 }), axis(names[1], SMALL)], [time, rotation], marks),
-    line(places[1], 150, [axis(names[0], { size: 26 }), axis(names[2], SMALL)], [time, acceleration], {
+    line(containers[0], 220, [axis(null, { size: 24 }), axis(names[1], SMALL)], [time, rotation], marks),
+    line(containers[1], 150, [axis(names[0], { size: 26 }), axis(names[2], SMALL)], [time, acceleration], {
       draw: [(u) => drawLines(u, [-units.ground, units.ground])],
     }),
   ];
@@ -103,7 +103,7 @@ function moveCursor(one, time) {
   one.over.querySelector(".cursor").style.transform = `translateX(${x}px)`;
 }
 
-/** Dashed: alpha, beyond which the weight overturns, and the acceleration that lifts the block off. */
+/** Dashed lines: alpha, beyond which the weight is destabilising, and the acceleration at which the block uplifts. */
 function drawLines(u, heights) {
   const { ctx, bbox } = u;
   ctx.save();
@@ -121,14 +121,14 @@ function drawLines(u, heights) {
   ctx.restore();
 }
 
-function drawImpacts(u, landings) {
+function drawImpacts(u, impacts) {
   const { ctx, bbox } = u;
   const y = u.valToPos(0, "y", true);
   ctx.save();
   ctx.fillStyle = themed("paper");
   ctx.strokeStyle = themed("ink");
   ctx.lineWidth = 1.5 * devicePixelRatio;
-  for (const time of landings) {
+  for (const time of impacts) {
     const x = u.valToPos(time, "x", true);
     if (x < bbox.left || x > bbox.left + bbox.width) continue;
     ctx.beginPath();

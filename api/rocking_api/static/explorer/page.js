@@ -1,11 +1,11 @@
-// Small things that all parts of the page share.
+// Status lines, field errors and elements, shared by all parts of the page.
 
-/** Say a sentence, or what went wrong (an Error) with a way to try `again`, where people and screen readers find it. */
-export function say(place, what, again) {
+/** Set a status line to a text, or to an Error with a button that calls `again`. */
+export function setStatus(place, what, again) {
   const wrong = what instanceof Error;
   place.classList.toggle("wrong", wrong);
   if (!wrong) place.textContent = what;
-  else if (blame(what, place.closest("form") ?? document.getElementById("controls"))) {
+  else if (showFieldError(what, place.closest("form") ?? document.getElementById("controls"))) {
     place.textContent = "No answer: see the field marked in red.";
   } else {
     const button = element("button", "Try again", { type: "button" });
@@ -22,8 +22,8 @@ export function element(tag, content = "", attributes = {}) {
   return made;
 }
 
-/** Say what is wrong beside the field of a form that the problem names; whether there is one. */
-function blame({ parameter, value, allowed }, form) {
+/** Show an error beside the field of a form that it names; returns whether there is one. */
+function showFieldError({ parameter, value, allowed }, form) {
   const place = form.querySelector(`[data-problem="${CSS.escape(parameter ?? "")}"]`);
   if (!place) return false;
   const name = parameter.replaceAll("_", " ");
@@ -34,8 +34,8 @@ function blame({ parameter, value, allowed }, form) {
   return true;
 }
 
-/** Take back all of that. */
-export function forgive() {
+/** Clear all field errors. */
+export function clearErrors() {
   for (const place of document.querySelectorAll("[data-problem]")) {
     place.textContent = "";
     const field = document.getElementById(place.dataset.field);

@@ -1,22 +1,22 @@
-// One view of the page and its requests: what it shows is what the controls say, or is dimmed, or is cleared.
+// One view of the page and its requests. What it shows belongs to the current controls, or is dimmed, or is cleared.
 
 import { ask, pause, Problem } from "./api.js";
-import { say } from "./page.js";
+import { setStatus } from "./page.js";
 import { refresh } from "./state.js";
 
-const CLEAR_AFTER = 2000; // [ms] that something out of date stays, dimmed
-const APART = 100; // [ms] between the starts of two requests, while a slider is dragged
-const LIMIT = 75_000; // [ms], longer than the service grants a request
+const CLEAR_AFTER = 2000; // [ms], how long an outdated view stays visible, dimmed
+const MIN_INTERVAL = 100; // [ms] between the starts of two requests, while a slider is dragged
+const TIMEOUT = 75_000; // [ms], longer than the time limit of the service
 
 /**
- * A view in `box`, which tells in `status` what it is `doing` or what failed. `draw(answer)` shows an answer, `clear()`
- * takes away what is shown; requests begin `delay` ms after the last change. `picture` names the button that saves it.
+ * A view in `box`. The element `status` shows `doing` while a request runs, or the error. `draw(answer)` shows a response,
+ * `clear()` removes it; requests start `delay` ms after the last change. `picture` names the button that saves the view.
  */
 export function pane({ box, status, doing = "", delay = 0, picture = "", draw, clear }) {
-  let wanted = null; // key of what the controls say; null: not known
+  let wanted = null; // key of what the controls ask for; null: unknown
   let shown = null; // key of what is on the page
-  let complete = null; // the last answer to `shown`; null: more are to come
-  let control = null; // of the requests under way
+  let complete = null; // the last response for `shown`; null: more are expected
+  let control = null; // AbortController of the running requests
   let running = null; // their promise
   let started = -Infinity; // [ms]
   const timers = [];
@@ -50,7 +50,7 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
 
   async function follow(key, load, mine) {
     try {
-      await pause(Math.max(delay, started + APART - performance.now()), mine.signal);
+      await pause(Math.max(delay, started + MIN_INTERVAL - performance.now()), mine.signal);
       started = performance.now();
       let last = null;
       for await (const answer of load(mine.signal)) {
@@ -61,7 +61,7 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
       if (mine !== control) return null;
       complete = last;
       stop();
-      say(status, "");
+      setStatus(status, "");
       return last;
     } catch (problem) {
       if (mine !== control) return null;
@@ -69,15 +69,15 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
       if (shown !== key) blank();
       mark(false);
       if (!(problem instanceof Problem)) throw problem;
-      say(status, problem, refresh);
+      setStatus(status, problem, refresh);
       return null;
     }
   }
 
   return {
     /**
-     * Show what `load(signal)` yields for a key, one answer after the other, unless it is there or on its way; resolves to
-     * the last answer, or to null if it failed or another key was asked for meanwhile.
+     * Show what `load(signal)` yields for a key, one response after the other, unless it is shown or requested already.
+     * Resolves to the last response, or to null if it failed or another key was requested meanwhile.
      */
     async show(key, load) {
       if (key === wanted && control) return running;
@@ -85,48 +85,48 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
       wanted = key;
       if (key === shown && complete) {
         mark(false);
-        say(status, "");
+        setStatus(status, "");
         return complete;
       }
       control = new AbortController();
       const mine = control;
       mark(shown !== key);
-      say(status, doing);
+      setStatus(status, doing);
       const overdue = () => {
         if (shown === key) return;
         blank();
-        say(status, "Still waiting for the service …");
+        setStatus(status, "Still waiting for the service …");
       };
       timers.push(setTimeout(overdue, CLEAR_AFTER));
-      const late = new Problem({ detail: `the service has not answered within ${LIMIT / 1000} s` });
-      timers.push(setTimeout(() => mine.abort(late), LIMIT));
+      const late = new Problem({ detail: `the service has not answered within ${TIMEOUT / 1000} s` });
+      timers.push(setTimeout(() => mine.abort(late), TIMEOUT));
       running = follow(key, load, mine);
       return running;
     },
 
-    /** What the controls say is not known: dim what is shown, and clear it if that lasts and `lasting` is false. */
+    /** It is unknown what to show: dim what is shown, and clear it after a while unless `lasting`. */
     wait({ lasting = false, words = "" } = {}) {
       stop();
       wanted = null;
       mark(true);
-      say(status, words);
+      setStatus(status, words);
       if (!lasting) timers.push(setTimeout(blank, CLEAR_AFTER));
     },
 
-    /** There is nothing to show, for which there may be words. */
+    /** There is nothing to show; `words` says why. */
     nothing(words = "") {
       stop();
       wanted = null;
       blank();
       mark(false);
-      say(status, words);
+      setStatus(status, words);
     },
   };
 }
 
-/** A load of one answer of the service. */
-export function once(path, question) {
+/** A load that yields one response. */
+export function once(path, params) {
   return async function* load(signal) {
-    yield await ask(path, question, signal);
+    yield await ask(path, params, signal);
   };
 }

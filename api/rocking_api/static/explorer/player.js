@@ -1,4 +1,4 @@
-// Play, pause, speed and time of the film.
+// Play, pause, speed and time of the animation.
 
 const button = document.getElementById("play");
 const slider = document.getElementById("time");
@@ -8,13 +8,13 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 /** Seconds per unit of tau without a block in metres: those of a block with p = 2 rad/s, R = 1.8 m. */
 const SECONDS = 0.5;
 
-let reel = null; // { end, seconds, show }
+let animation = null; // { end, seconds, show }
 let tau = 0;
 let last = null; // clock of the frame before, null while paused
 
-/** Wind on a film that ends at `end` [tau]; `size` gives real time, `show(tau)` draws. Plays at once if asked to. */
-export function wind(end, size, show, atOnce) {
-  reel = { end, seconds: size ? 1 / size.p : SECONDS, show };
+/** Load an animation that ends at `end` [tau]; `size` gives real time, `show(tau)` draws. Starts it if `atOnce`. */
+export function load(end, size, show, atOnce) {
+  animation = { end, seconds: size ? 1 / size.p : SECONDS, show };
   slider.max = end;
   slider.step = end / 1000;
   seek(0);
@@ -22,28 +22,28 @@ export function wind(end, size, show, atOnce) {
   else pause();
 }
 
-/** Take the film off. */
-export function unwind() {
+/** Remove the animation. */
+export function unload() {
   pause();
-  reel = null;
+  animation = null;
 }
 
 /** Go to a time. */
 export function seek(to) {
-  if (!reel) return;
-  tau = Math.min(Math.max(to, 0), reel.end);
+  if (!animation) return;
+  tau = Math.min(Math.max(to, 0), animation.end);
   slider.value = tau;
-  slider.setAttribute("aria-valuetext", reel.show(tau));
+  slider.setAttribute("aria-valuetext", animation.show(tau));
 }
 
-/** Show the time that is on again. */
+/** Draw the current time again. */
 export function repeat() {
   seek(tau);
 }
 
 function play() {
-  if (!reel) return;
-  if (tau >= reel.end) seek(0);
+  if (!animation) return;
+  if (tau >= animation.end) seek(0);
   const running = last !== null;
   last = performance.now();
   button.textContent = "Pause";
@@ -59,9 +59,9 @@ function pause() {
 
 function step(now) {
   if (last === null) return;
-  seek(tau + (Math.max(now - last, 0) / 1000 / reel.seconds) * Number(speed.value));
+  seek(tau + (Math.max(now - last, 0) / 1000 / animation.seconds) * Number(speed.value));
   last = now;
-  if (tau >= reel.end) pause();
+  if (tau >= animation.end) pause();
   else requestAnimationFrame(step);
 }
 

@@ -4,7 +4,7 @@ import { ask, urlOf } from "./api.js";
 import { axis, chart } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { pane } from "./pane.js";
-import { number } from "./words.js";
+import { number } from "./labels.js";
 
 const OTHERS = [0.8, 0.88, 0.96];
 const POINTS = 400;
@@ -13,47 +13,47 @@ const section = document.getElementById("spectrum");
 const caption = document.getElementById("spectrum-caption");
 const place = document.getElementById("spectrum-chart");
 
-let asked = null; // the situation
+let current = null; // the scenario
 const spectrum = pane({
   box: section.querySelector(".picture"),
   status: document.getElementById("spectrum-status"),
   doing: "Computing the spectrum …",
   delay: 120,
   picture: "spectrum",
-  draw: (found) => draw(asked, found),
+  draw: (found) => draw(current, found),
   clear: () => {},
 });
 
-/** Show the spectrum through the point of a situation (null: not known), over the window of the map. */
-export function showSpectrum(situation, view, lasting) {
-  if (!situation) return spectrum.wait({ lasting });
-  section.classList.toggle("empty", !situation.point);
-  if (!situation.point) return spectrum.nothing();
-  asked = situation;
-  const question = spectrumQuestion(situation, view);
-  const key = JSON.stringify([question, situation.point.frequency_ratio]);
+/** Show the spectrum at the slenderness of a scenario (null: unknown), over the window of the map. */
+export function showSpectrum(scenario, view, lasting) {
+  if (!scenario) return spectrum.wait({ lasting });
+  section.classList.toggle("empty", !scenario.point);
+  if (!scenario.point) return spectrum.nothing();
+  current = scenario;
+  const params = spectrumParams(scenario, view);
+  const key = JSON.stringify([params, scenario.point.frequency_ratio]);
   return spectrum.show(key, async function* load(signal) {
-    const all = [question.restitution, ...OTHERS];
-    yield await Promise.all(all.map((restitution) => ask("/v1/spectrum", { ...question, restitution }, signal)));
+    const all = [params.restitution, ...OTHERS];
+    yield await Promise.all(all.map((restitution) => ask("/v1/spectrum", { ...params, restitution }, signal)));
   });
 }
 
-/** The address of the spectrum with all its digits, in a form. */
-export function spectrumUrl(situation, view, format) {
-  return urlOf("/v1/spectrum", { ...spectrumQuestion(situation, view), format });
+/** The URL of the spectrum in a format. */
+export function spectrumUrl(scenario, view, format) {
+  return urlOf("/v1/spectrum", { ...spectrumParams(scenario, view), format });
 }
 
-function spectrumQuestion({ pulse, restitution, alpha_deg, point }, view) {
+function spectrumParams({ pulse, restitution, alpha_deg, point }, view) {
   const { frequency_ratio_min, frequency_ratio_max } = view;
   const { slenderness } = point;
   return { pulse, restitution, alpha_deg, slenderness, frequency_ratio_min, frequency_ratio_max, points: POINTS };
 }
 
-function draw(situation, [chosen, ...others]) {
+function draw(scenario, [chosen, ...others]) {
   const shades = others.map(() => ({ stroke: () => themed("muted"), width: 1, spanGaps: false, pxAlign: 0 }));
   const series = [{}, ...shades, { stroke: () => themed("accent"), width: 2.5, spanGaps: false, pxAlign: 0 }];
   const tell = ({ cursor }) => {
-    caption.textContent = inWords(situation, chosen, cursor.idx);
+    caption.textContent = readoutText(scenario, chosen, cursor.idx);
   };
   chart(
     place,
@@ -66,17 +66,17 @@ function draw(situation, [chosen, ...others]) {
       ],
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, Math.max(1.2, high * 1.2)] } },
       hooks: {
-        drawClear: [(u) => shadeFalls(u, chosen)],
-        draw: [(u) => markPoint(u, situation.point), (u) => nameOthers(u, others)],
+        drawClear: [(u) => shadeOverturning(u, chosen)],
+        draw: [(u) => markPoint(u, scenario.point), (u) => labelOthers(u, others)],
         setCursor: [tell],
       },
     },
     [chosen.frequency_ratio, ...others.map((one) => one.peak_rotation), chosen.peak_rotation],
   );
-  caption.textContent = inWords(situation, chosen, null);
+  caption.textContent = readoutText(scenario, chosen, null);
 }
 
-function inWords({ restitution, point }, chosen, at) {
+function readoutText({ restitution, point }, chosen, at) {
   if (at !== null && at !== undefined) {
     const omega = `ω ${number(chosen.frequency_ratio[at])}`;
     return chosen.overturned[at] ? `${omega}: overturns` : `${omega}: peak ${chosen.peak_rotation[at].toFixed(4)} α`;
@@ -95,14 +95,14 @@ function label(value) {
 }
 
 /** Hatch the frequency ratios at which the chosen block overturns. */
-function shadeFalls(u, chosen) {
+function shadeOverturning(u, chosen) {
   const { ctx, bbox } = u;
   const omega = chosen.frequency_ratio;
   ctx.save();
-  for (const fate of ["OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"]) {
-    ctx.fillStyle = hatch(ctx, fate, devicePixelRatio);
+  for (const outcome of ["OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"]) {
+    ctx.fillStyle = hatch(ctx, outcome, devicePixelRatio);
     chosen.outcome.forEach((outcome, at) => {
-      if (outcome !== fate) return;
+      if (outcome !== outcome) return;
       const left = u.valToPos(Math.sqrt(omega[at] * omega[Math.max(at - 1, 0)]), "x", true);
       const right = u.valToPos(Math.sqrt(omega[at] * omega[Math.min(at + 1, omega.length - 1)]), "x", true);
       ctx.fillRect(left, bbox.top, right - left + 1, bbox.height);
@@ -112,7 +112,7 @@ function shadeFalls(u, chosen) {
 }
 
 /** Write each restitution above the highest place of its curve's last stretch, and above the names that are there. */
-function nameOthers(u, others) {
+function labelOthers(u, others) {
   const { ctx } = u;
   ctx.save();
   ctx.fillStyle = themed("ink");

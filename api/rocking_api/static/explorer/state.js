@@ -1,4 +1,4 @@
-// Everything the page shows follows from its address: names and numbers as they stand in the URL, as text.
+// The state of the page is its address: names and numbers as text, as in the URL.
 
 export const DEFAULTS = {
   pulse: "sine",
@@ -40,14 +40,14 @@ export function addressOf(wanted) {
   return query ? `?${query}` : location.pathname;
 }
 
-/** Whether a block in metres is asked about, rather than a point of the map. */
+/** Whether the state holds a block in metres rather than a point of the map. */
 export function isBlock(wanted) {
   return wanted.width !== "" || wanted.height !== "";
 }
 
 /**
- * Change some of the state. `keep` makes a step to which the back button returns; what was shown on the way since the
- * step before, while a slider was dragged, makes none.
+ * Change some of the state. `keep` adds an entry to the history of the browser; intermediate states, while a slider is
+ * dragged, add none.
  */
 export function change(parts, { keep = true } = {}) {
   current = { ...current, ...parts };
@@ -65,7 +65,7 @@ export function onChange(listener) {
   listeners.push(listener);
 }
 
-/** Tell everybody the state again, so that what failed is asked for once more. */
+/** Call all listeners again, so that failed requests are repeated. */
 export function refresh() {
   for (const listener of listeners) listener(current);
 }

@@ -1,4 +1,4 @@
-// Quantities as people write them, "0.4 m", and in SI units as the service asks for them.
+// Quantities as text with a unit, "0.4 m", and in the SI units of the service.
 
 export const UNITS = {
   width: { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 },
@@ -7,7 +7,7 @@ export const UNITS = {
   period: { s: 1, ms: 0.001 },
 };
 
-/** Stands for a number that was not given. */
+/** Placeholder for a missing number. */
 export const MISSING = "?";
 
 /** Number and unit of a quantity, both as text. */
@@ -16,7 +16,7 @@ export function split(text) {
   return { value, unit };
 }
 
-/** A quantity in SI units; what is missing or no number is handed on as it is, for the service to refuse. */
+/** A quantity in SI units; other text is passed on, for the service to refuse. */
 export function toSI(name, text, share = 1) {
   const { value, unit } = split(text);
   const read = Number(value.replace(",", "."));

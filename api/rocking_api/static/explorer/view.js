@@ -1,4 +1,4 @@
-// The window of the map: whole unless the address says otherwise, widened to hold the chosen point, and zoomed.
+// The window of the map: the default or that of the address, widened to hold the chosen point, and zoomed.
 
 const WHOLE = { frequency_ratio_min: 0.5, frequency_ratio_max: 12, slenderness_min: 0.01, slenderness_max: 1.05 };
 const MOST_SLENDER = 2;
@@ -18,25 +18,25 @@ export function windowOf(state, point) {
   return found;
 }
 
-/** What to write into the state for the whole map. */
+/** The parts of a state that show the whole map. */
 export function whole() {
   return Object.fromEntries(Object.keys(WHOLE).map((name) => [name, ""]));
 }
 
-/** What to write into the state to see `factor` of the window's sides about a point of it. */
+/** The parts of a state that show `factor` of the sides of the window about a point. */
 export function zoomed(view, about, factor) {
-  const bends = { frequency_ratio: [Math.log, Math.exp], slenderness: [(x) => x, (x) => x] };
+  const transforms = { frequency_ratio: [Math.log, Math.exp], slenderness: [(x) => x, (x) => x] };
   const parts = {};
-  for (const [name, [bend, back]] of Object.entries(bends)) {
-    const [low, high] = [bend(view[`${name}_min`]), bend(view[`${name}_max`])];
-    const at = Math.min(Math.max(bend(about[name]), low), high);
+  for (const [name, [transform, inverse]] of Object.entries(transforms)) {
+    const [low, high] = [transform(view[`${name}_min`]), transform(view[`${name}_max`])];
+    const at = Math.min(Math.max(transform(about[name]), low), high);
     const span = Math.max((high - low) * factor, LEAST_SPAN);
     const share = (at - low) / (high - low);
     let [from, to] = [at - share * span, at + (1 - share) * span];
     if (name === "slenderness" && from < WHOLE.slenderness_min) from = Math.min(low, WHOLE.slenderness_min);
     if (name === "slenderness") to = Math.min(to, MOST_SLENDER);
-    parts[`${name}_min`] = Number(back(from).toPrecision(5)).toString();
-    parts[`${name}_max`] = Number(back(to).toPrecision(5)).toString();
+    parts[`${name}_min`] = Number(inverse(from).toPrecision(5)).toString();
+    parts[`${name}_max`] = Number(inverse(to).toPrecision(5)).toString();
   }
   return parts;
 }

@@ -1,30 +1,36 @@
-"""Bodies of POST /v1/response: JSON, CSV or netCDF-3, read into arrays of groups and one set of options."""
+"""Request bodies and responses of POST /v1/response: JSON, CSV or netCDF-3."""
 
 from __future__ import annotations
 
 import io
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import anyio
 import numpy as np
 import xarray as xr
-from fastapi import Request
+from fastapi import Request, Response
 from numpy.typing import NDArray
 
 from rocking.errors import InvalidArgumentError
-from rocking_api.http.formats import MEDIA_TYPES, Form
-from rocking_api.http.in_flight import Holding
-from rocking_api.http.problems import SlowBodyError, TooLargeError, UnsupportedBodyError
-from rocking_api.models.params import BatchQuestion, LookupOptions, check_value
+from rocking_api.execution.evaluation import BatchResult
+from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_stream, dataset_of, json_stream, netcdf_response
+from rocking_api.http.errors import SlowBodyError, TooLargeError, UnsupportedBodyError
+from rocking_api.http.memory_budget import Reservation
+from rocking_api.models.params import BatchParams, LookupOptions, check_value
+from rocking_api.models.responses import VERSION, columns_of
+
+_CHARACTER = re.compile(rb"\S")
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Points to answer: arrays of one length, shape (points,), and how."""
+    """Points to evaluate, arrays of shape (points,), and the options."""
 
     options: LookupOptions
     groups: dict[str, NDArray[np.float64]]
@@ -33,9 +39,14 @@ class Batch:
     def points(self) -> int:
         return self.groups["slenderness"].size
 
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays [bytes]; a group given as one number takes none."""
+        return sum(column.size * abs(column.strides[0]) for column in self.groups.values() if any(column.strides))
+
 
 def body_form(request: Request) -> Form:
-    """The form of the body by its Content-Type; JSON if it says nothing.
+    """Format of the body by its Content-Type; JSON without one.
 
     Raises
     ------
@@ -49,56 +60,54 @@ def body_form(request: Request) -> Form:
     raise UnsupportedBodyError("Content-Type", declared, "one of " + ", ".join(MEDIA_TYPES.values()))
 
 
-async def limited_body(request: Request, limit: int, seconds: float, holding: Holding) -> bytearray:
-    """The body, given up as soon as it grows beyond `limit` bytes, or when it takes longer than `seconds` to arrive.
-
-    Its bytes are counted in `holding`.
+async def limited_body(request: Request, limit: int, seconds: float, reservation: Reservation) -> bytes:
+    """The body, of at most `limit` bytes, within `seconds`; its bytes are counted in `reservation`.
 
     Raises
     ------
     TooLargeError, SlowBodyError
-        If it does.
+        If it is larger, or takes longer.
     UnsupportedBodyError
-        If it is compressed: a few bytes could become any number.
+        If it is compressed: a few bytes could expand to any number.
     BusyError
-        If too many bytes are on their way already.
+        If the bytes in flight exceed their limit.
     """
     coding = request.headers.get("content-encoding", "identity")
     if coding != "identity":
         raise UnsupportedBodyError("Content-Encoding", coding, "none: bodies are not compressed")
     declared = request.headers.get("content-length", "")
-    if declared.isdecimal() and int(declared[:20]) > limit:  # more digits are more than any limit
+    if declared.isdecimal() and int(declared[:20]) > limit:  # more digits exceed any limit
         raise TooLargeError("body", declared[:20], f"at most {limit} bytes")
-    body = bytearray()
+    body = io.BytesIO()  # getvalue() does not copy
     with anyio.move_on_after(seconds) as patience:
         async for chunk in request.stream():
-            holding.add(len(chunk))
-            body += chunk
-            if len(body) > limit:
-                raise TooLargeError("body", len(body), f"at most {limit} bytes")
+            reservation.add(len(chunk))
+            body.write(chunk)
+            if body.tell() > limit:
+                raise TooLargeError("body", body.tell(), f"at most {limit} bytes")
     if patience.cancelled_caught:
-        raise SlowBodyError("body", f"{len(body)} bytes", f"all of it within {seconds:g} s")
-    return body
+        raise SlowBodyError("body", f"{body.tell()} bytes", f"all of it within {seconds:g} s")
+    return body.getvalue()
 
 
-def read_batch(body: bytes | bytearray, form: Form, parameters: Mapping[str, str], max_points: int) -> Batch:
-    """Read a batch. JSON holds everything; for the other forms, options and missing groups are query parameters.
+def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_points: int) -> Batch:
+    """Parse a batch. JSON holds everything; for the other formats, options and missing groups are query parameters.
 
     Raises
     ------
     InvalidArgumentError
-        If the body cannot be read, a parameter is unknown, the groups are not of one length, or one is out of range.
+        If the body cannot be parsed, a parameter is unknown, the groups differ in length, or one is out of range.
     ValidationError
-        If JSON does not fit `BatchQuestion`.
+        If JSON does not fit `BatchParams`.
     TooLargeError
         For more than `max_points` points.
     """
     if form == "json":
         for name, value in parameters.items():
             raise InvalidArgumentError(name, value, "no parameters in the URL; a JSON body holds them all")
-        question = BatchQuestion.model_validate_json(body)
-        columns = {name: np.atleast_1d(np.array(getattr(question, name), dtype=np.float64)) for name in GROUPS}
-        options = LookupOptions(**{name: getattr(question, name) for name in LookupOptions.model_fields})
+        params = BatchParams.model_validate_json(body)
+        columns = {name: np.atleast_1d(np.array(getattr(params, name), dtype=np.float64)) for name in GROUPS}
+        options = LookupOptions(**{name: getattr(params, name) for name in LookupOptions.model_fields})
     else:
         columns = _read_csv(body) if form == "csv" else _read_netcdf(body, max_points)
         given = {name: value for name, value in parameters.items() if name != "format"}
@@ -131,13 +140,14 @@ def _number(name: str, text: str) -> float:
         raise InvalidArgumentError(name, text, "a number") from None
 
 
-def _read_csv(body: bytes | bytearray) -> dict[str, NDArray[np.float64]]:
+def _read_csv(body: bytes) -> dict[str, NDArray[np.float64]]:
+    """Decode line by line: the whole text would take five times the memory of the body."""
+    lines = io.TextIOWrapper(io.BytesIO(body), encoding="utf-8-sig", newline="\n")
     try:
-        header, _, rows = body.decode("utf-8-sig").partition("\n")
-        names = [name.strip() for name in header.split(",")]
-        _known(names)
-        lines = io.StringIO(rows)
-        table = np.loadtxt(lines, delimiter=",", ndmin=2, comments=None) if rows.strip() else np.empty((0, len(names)))
+        names = [name.strip() for name in lines.readline().split(",")]
+        _check_columns(names)
+        has_rows = b"\n" in body and _CHARACTER.search(body, body.index(b"\n")) is not None
+        table = np.loadtxt(lines, delimiter=",", ndmin=2, comments=None) if has_rows else np.empty((0, len(names)))
     except InvalidArgumentError:
         raise
     except ValueError as error:  # UnicodeDecodeError among them
@@ -148,12 +158,10 @@ def _read_csv(body: bytes | bytearray) -> dict[str, NDArray[np.float64]]:
     return dict(zip(names, table.T, strict=True))
 
 
-def _read_netcdf(body: bytes | bytearray, max_points: int) -> dict[str, NDArray[np.float64]]:
-    """Variables of any dimensions; they broadcast by name, and the points follow in C order of the dimensions."""
+def _read_netcdf(body: bytes, max_points: int) -> dict[str, NDArray[np.float64]]:
+    """Variables of any dimensions broadcast by dimension name; points follow in C order of the dimensions."""
     if not body.startswith((b"CDF\x01", b"CDF\x02")):
-        raise InvalidArgumentError(
-            "body", repr(bytes(body[:4])), "netCDF-3 (Dataset.to_netcdf(engine='scipy') writes it)"
-        )
+        raise InvalidArgumentError("body", repr(body[:4]), "netCDF-3, as written by Dataset.to_netcdf(engine='scipy')")
     try:
         with xr.open_dataset(io.BytesIO(body), engine="scipy", decode_times=False) as opened:
             dataset = opened.load()
@@ -161,14 +169,26 @@ def _read_netcdf(body: bytes | bytearray, max_points: int) -> dict[str, NDArray[
         columns = [dataset[name].astype(np.float64) for name in names]
     except Exception as error:  # noqa: BLE001  (whatever scipy and xarray meet in a damaged file)
         raise InvalidArgumentError("body", repr(error)[:100], "an undamaged netCDF-3 file of numbers") from None
-    _known(names)
+    _check_columns(names)
     points = math.prod(dataset.sizes.values())
-    if points > max_points:  # before they are broadcast
+    if points > max_points:  # before broadcasting
         raise TooLargeError("points", points, f"at most {max_points}")
     return {str(column.name): np.ravel(column.values) for column in xr.broadcast(*columns)}
 
 
-def _known(names: list[str]) -> None:
+def _check_columns(names: list[str]) -> None:
     for name in names:
         if name not in GROUPS or names.count(name) > 1:
             raise InvalidArgumentError("body", name, "columns " + ", ".join(GROUPS) + ", each at most once")
+
+
+def batch_response(batch: Batch, result: BatchResult, form: Form) -> Response:
+    """The response in a format; JSON and CSV are written while they are sent."""
+    query: dict[str, Any] = batch.options.model_dump() | {"points": batch.points}
+    if form == "nc":
+        attributes = {name: value for name, value in query.items() if value is not None}
+        return netcdf_response(dataset_of(batch.groups, result, attributes), "response")
+    columns = columns_of(result)
+    if form == "csv":
+        return csv_stream(batch.groups | columns, "response")
+    return json_stream({"data_versions": result.versions, "version": VERSION, "query": query}, columns)

@@ -1,4 +1,4 @@
-"""What is told of each request: counts, an id, a line in the log, and for how long the answer may be kept."""
+"""Metrics, request ids, log lines and cache headers."""
 
 import json
 import logging
@@ -7,7 +7,7 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.app import create_app
-from rocking_api.http.logs import JsonFormatter
+from rocking_api.http.request_log import JsonFormatter
 from rocking_api.settings import Settings
 
 from tests.api.conftest import assert_problem, client_of
@@ -46,12 +46,12 @@ def test_metrics_count_requests_and_points_by_source(results):
 
 
 @pytest.mark.parametrize("sane", ["a", "7f3c-1.B_", "x" * 64])
-def test_a_sane_request_id_comes_back(client, sane):
+def test_a_valid_request_id_is_sent_back(client, sane):
     assert client.get("/health", headers={"X-Request-ID": sane}).headers["x-request-id"] == sane
 
 
 @pytest.mark.parametrize("odd", ["", "x" * 65, "a b", '"', "a;b"])
-def test_another_one_is_made_in_place_of_an_odd_one(client, odd):
+def test_an_invalid_request_id_is_replaced(client, odd):
     made = [client.get("/health", headers={"X-Request-ID": odd}).headers["x-request-id"] for _ in range(2)]
     assert made[0] != made[1]
     assert odd not in made
@@ -82,7 +82,7 @@ def test_an_error_leaves_its_traceback_and_its_id_in_the_log(results, caplog):
     assert "ZeroDivisionError" in line["traceback"]
 
 
-def test_answers_may_be_kept_a_minute_and_are_known_again(client):
+def test_responses_may_be_stored_for_a_minute_and_are_revalidated(client):
     answer = client.get("/v1/response", params=POINT)
     assert answer.headers["cache-control"] == "max-age=60"
     again = client.get("/v1/response", params=POINT, headers={"If-None-Match": answer.headers["etag"]})
@@ -92,7 +92,7 @@ def test_answers_may_be_kept_a_minute_and_are_known_again(client):
     assert "etag" not in client.get("/v1/response").headers
 
 
-def test_a_version_of_a_data_set_may_be_kept_for_ever(client):
+def test_a_version_of_a_data_set_is_immutable(client):
     entry = client.get("/v1/datasets").json()["datasets"][0]
     kept = client.get(entry["version"])
     assert "immutable" in kept.headers["cache-control"]

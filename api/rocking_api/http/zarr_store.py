@@ -1,4 +1,4 @@
-"""Data sets as zarr stores, made in memory from the netCDF files when first asked."""
+"""Data sets as zarr stores, made in memory from the netCDF files on request."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from zarr.storage import MemoryStore
 
 from rocking.datasets.catalogue import Catalogue
 
-KEPT = 4
-"""Stores kept at once; an older one is made again when asked."""
+MAX_KEPT = 4
+"""Stores in memory; an older one is made again on request."""
 
 
-class ZarrViews:
-    """Keys and bytes of the zarr store of a data set.
+class ZarrStores:
+    """Zarr stores of data sets.
 
     Parameters
     ----------
     catalogue : Catalogue
-        Where the data sets come from.
+        Source of the data sets.
     """
 
     def __init__(self, catalogue: Catalogue) -> None:
@@ -46,17 +46,17 @@ class ZarrViews:
                 product, dataset = self._catalogue.dataset(name)
                 version = product.sha256
                 self._stores[version] = _contents(dataset)
-                while len(self._stores) > KEPT:
+                while len(self._stores) > MAX_KEPT:
                     self._stores.popitem(last=False)
             self._stores.move_to_end(version)
             return version, self._stores[version]
 
 
 def _contents(dataset: xr.Dataset) -> dict[str, bytes]:
-    known = {name: value for name, value in dataset.attrs.items() if not _is_nan(value)}  # of which JSON has none
-    content: dict[str, Any] = {}  # zarr's buffers
-    # netCDF's compression is not zarr's; format 2: every client reads it with consolidated metadata, which format 3 has
-    # not yet agreed upon
+    known = {name: value for name, value in dataset.attrs.items() if not _is_nan(value)}  # JSON has no nan
+    content: dict[str, Any] = {}  # buffers of zarr
+    # the compression of netCDF differs; format 2: every client reads it with consolidated metadata, which format 3
+    # does not define yet
     dataset.drop_attrs(deep=False).assign_attrs(known).drop_encoding().to_zarr(
         MemoryStore(content), zarr_format=2, consolidated=True
     )

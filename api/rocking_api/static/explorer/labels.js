@@ -1,6 +1,6 @@
-// Numbers and fates as people say them.
+// Labels: outcomes, pulses, numbers and lengths as text.
 
-export const FATES = {
+export const OUTCOMES = {
   NO_UPLIFT: "does not uplift",
   SAFE: "survives (comes to rest)",
   OVERTURNED_DIRECTLY: "overturns without an impact",
@@ -19,7 +19,7 @@ export const PULSES = {
   mavroeidis_papageorgiou: "Mavroeidis and Papageorgiou",
 };
 
-/** A number to some significant digits, without trailing noughts. */
+/** A number to some significant digits, without trailing zeros. */
 export function number(value, digits = 3) {
   if (Math.abs(value) < 1e-14) return "0";
   const text = Number(value).toPrecision(digits);
@@ -27,14 +27,14 @@ export function number(value, digits = 3) {
   return plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain;
 }
 
-/** A bound of an error: one digit suffices, 5e-11 is 5·10⁻¹¹. */
+/** An error bound with one digit: 5e-11 is 5·10⁻¹¹. */
 export function bound(value) {
   if (value >= 1e-3 || value === 0) return number(value, 1);
   const [digit, power] = value.toExponential(0).split("e-");
   return `${digit}·10⁻${[...power].map((figure) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[figure]).join("")}`;
 }
 
-/** A length in the unit that suits it. */
+/** A length in mm, cm or m. */
 export function length(metres) {
   if (Math.abs(metres) < 1e-3) return `${number(metres * 1e3, 2)} mm`;
   return Math.abs(metres) < 1 ? `${number(metres * 100, 3)} cm` : `${number(metres, 3)} m`;
@@ -45,12 +45,12 @@ export function impacts(count) {
   return count === 1 ? "1 impact" : `${count} impacts`;
 }
 
-/** What the solver says of one point, in a line. */
-export function answerInWords(found) {
-  const fate = FATES[found.outcome];
-  if (found.overturned) return found.impacts > 0 ? `overturns after ${impacts(found.impacts)}` : fate;
-  if (found.outcome === "NO_UPLIFT") return fate;
+/** The response at one point, in one line. */
+export function responseLabel(found) {
+  const outcome = OUTCOMES[found.outcome];
+  if (found.overturned) return found.impacts > 0 ? `overturns after ${impacts(found.impacts)}` : outcome;
+  if (found.outcome === "NO_UPLIFT") return outcome;
   const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
   const beyond = found.exceeded_alpha ? "; it exceeds α" : "";
-  return `${fate}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${beyond}`;
+  return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${beyond}`;
 }

@@ -1,7 +1,7 @@
-"""Questions about one block pass by the framework; nobody can tell from the answer."""
+"""Requests for one block bypass the router of FastAPI, with the same response."""
 
 import pytest
-from rocking_api.http.fast_path import ShortWay
+from rocking_api.http.params_route import FastPath
 
 from tests.api.conftest import assert_problem, client_of
 
@@ -12,21 +12,21 @@ QUESTIONS += [POINT | {"pulse": "sinus"}, POINT | {"method": "cube", "frequency_
 
 @pytest.fixture(scope="module")
 def usual(results):
-    """The service without the short way."""
+    """The service without the fast path."""
     client = client_of(results)
-    client.app.outer_layers = [layer for layer in client.app.outer_layers if layer.cls is not ShortWay]
+    client.app.outer_layers = [layer for layer in client.app.outer_layers if layer.cls is not FastPath]
     with client:
         yield client
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_both_ways_lead_to_the_same_answer(client, usual, question):
+def test_the_fast_path_has_the_same_response(client, usual, question):
     short, long = (one.get("/v1/response", params=question) for one in (client, usual))
     assert (short.status_code, short.content) == (long.status_code, long.content)
     assert {**short.headers, "x-request-id": ""} == {**long.headers, "x-request-id": ""}
 
 
-def test_the_usual_way_is_not_asked_for_one_block(client, monkeypatch):
+def test_the_router_is_not_called_for_one_block(client, monkeypatch):
     monkeypatch.setattr(type(client.app.router), "__call__", lambda *_: 1 / 0)
     assert client.get("/v1/response", params=POINT).status_code == 200
     assert client.get("/health").status_code == 500

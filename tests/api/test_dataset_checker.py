@@ -1,28 +1,28 @@
-"""The state of the data sets while they are read for the first time: how many are left, and what is wrong so far."""
+"""State of the data sets during the first check: number unchecked, problems so far."""
 
 import asyncio
 from threading import Semaphore
 from types import SimpleNamespace
 
-from rocking_api.dataset_checker import Inspection
+from rocking_api.dataset_checker import DatasetChecker
 
 NAMES = ["spectra/sine/eta-0.80", "spectra/sine/eta-0.85", "spectra/sine/eta-0.90"]
 
 
 def test_data_sets_left_are_counted_one_by_one(monkeypatch):
-    monkeypatch.setattr("rocking_api.dataset_checker.PATIENCE", 0.05)
+    monkeypatch.setattr("rocking_api.dataset_checker.MAX_WAIT", 0.05)
     turn = Semaphore(0)
 
     def problem(name):
         turn.acquire()
         return "damaged" if name == NAMES[1] else None
 
-    atlas = SimpleNamespace(
+    cubes = SimpleNamespace(
         catalogue=SimpleNamespace(names=lambda: NAMES), problem=problem, problems=lambda: {NAMES[1]: "damaged"}
     )
 
     async def counted():
-        inspection, seen = Inspection(atlas), []
+        inspection, seen = DatasetChecker(cubes), []
         for left in (3, 2, 1, 0):
             while (state := await inspection.state()).unchecked > left:
                 pass

@@ -1,4 +1,4 @@
-"""Errors as problem+json (RFC 9457): what was wrong, with which value, and what is allowed.
+"""Errors as problem+json (RFC 9457): which parameter, its value, and what is allowed.
 
 `STATUS` is the one table from exception to status code.
 """
@@ -24,15 +24,15 @@ MEDIA_TYPE = "application/problem+json"
 
 
 class TooLargeError(InvalidArgumentError):
-    """More than the service takes at once."""
+    """The request exceeds a limit of the service."""
 
 
 class UnsupportedBodyError(InvalidArgumentError):
-    """The body is in a form that the service does not read."""
+    """The body has an unsupported media type or coding."""
 
 
 class SlowBodyError(InvalidArgumentError):
-    """The body does not arrive."""
+    """The body does not arrive in time."""
 
 
 STATUS: dict[type[Exception], int] = {
@@ -51,26 +51,26 @@ STATUS: dict[type[Exception], int] = {
 
 
 NOSNIFF = (b"x-content-type-options", b"nosniff")
-"""Of every answer: it is what its type says, and no browser is to guess."""
+"""Of every response: no content sniffing by browsers."""
 
 HEADERS: dict[type[Exception], dict[str, str]] = {
     BusyError: {"Retry-After": "2"},
     NotReadyError: {"Retry-After": "30"},
-    SlowBodyError: {"Connection": "close"},  # what still arrives is not read
+    SlowBodyError: {"Connection": "close"},  # the rest of the body is not read
 }
-"""What else is said."""
+"""Additional headers."""
 
 
-LONGEST = 400
-"""Characters of what is repeated to the client: a question of megabytes is not sent back."""
+MAX_TEXT = 400
+"""Characters of a value that an error repeats."""
 
 
-LARGEST = sys.float_info.max
-"""Of the numbers that are repeated; integers beyond become text."""
+MAX_NUMBER = sys.float_info.max
+"""Largest number that an error repeats; larger integers become text."""
 
 
 class Problem(BaseModel):
-    """RFC 9457, with the three parts of every message of ours."""
+    """RFC 9457, with the three parts of every error message."""
 
     type: str = "about:blank"
     title: str = Field(description="what the status code means")
@@ -86,32 +86,34 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
     for schema in [{"$ref": "#/components/schemas/Problem"}]
     for status in (404, 405, 408, 413, 415, 422, 500, 503, 504)
 }
-"""For the OpenAPI description: what any route may answer instead."""
+"""For the OpenAPI description: error responses of any route."""
 
 
-def problem(status: int, detail: str, headers: dict[str, str] | None = None, **parts: Any) -> Response:
-    """The answer to a request that cannot be met."""
+def problem_response(status: int, detail: str, headers: dict[str, str] | None = None, **parts: Any) -> Response:
+    """An error response."""
     value = _plain(parts.pop("value", None))
-    said = {name: text[:LONGEST] for name, text in {"detail": detail, **parts}.items() if text is not None}
-    content = Problem(title=HTTPStatus(status).phrase, status=status, value=value, **said)
+    texts = {name: text[:MAX_TEXT] for name, text in {"detail": detail, **parts}.items() if text is not None}
+    content = Problem(title=HTTPStatus(status).phrase, status=status, value=value, **texts)
     return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
 
 
 def internal_error() -> Response:
-    """The answer when the service itself is at fault; it tells nothing of the inside."""
-    return problem(HTTPStatus.INTERNAL_SERVER_ERROR, "an error of the service, not of the question; it was logged")
+    """The response to an internal error, without details."""
+    return problem_response(
+        HTTPStatus.INTERNAL_SERVER_ERROR, "internal error, not caused by the request; it was logged"
+    )
 
 
 def add_handlers(app: FastAPI) -> None:
-    """Answer every exception by its line in the table; one that is not in it is logged by the observer."""
+    """Register a handler for each exception of the table; others are logged by `RequestLog`."""
     for kind in STATUS:
-        app.add_exception_handler(kind, answer_problem)
+        app.add_exception_handler(kind, error_response)
     app.add_exception_handler(HTTPException, _handle_http)
     app.add_exception_handler(Exception, _handle_unknown)
 
 
-async def answer_problem(_: Request, error: Exception) -> Response:
-    """The answer to an exception of the table."""
+async def error_response(_: Request, error: Exception) -> Response:
+    """The response to an exception of the table."""
     status = next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
     headers = HEADERS.get(type(error))
     if isinstance(error, RequestValidationError):
@@ -120,23 +122,23 @@ async def answer_problem(_: Request, error: Exception) -> Response:
         return _of_validation(status, error.errors(include_url=False)[0])
     if isinstance(error, InvalidArgumentError):
         parts = {"parameter": error.parameter, "value": error.value, "allowed": error.allowed}
-        return problem(status, str(error), headers, **parts)
+        return problem_response(status, str(error), headers, **parts)
     if isinstance(error, UnknownDatasetError):
         allowed = "a name that /v1/datasets lists"
         detail = f"there is no data set `{error.args[0]}`"
-        return problem(status, detail, parameter="name", value=error.args[0], allowed=allowed)
-    return problem(status, str(error), headers)
+        return problem_response(status, detail, parameter="name", value=error.args[0], allowed=allowed)
+    return problem_response(status, str(error), headers)
 
 
 def _of_validation(status: int, error: pydantic_core.ErrorDetails | dict[str, Any]) -> Response:
     kind, context = str(error["type"]), error.get("ctx", {})
     where = [str(part) for part in error["loc"] if part not in ("query", "body", "path")]
-    name = where[0] if where else "body"  # what follows is the place inside an array
+    name = where[0] if where else "body"  # the rest is the position in an array
     if kind == "missing":
-        return problem(status, f"`{name}` is missing", parameter=name, allowed="required")
+        return problem_response(status, f"`{name}` is missing", parameter=name, allowed="required")
     if kind == "extra_forbidden":
         detail = f"there is no parameter `{name}`"
-        return problem(status, detail, parameter=name, value=error["input"], allowed="see /docs")
+        return problem_response(status, detail, parameter=name, value=error["input"], allowed="see /docs")
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
     elif kind.startswith("float"):
@@ -144,7 +146,7 @@ def _of_validation(status: int, error: pydantic_core.ErrorDetails | dict[str, An
     else:
         allowed = str(error["msg"])
     text = str(InvalidArgumentError(name, _plain(error["input"]), allowed))
-    return problem(status, text, parameter=name, value=error["input"], allowed=allowed)
+    return problem_response(status, text, parameter=name, value=error["input"], allowed=allowed)
 
 
 async def _handle_http(request: Request, error: Exception) -> Response:
@@ -152,8 +154,8 @@ async def _handle_http(request: Request, error: Exception) -> Response:
     headers = dict(error.headers) if error.headers else None
     methods = request.app.openapi()["paths"].get(request.url.path)
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and methods:
-        headers = {"Allow": ", ".join(method.upper() for method in methods)}  # of all routes of the path
-    return problem(error.status_code, str(error.detail), headers)
+        headers = {"Allow": ", ".join(method.upper() for method in methods)}  # methods of all routes of the path
+    return problem_response(error.status_code, str(error.detail), headers)
 
 
 async def _handle_unknown(_: Request, __: Exception) -> Response:
@@ -161,9 +163,9 @@ async def _handle_unknown(_: Request, __: Exception) -> Response:
 
 
 def _plain(value: Any) -> float | str | None:
-    """A value that JSON can carry; nan and inf as words."""
-    if value is None or (isinstance(value, (int, float)) and -LARGEST <= value <= LARGEST):
+    """A value that JSON can represent; nan and inf as text."""
+    if value is None or (isinstance(value, (int, float)) and -MAX_NUMBER <= value <= MAX_NUMBER):
         return value
-    if isinstance(value, (bytes, bytearray)):  # a body, of any size
-        return value[:LONGEST].decode("utf-8", "backslashreplace")
-    return str(value)[:LONGEST]
+    if isinstance(value, (bytes, bytearray)):  # a body of any size
+        return value[:MAX_TEXT].decode("utf-8", "backslashreplace")
+    return str(value)[:MAX_TEXT]

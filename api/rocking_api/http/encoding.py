@@ -1,0 +1,133 @@
+"""Responses as JSON, CSV or netCDF-3.
+
+netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and request bodies are parsed by plain Python
+(scipy), so that untrusted bytes do not reach the HDF5 library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import xarray as xr
+from fastapi import Request, Response
+from fastapi.responses import StreamingResponse
+from numpy.typing import NDArray
+from pydantic import BaseModel
+from pydantic_core import to_json
+
+from rocking.datasets.csv_text import csv_rows, csv_text
+from rocking.datasets.cube import MODEL_RESULT, VARIABLES
+from rocking.model.fields import ERROR_BOUND
+from rocking_api.execution.evaluation import FIELDS, BatchResult
+
+Form = Literal["json", "csv", "nc"]
+
+MEDIA_TYPES: dict[Form, str] = {"json": "application/json", "csv": "text/csv", "nc": "application/x-netcdf"}
+
+CONTENT: dict[int | str, dict[str, Any]] = {
+    200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}},
+}
+"""For the OpenAPI description: the other formats of a response."""
+
+
+class Column(Protocol):
+    """One value per point: an array, or a lazily converted one."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, points: slice, /) -> NDArray[Any]: ...
+
+
+ROWS = 5_000
+"""Points of a batch that are written and sent at once [-]: up to half a megabyte, some milliseconds."""
+
+_SOURCES = ["cube", "solver"]
+
+
+def negotiated_form(request: Request, requested: Form | None, default: Form = "json") -> Form:
+    """Format of the response: as requested, else the first known media type of the Accept header, else the default."""
+    if requested is not None:
+        return requested
+    for part in request.headers.get("accept", "").split(","):
+        for form, media_type in MEDIA_TYPES.items():
+            if part.split(";")[0].strip() == media_type:
+                return form
+    return default
+
+
+def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) -> Response:
+    """A model as JSON, without validation."""
+    return Response(model.model_dump_json(), headers=headers, media_type=MEDIA_TYPES["json"])
+
+
+def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
+    """Columns as CSV: numbers with all digits, empty for missing numbers, true and false."""
+    return Response(csv_text(columns), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+
+
+def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
+    """Arrays (points,) as CSV, written while it is sent: the text of a million points takes 100 MB."""
+
+    def parts() -> Iterator[bytes]:
+        yield (",".join(columns) + "\n").encode()
+        for start in range(0, _points(columns), ROWS):
+            rows = {key: column[start : start + ROWS].tolist() for key, column in columns.items()}
+            yield csv_rows(rows).encode()
+
+    return _streamed(parts(), _points(columns), MEDIA_TYPES["csv"], _file(f"{name}.csv"))
+
+
+def json_stream(fields: Mapping[str, Any], columns: Mapping[str, Column]) -> Response:
+    """A JSON object of the columns, arrays (points,), then the other fields, written while it is sent."""
+
+    def parts() -> Iterator[bytes]:
+        opening = b"{"
+        for key, column in columns.items():
+            opening += to_json(key) + b":["
+            for start in range(0, len(column), ROWS):
+                yield opening + to_json(column[start : start + ROWS].tolist(), inf_nan_mode="null")[1:-1]
+                opening = b","
+            opening = (b"" if len(column) else opening) + b"],"
+        yield opening + to_json(fields, inf_nan_mode="null")[1:]
+
+    return _streamed(parts(), _points(columns), MEDIA_TYPES["json"], {})
+
+
+def _points(columns: Mapping[str, Column]) -> int:
+    return len(next(iter(columns.values())))
+
+
+def _streamed(parts: Iterator[bytes], points: int, media_type: str, headers: dict[str, str]) -> Response:
+    """Send a short response as a whole: a thread per part would take longer."""
+    if points <= ROWS:
+        return Response(b"".join(parts), media_type=media_type, headers=headers)
+    return StreamingResponse(parts, media_type=media_type, headers=headers)
+
+
+def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
+    """A data set as a netCDF-3 file."""
+    content = dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT")
+    return Response(content, media_type=MEDIA_TYPES["nc"], headers=_file(f"{name}.nc"))
+
+
+def dataset_of(
+    groups: Mapping[str, NDArray[np.float64]], result: BatchResult, attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """Groups and results over one dimension `point`, with the attributes of the data sets."""
+    variables: dict[str, Any] = {name: ("point", values, {"units": "1"}) for name, values in groups.items()}
+    for name in FIELDS:
+        if name in VARIABLES:
+            dtype, about = VARIABLES[name]
+            kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
+            variables[name] = ("point", result.fields[name].astype(dtype, copy=False), MODEL_RESULT | kept)
+    bound = {"units": ERROR_BOUND.unit, **ERROR_BOUND.attributes}
+    source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": " ".join(_SOURCES)}
+    variables["error_bound"] = ("point", result.fields["error_bound"], bound)
+    variables["source"] = ("point", (~result.from_cube).astype("i1"), {"long_name": "source", **source})
+    return xr.Dataset(variables, attrs={"Conventions": "CF-1.11", **attributes})
+
+
+def _file(name: str) -> dict[str, str]:
+    return {"Content-Disposition": f'attachment; filename="{name}"'}
