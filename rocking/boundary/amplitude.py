@@ -1,4 +1,4 @@
-"""Amplitudes at which the fate of a block changes, the frequency of its pulse being fixed."""
+"""Amplitudes at which the outcome for a block changes, the frequency of its pulse being fixed."""
 
 from __future__ import annotations
 
@@ -8,21 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.search import Floats, classifier, fates_along
+from rocking.boundary.search import Floats, classifier, outcomes_along
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.model.checks import check
+from rocking.model.outcome_code import decode_outcomes
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION
 
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Amplitudes at which the fate of a block changes, ascending; all arrays (thresholds,).
+    """Amplitudes at which the outcome for a block changes, ascending; all arrays (thresholds,).
 
     Attributes
     ----------
     amplitude : float array [-]
         a = a_g/(g tan alpha).
     overturns_above : bool array
-        True where the block overturns just above the threshold and stands just below it.
+        True where the block overturns just above the threshold and survives just below it.
     outcome : int8 array
         Code of `Outcome` on the overturning side.
     impacts : int32 array
@@ -44,14 +47,14 @@ def critical_amplitude(
     highest_amplitude: float = 100.0,
     stop: StopFlag | None = None,
 ) -> Thresholds:
-    """Every amplitude between 1 and `highest_amplitude` at which the fate changes.
+    """Every amplitude between 1 and `highest_amplitude` at which the outcome changes.
 
     Parameters
     ----------
     pulse, frequency_ratio, restitution, alpha
         As for `peak_response`; scalars.
     highest_amplitude : float
-        Largest a = a_g/(g tan alpha) looked at [-], (1, 1e6].
+        Largest a = a_g/(g tan alpha) considered [-], (1, 1e6].
     stop : StopFlag, optional
         Once another thread sets it, this ends soon with `StoppedError`.
 
@@ -59,7 +62,7 @@ def critical_amplitude(
     -------
     Thresholds
         Each good to `RESOLUTION` in 1/a. A region of one way of overturning narrower than 1/2000 of the range and
-        surrounded by a single other fate can be missed; a safe band between two ways of overturning is not, unless
+        surrounded by a single other outcome can be missed; a safe band between two ways of overturning is not, unless
         it is narrower than `RESOLUTION`.
 
     Raises
@@ -70,14 +73,12 @@ def critical_amplitude(
         If `stop` was set.
     """
     in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
-    log_omega = float(np.log(in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")))
-    eta = float(in_range("restitution", restitution, 0.0, 1.0))
+    log_omega = float(np.log(check(FREQUENCY_RATIO, frequency_ratio)))
+    eta = float(check(RESTITUTION, restitution))
     lowest = 1.0 / highest_amplitude
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    grid, codes = fates_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha, stop))
+    grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha, stop))
     edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
     above = codes[edge] > 0  # 1/a falls as the amplitude rises
-    falls = np.where(above, edge, edge + 1)
-    return Thresholds(
-        1.0 / grid[falls], above, (codes[falls] % 4).astype(np.int8), (codes[falls] // 4).astype(np.int32)
-    )
+    overturned = np.where(above, edge, edge + 1)
+    return Thresholds(1.0 / grid[overturned], above, *decode_outcomes(codes[overturned]))

@@ -1,4 +1,4 @@
-"""Points where the fate changes: between two points, and all of them along a line.
+"""Points where the outcome changes, found with the solver itself: on one line of the control space, or on many.
 
 A point is 1/a, log omega and the restitution.
 """
@@ -6,79 +6,246 @@ A point is 1/a, log omega and the restitution.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize.elementwise import find_root
 
 from rocking._numba.cancellation import StopFlag
 from rocking.excitation.pulses import AbstractPulse
+from rocking.model.outcome_code import impacts_of_code, outcome_codes
 from rocking.model.outcome_margin import outcome_margin
+from rocking.model.parameters import FREQUENCY_RATIO
 from rocking.model.response import Response
-from rocking.solver.peak_response import FREQUENCY_RATIO_RANGE, peak_response
+from rocking.solver.peak_response import peak_response
 
 RESOLUTION = 1e-12
 """Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
 
 ROUNDS = 32
-"""Times that brackets on a line are shrunk: each may uncover a further fate between the two at its ends."""
+"""Times that brackets on a line are refined: each may uncover a further outcome between the two at its ends."""
+
+MANY_IMPACTS = 12
+"""Overturning after more impacts than this, or after impacts that accumulate to rest, is one region [-]."""
+
+MOST_IMPACTS = 32
+"""Overturning after more impacts than this is not told apart even on one line [-]."""
+
+UNCOUNTED = -1
+"""Region code of it, and the `impacts` of its curves."""
 
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
+Index = NDArray[np.intp]
 Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
-"""From 1/a, log omega and eta, which broadcast, to the way in which a block ends, and its margin to another."""
+"""From 1/a, log omega and eta, which broadcast, to the code of the outcome and its margin to another."""
 
 
-def fate_code(response: Response) -> Codes:
-    """One integer for the way a block ends: 0 if it stands, else impacts before overturning x 4 + outcome."""
-    code = response.impacts.astype(np.int64) * 4 + response.outcome
-    return np.where(response.overturned, code, 0)
+def outcome_code(response: Response) -> Codes:
+    """One integer for the outcome, see `rocking.model.outcome_code`."""
+    return outcome_codes(response.outcome, response.impacts)
 
 
-def shrink(inside: Floats, outside: Floats, code: Codes, classify: Classify) -> tuple[Floats, Floats]:
-    """Shrink brackets between points (points, 3) to `RESOLUTION`; `code` holds at `inside` only.
+def layer_code(response: Response) -> Codes:
+    """The code of the outcome, but `UNCOUNTED` for overturning after chatter or more than `MOST_IMPACTS` impacts.
 
-    Chandrupatla's method: the fate alone decides on which side a point lies; the margin in energy, which is continuous
-    through the change of fate as a rule, makes it a third of the work of bisection.
+    After chatter the count says when the solver replaced the remaining impacts by their sum, not what the block did.
     """
-    widest = float(np.max(np.abs(outside - inside), initial=0.0))
-    if widest == 0.0:
-        return inside, outside
-
-    def side(t: Floats, *ends: Any) -> Floats:
-        s, log_omega, eta, ds, dw, own = ends
-        met, margin = classify(s + t * ds, log_omega + t * dw, eta)
-        distance = np.abs(margin) / (1.0 + np.abs(margin)) + 1e-300
-        return np.where(met == own, distance, -distance)
-
-    found = find_root(
-        side,
-        (np.zeros(len(code)), np.ones(len(code))),
-        args=(*inside.T, *(outside - inside).T[:2], code),
-        tolerances={"xatol": RESOLUTION / widest, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
-    )
-    first, last = (inside + t[:, None] * (outside - inside) for t in found.bracket)
-    return first, last
+    many = response.chatter | (response.impacts > MOST_IMPACTS)
+    return np.where(response.overturned & many, UNCOUNTED, outcome_code(response))
 
 
-def classifier(pulse: AbstractPulse, alpha: float | None, stop: StopFlag | None = None) -> Classify:
-    """The solver as a `Classify`, which raises `StoppedError` once `stop` is set."""
+def region_code(response: Response) -> Codes:
+    """`layer_code`, with the code `UNCOUNTED` for overturning after more than `MANY_IMPACTS` impacts too.
+
+    After many impacts the regions of one count are layers thinner than any figure shows.
+    """
+    return without_layers(layer_code(response))
+
+
+def without_layers(codes: Codes) -> Codes:
+    """Region codes from layer codes."""
+    return np.where(impacts_of_code(codes) > MANY_IMPACTS, UNCOUNTED, codes)
+
+
+@dataclass
+class Work:
+    """Impacts that the solver has followed, and blocks: what the search for curves has cost."""
+
+    done: int = 0
+
+
+def classifier(
+    pulse: AbstractPulse,
+    alpha: float | None,
+    stop: StopFlag | None = None,
+    code_of: Callable[[Response], Codes] = outcome_code,
+    work: Work | None = None,
+) -> Classify:
+    """The solver as a `Classify`, which raises `StoppedError` once `stop` is set, and notes its work in `work`."""
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
-        omega = np.clip(np.exp(log_omega), *FREQUENCY_RATIO_RANGE)  # rounding must not lead out of the range
+        omega = np.clip(
+            np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
+        )  # rounding must not lead out of the range
         found = peak_response(
             pulse, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha, stop=stop
         )
-        return fate_code(found), outcome_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
+        if work is not None:
+            work.done += found.impacts.size + int(found.impacts.sum(dtype=np.int64))
+        return code_of(found), outcome_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
 
     return classify
 
 
-def fates_along(
+def refine_brackets(axis: int, points: Floats, ends: Floats, code: Codes, classify: Classify) -> tuple[Floats, Floats]:
+    """Shrink brackets along one axis of the control space to `RESOLUTION`.
+
+    Parameters
+    ----------
+    axis : int
+        0 for brackets in 1/a, 1 for brackets in log omega.
+    points : float array (points, 3)
+        1/a, log omega and eta of each bracket; the coordinate along the axis does not count.
+    ends : float array (points, 2)
+        Coordinates of the two ends; the outcome `code` holds at the first one only.
+    code : int array (points,)
+    classify : Classify
+        The solver.
+
+    Returns
+    -------
+    inside, outside : float arrays (points,)
+        Coordinates at most `RESOLUTION` apart: the outcome is `code` at `inside` only.
+
+    Notes
+    -----
+    Chandrupatla's method: the outcome alone decides on which side a point lies; the margin in energy, which is
+    continuous through the change of outcome as a rule, makes it a third of the work of bisection.
+    """
+
+    def side(x: Floats, which: Index) -> Floats:
+        """Positive where the outcome is `code`."""
+        place = points[which]
+        place[:, axis] = x
+        met, margin = classify(*place.T)
+        distance = 1.0 - 1.0 / (1.0 + np.abs(margin)) + 1e-300
+        return np.where(met == code[which], distance, -distance)
+
+    # b is the newest end of the bracket, a the other one, c the point before them
+    active = np.arange(len(code))
+    b, a = ends.T.copy()
+    both = side(np.concatenate([b, a]), np.concatenate([active, active])) if len(code) else np.empty(0)
+    fb, fa = np.split(both, 2)
+    c, fc = a.copy(), fa.copy()
+    share = np.full(len(code), 0.5)
+    found = ends.copy()
+    while active.size:
+        x = a + share * (b - a)
+        fx = side(x, active)
+        same = np.sign(fx) == np.sign(fa)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = x, fx
+        found[active] = np.where((fa > 0.0)[:, None], np.stack([a, b], axis=1), np.stack([b, a], axis=1))
+        width = np.abs(b - a)
+        left = width > RESOLUTION
+        active, a, b, c, fa, fb, fc, width = (each[left] for each in (active, a, b, c, fa, fb, fc, width))
+        share = _next_share(a, b, c, fa, fb, fc)
+        least = 0.5 * RESOLUTION / width
+        share = np.clip(share, least, 1.0 - least)
+    return found[:, 0], found[:, 1]
+
+
+def _next_share(a: Floats, b: Floats, c: Floats, fa: Floats, fb: Floats, fc: Floats) -> Floats:
+    """Where the next point lies between a and b: by inverse quadratic interpolation if it is safe, else halfway."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        safe = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    return np.where(safe & np.isfinite(share), share, 0.5)
+
+
+def refine_lines(
+    axis: int,
+    points: Floats,
+    line: Index,
+    x: Floats,
+    codes: Codes,
+    classify: Classify,
+    thinnest: float = RESOLUTION,
+) -> tuple[Index, Floats, Codes]:
+    """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
+
+    Parameters
+    ----------
+    axis : int
+        0 for lines along 1/a, 1 for lines along log omega.
+    points : float array (lines, 3)
+        1/a, log omega and eta of each line; the coordinate along the axis does not count.
+    line, x, codes : arrays (nodes,)
+        Line, coordinate and outcome of each node, in ascending order of line, then coordinate.
+    classify : Classify
+        The solver.
+
+    Returns
+    -------
+    line, x, codes : arrays (nodes,)
+        The nodes and both ends of every bracket in which the outcome changes, in the same order.
+    """
+    for _ in range(ROUNDS):
+        change = (np.diff(codes) != 0) & (np.diff(line) == 0)
+        width = np.diff(x)
+        exact = np.concatenate([[False], change & (width <= 2 * RESOLUTION), [False]])  # where a region is known to end
+        narrow = width <= thinnest
+        edge = change & (width > 2 * RESOLUTION) & ~(narrow & exact[:-2] & exact[2:])
+        if not edge.any():
+            break
+        added = [(line, x, codes)]
+
+        # where the region at the lower end stops ...
+        first = np.flatnonzero(edge & ~(narrow & exact[:-2]))
+        own, on = codes[first], line[first]
+        inside, outside = refine_brackets(axis, points[on], np.stack([x[first], x[first + 1]], 1), own, classify)
+        added.append((on, inside, own))
+        met = _codes_at(axis, points[on], outside, classify)
+        added.append((on, outside, met))
+        other = met != codes[first + 1]
+        # ... and, where another one than that at the upper end begins there, where that at the upper end begins
+        last = np.append(first[other] + 1, np.flatnonzero(edge & narrow & exact[:-2]) + 1)
+        low = np.append(outside[other], x[last[other.sum() :] - 1])
+        own, on = codes[last], line[last]
+        inside, outside = refine_brackets(axis, points[on], np.stack([x[last], low], 1), own, classify)
+        added.append((on, inside, own))
+        added.append((on, outside, _codes_at(axis, points[on], outside, classify)))
+        wide = outside - low > 2 * thinnest
+        on, low, outside = on[wide], low[wide], outside[wide]
+        between = (low + thinnest, 0.5 * (low + outside), outside - thinnest)
+        added += [(on, at, _codes_at(axis, points[on], at, classify)) for at in between]
+        line, x, codes = merge_nodes(*(np.concatenate(each) for each in zip(*added, strict=True)))
+    return line, x, codes
+
+
+def _codes_at(axis: int, points: Floats, x: Floats, classify: Classify) -> Codes:
+    """Codes at points whose coordinate along the axis is replaced."""
+    place = points.copy()
+    place[:, axis] = x
+    return classify(*place.T)[0]
+
+
+def merge_nodes(line: Index, x: Floats, codes: Codes) -> tuple[Index, Floats, Codes]:
+    """Nodes in ascending order of line, then coordinate, each once."""
+    order = np.lexsort((x, line))
+    line, x, codes = line[order], x[order], codes[order]
+    first = np.ones(x.size, dtype=bool)
+    first[1:] = (np.diff(line) != 0) | (np.diff(x) != 0.0)
+    return line[first], x[first], codes[first]
+
+
+def outcomes_along(
     axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
 ) -> tuple[Floats, Codes]:
-    """Ways in which blocks end along a line of the control space, and where they change.
+    """Outcomes along one line of the control space, and where they change.
 
     Parameters
     ----------
@@ -87,32 +254,19 @@ def fates_along(
     point : (float, float, float)
         Of the line; its coordinate along the axis does not count.
     nodes : float array
-        Ascending; where fates are looked for first.
+        Ascending; where outcomes are looked for first.
     classify : Classify
         The solver.
 
     Returns
     -------
     grid, codes : arrays (points,)
-        The nodes and both ends of every bracket in which the fate changes, ascending, with the fate at each.
+        The nodes and both ends of every bracket in which the outcome changes, ascending, with the outcome at each.
     """
-
-    def points(x: Floats) -> Floats:
-        places = np.tile(point, (x.size, 1))
-        places[:, axis] = x
-        return places
-
-    grid = nodes
-    codes, _ = classify(*points(grid).T)
-    for _ in range(ROUNDS):
-        edge = np.flatnonzero((np.diff(codes) != 0) & (np.diff(grid) > 2 * RESOLUTION))
-        if edge.size == 0:
-            break
-        # where the fate at the left end stops; a third fate met there becomes a node, and a new edge
-        inside, outside = shrink(points(grid[edge]), points(grid[edge + 1]), codes[edge], classify)
-        met, _ = classify(*outside.T)
-        grid = np.concatenate([grid, inside[:, axis], outside[:, axis]])
-        codes = np.concatenate([codes, codes[edge], met])
-        grid, kept = np.unique(grid, return_index=True)
-        codes = codes[kept]
+    places = np.tile(point, (nodes.size, 1))
+    places[:, axis] = nodes
+    codes, _ = classify(*places.T)
+    points = np.array([point])
+    line = np.zeros(nodes.size, dtype=np.intp)
+    _, grid, codes = refine_lines(axis, points, line, nodes, codes, classify)
     return grid, codes

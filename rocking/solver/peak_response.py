@@ -21,7 +21,7 @@ from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check, check_groups
 from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
 from rocking.model.outcome_margin import outcome_margin
-from rocking.model.parameters import FREQUENCY_RATIO, TOLERANCE
+from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
 from rocking.solver.state import (
@@ -35,9 +35,6 @@ from rocking.solver.state import (
 
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
-
-FREQUENCY_RATIO_RANGE = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
-"""Frequency ratios accepted [-]."""
 
 TRUNCATION_FRACTION = 1e-4
 """Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""

@@ -1,4 +1,4 @@
-"""Boundaries between the fates: on every vertex the fate changes, and nothing that is drawn is invented."""
+"""Boundaries between outcomes: the outcome changes at every vertex, and each connected curve is one curve."""
 
 import math
 
@@ -7,7 +7,10 @@ import pytest
 
 import rocking
 from rocking import Outcome, closed_form
-from rocking.boundary.search import RESOLUTION, fate_code
+from rocking.boundary.search import RESOLUTION, UNCOUNTED, region_code
+from rocking.boundary.tracer import END
+from rocking.boundary.tracing import CHORD
+from rocking.model.outcome_code import outcome_codes
 
 
 def curves(boundary):
@@ -16,14 +19,14 @@ def curves(boundary):
 
     def code(prefix: str):
         outcome, impacts = (boundary[prefix + name].values.astype(int) for name in ("outcome", "impacts"))
-        return np.repeat(np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, outcome + 4 * impacts, 0), sizes)
+        return np.repeat(outcome_codes(outcome, impacts), sizes)
 
     return boundary.slenderness.values, boundary.frequency_ratio.values, code(""), code("neighbour_")
 
 
 @pytest.mark.parametrize("alpha", [None, 0.3])
 @pytest.mark.parametrize("pulse", ["sine", "-cosine", "half_sine", "rectangular", "c1"])
-def test_the_fate_changes_at_every_vertex(pulse, alpha):
+def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     nodes = 61 if alpha is None else 41
     boundary = rocking.overturning_boundary(pulse, restitution=0.9, alpha=alpha, nodes=nodes)
     s, omega, own, neighbour = curves(boundary)
@@ -31,18 +34,27 @@ def test_the_fate_changes_at_every_vertex(pulse, alpha):
     assert s.size > 50
     assert (own != neighbour).all()
     # a vertex lies inside its own region, and one step of the resolution along one of the axes beyond it
-    here = fate_code(rocking.peak_response(pulse, slenderness=s, frequency_ratio=omega, restitution=0.9, alpha=alpha))
+    here = region_code(rocking.peak_response(pulse, slenderness=s, frequency_ratio=omega, restitution=0.9, alpha=alpha))
     assert (here == own).mean() > 0.98  # exp(log omega) rounds
     reach = 4 * RESOLUTION
     around = [(s + ds, omega * math.exp(dw)) for ds, dw in ((reach, 0), (-reach, 0), (0, reach), (0, -reach))]
     codes = [
-        fate_code(rocking.peak_response(pulse, slenderness=x, frequency_ratio=w, restitution=0.9, alpha=alpha))
+        region_code(rocking.peak_response(pulse, slenderness=x, frequency_ratio=w, restitution=0.9, alpha=alpha))
         for x, w in around
     ]
-    assert np.any([code != here for code in codes], axis=0).all()
+    changes = np.any([code != here for code in codes], axis=0)
+    # the region of many impacts consists of layers, of which the outermost one can be too thin to be resolved
+    assert changes[own != UNCOUNTED].all()
+    assert changes.mean() > 0.99
     assert np.any([code == own for code in [here, *codes]], axis=0).all()
-    # under slow pulses several fates crowd into less than the resolution
-    assert np.any([code == neighbour for code in codes], axis=0).mean() > 0.98
+    # the neighbour is next to it, or beyond regions that are too thin to be resolved
+    steps = np.array([1.0, -1.0])[:, None, None] * np.array([reach, 1e-9, 1e-8, 1e-7, 3e-7, 1.0e-6, 3e-6])[:, None]
+    beside = region_code(
+        rocking.peak_response(
+            pulse, slenderness=np.maximum(s + steps, 1e-6), frequency_ratio=omega, restitution=0.9, alpha=alpha
+        )
+    )
+    assert (beside == neighbour).any(axis=(0, 1)).mean() > 0.98
 
 
 def test_sine_against_the_closed_forms():
@@ -87,21 +99,76 @@ def test_the_thin_safe_band_between_two_ways_of_overturning_is_seen(alpha):
         assert not fates.overturned[np.isfinite(middle)].any()
 
 
+@pytest.mark.parametrize("alpha", [None, np.radians(30.0)])
+def test_a_thin_tongue_is_one_curve(alpha):
+    # overturning after two impacts under the cosine: 1e-4 wide at omega 1.2 and half a grid step at 1.5
+    boundary = rocking.overturning_boundary(
+        "cosine", restitution=0.85, alpha=alpha, frequency_ratio=(1.2, 1.6), slenderness=(0.25, 0.6), nodes=61
+    )
+    after_two = boundary.isel(curve=np.flatnonzero(boundary.impacts == 2))
+    assert np.unique(after_two.outline).size == 1
+    assert after_two.row_size.min() > 20
+
+
+@pytest.mark.parametrize(("pulse", "alpha"), [("sine", np.radians(20.0)), ("cosine", None), ("cosine", 0.3)])
+def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse, alpha):
+    case = {"restitution": 0.85, "alpha": alpha}
+    boundary = rocking.overturning_boundary(pulse, **case, nodes=201)
+    assert 0.0 < boundary.chord_error <= CHORD
+    assert boundary.unmeasured_chords <= 0.01 * boundary.sizes["point"]
+    s, log_omega = boundary.slenderness.values, np.log(boundary.frequency_ratio.values)
+    first = np.delete(np.arange(s.size), np.cumsum(boundary.row_size.values) - 1)  # of each chord
+    to_safety = np.repeat(boundary.neighbour_outcome.values <= Outcome.SAFE, boundary.row_size.values)
+    limit = 1.5 * (boundary.chord_error + END)
+    rng = np.random.default_rng(4)
+    unlisted = crossings = wrong = 0
+    for omega in np.exp(rng.uniform(np.log(0.3), np.log(10.0), 25)):
+        found = rocking.critical_amplitude(pulse, frequency_ratio=omega, **case, highest_amplitude=45.0)
+        thresholds = 1 / found.amplitude
+        y = np.log(omega)
+        for x in thresholds:
+            away = distances(x, y, s, log_omega, first)
+            unlisted += away.min() > limit
+        cut = first[((log_omega[first] - y) * (log_omega[first + 1] - y) < 0) & to_safety[first]]
+        share = (y - log_omega[cut]) / (log_omega[cut + 1] - log_omega[cut])
+        x = s[cut] + share * (s[cut + 1] - s[cut])
+        slope = np.abs((s[cut + 1] - s[cut]) / (log_omega[cut + 1] - log_omega[cut]))
+        reach = 1.1 * CHORD * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 801)[:, None]
+        near = rocking.peak_response(pulse, slenderness=np.clip(x + reach, 1e-3, 1.0), frequency_ratio=omega, **case)
+        changes = near.overturned.any(axis=0) & ~near.overturned.all(axis=0)
+        wrong += int((~changes).sum())
+        crossings += cut.size
+    assert crossings > 60
+    # between regions of many impacts that lie side by side a chord can join two of them
+    assert wrong <= 0.03 * crossings
+    # the rest are thresholds of regions that the nodes do not show
+    assert unlisted <= 0.05 * crossings
+
+
+def distances(x, y, s, log_omega, first):
+    """Distances of a point from chords, in the plane of 1/a and log omega."""
+    start = np.stack([s[first], log_omega[first]])
+    chord = np.stack([s[first + 1], log_omega[first + 1]]) - start
+    offset = np.array([[x], [y]]) - start
+    share = np.clip((offset * chord).sum(axis=0) / np.maximum((chord**2).sum(axis=0), 1e-300), 0.0, 1.0)
+    return np.hypot(*(offset - share * chord))
+
+
 def test_islands_are_drawn():
     boundary = rocking.overturning_boundary(
         "sine", restitution=0.9, frequency_ratio=(0.6, 1.1), slenderness=(0.88, 1.0), nodes=201
     )
     assert {3, 5} <= set(boundary.impacts.values.tolist())
-    assert set(boundary.impacts.values.tolist()) <= {0, 1, 3, 5, 7, 9, 11, 13}  # odd, or directly
+    assert set(boundary.impacts.values.tolist()) <= {UNCOUNTED, 0, 1, 3, 5, 7, 9, 11}  # odd, or directly
 
 
 @pytest.mark.parametrize("alpha", [None, 0.25])
 @pytest.mark.parametrize("pulse", ["sine", "cosine", "c1"])
-def test_thresholds_separate_the_fates(pulse, alpha):
+def test_thresholds_separate_the_outcomes(pulse, alpha):
     for omega in (1.0, 2.5, 5.0):
         found = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
         assert (np.diff(found.amplitude) > 0).all()
-        assert (np.diff(found.overturns_above.astype(int)) != 0).all()  # the fate goes to and fro
+        assert (np.diff(found.overturns_above.astype(int)) != 0).all()  # the outcome alternates
         assert found.overturns_above[0]
         s = 1 / found.amplitude
         below, above = (

@@ -13,14 +13,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking.boundary.curves import curves_at
-from rocking.boundary.search import RESOLUTION, fate_code
+from rocking.boundary.search import RESOLUTION, region_code
+from rocking.boundary.tracing import CHORD
 from rocking.closed_form import overturning_amplitudes
 from rocking.datasets.cube import read_dataset, read_spectrum
+from rocking.model.outcome_code import outcome_codes
 from rocking.model.response import Outcome
 from rocking.solver.peak_response import peak_response
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
-STEPS = (1e-6, 1e-8, 1e-10, 2 * RESOLUTION)
+STEPS = (1e-6, 3e-6, 1e-7, 1e-8, 1e-10, 2 * RESOLUTION)
 """How far off a boundary the fates on its two sides are looked up, in 1/a and in log omega [-]."""
 
 PRODUCTS = json.loads((RESULTS / "manifest.json").read_text(encoding="utf-8"))["products"]
@@ -65,9 +67,10 @@ def test_cube_is_consistent(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", listed("overturning/"))
-def test_fate_changes_across_each_boundary_as_its_file_states(name: str) -> None:
+def test_outcome_changes_across_each_boundary_as_its_file_states(name: str) -> None:
     stored = read_dataset(RESULTS / name)
     assert stored.row_size.sum() == stored.sizes["point"]
+    assert stored.chord_error <= CHORD
     for alpha in np.unique(stored.alpha):
         curves = curves_at(stored, alpha)
         # after many impacts regions lie in layers, some thinner than a millionth and a few than the smallest step
@@ -81,14 +84,14 @@ def test_fate_changes_across_each_boundary_as_its_file_states(name: str) -> None
 
 
 def _as_stated(curves: xr.Dataset, points: NDArray[np.intp], step: float) -> NDArray[np.bool_]:
-    """At some points, whether a step off the curve to either side meets the two fates that the file states.
+    """At some points, whether a step off the curve to either side meets the two outcomes that the file states.
 
-    A point lies on a line of the grid along which its fate changes, so the step in 1/a or the one in log omega does.
+    A point lies on a line of the grid along which the outcome changes, so the step in 1/a or the one in log omega does.
     """
     stated = np.repeat([_codes(curves, ""), _codes(curves, "neighbour_")], curves.row_size, axis=1)[:, points]
     sides = step * np.array([[1.0], [-1.0]])
     met = [
-        fate_code(
+        region_code(
             peak_response(
                 curves.pulse.attrs["pulse_name"],
                 slenderness=curves.slenderness.values[points] + in_slenderness,
@@ -99,13 +102,12 @@ def _as_stated(curves: xr.Dataset, points: NDArray[np.intp], step: float) -> NDA
         )
         for in_slenderness, in_log_omega in ((sides, 0 * sides), (0 * sides, sides))
     ]
-    return np.any([np.all(np.sort(fates, axis=0) == np.sort(stated, axis=0), axis=0) for fates in met], axis=0)
+    return np.any([np.all(np.sort(outcomes, axis=0) == np.sort(stated, axis=0), axis=0) for outcomes in met], axis=0)
 
 
 def _codes(curves: xr.Dataset, side: str) -> NDArray[np.int64]:
-    """The fate that a file states on one side of each curve, in the words of `fate_code`."""
-    outcome, impacts = curves[f"{side}outcome"].values, curves[f"{side}impacts"].values.astype(np.int64)
-    return np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, 4 * impacts + outcome, 0)
+    """The outcome that a file states on one side of each curve, as `region_code`."""
+    return outcome_codes(curves[f"{side}outcome"].values, curves[f"{side}impacts"].values)
 
 
 @pytest.mark.parametrize("name", listed("overturning/sine/"))

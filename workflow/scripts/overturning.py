@@ -31,7 +31,8 @@ def main(
     nodes = {angle: boundary["nodes_rigid"] if angle else boundary["nodes"] for angle in alpha_deg}
     by_angle = [curves_of(pulse, restitution, angle, nodes=nodes[angle], **limits) for angle in alpha_deg]
     for eta, path, parts in zip(restitution, boundaries, zip(*by_angle, strict=True), strict=True):
-        curves = described(join_curves(parts), pulse, eta)
+        joined = join_curves([part.drop_attrs(deep=False) for part in parts])
+        curves = described(joined, pulse, eta).assign_attrs(accuracy_of(parts))
         write_dataset(describe(curves, **provenance), path)
         print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
@@ -42,13 +43,23 @@ def curves_of(pulse: str, restitution: Sequence[float], alpha_deg: float, **wind
     for traced in overturning_boundaries(pulse, restitution=restitution, alpha=alpha or None, **window):
         closed = _closed_forms(traced, traced.restitution, slender=alpha == 0.0) if pulse == "sine" else {}
         angle = ("curve", np.full(traced.sizes["curve"], alpha))
-        yield traced.assign(closed).assign(alpha=angle).drop_attrs(deep=False)
+        yield traced.assign(closed).assign(alpha=angle)
+
+
+def accuracy_of(parts: Sequence[xr.Dataset]) -> dict[str, Any]:
+    """What the tracing states of its accuracy, over all angles: see `overturning_boundary`."""
+    return {
+        "chord_error": max(part.chord_error for part in parts),
+        "thinnest_region": max(part.thinnest_region for part in parts),
+        "unmeasured_chords": sum(part.unmeasured_chords for part in parts),
+        "open_ends": sum(part.open_ends for part in parts),
+    }
 
 
 def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
     """The curves of all angles with our attributes."""
     for name, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
-        curves[name].attrs |= VARIABLES["outcome"][1] | {"long_name": f"fate on the {side} side"}
+        curves[name].attrs |= VARIABLES["outcome"][1] | {"long_name": f"outcome on the {side} side"}
     curves["alpha"].attrs |= AXES["alpha"]
     for variable in curves.data_vars.values():
         variable.attrs = MODEL_RESULT | variable.attrs
@@ -56,7 +67,8 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         curves.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
-        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}.",
+        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}; attributes: `chord_error`, the largest distance of a chord from its curve, `thinnest_region`, the width in 1/a below "
+        "which regions are not resolved, `open_ends`, the ends of regions known to a grid step only.",
         history="rocking.boundary.tracing.overturning_boundaries",
         id=f"overturning/{pulse}/eta-{restitution:.2f}",
     )

@@ -1,0 +1,121 @@
+"""Joins between the regions of neighbouring columns, put in order: one chain of points for each boundary curve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.boundary.columns import Column, Index
+from rocking.boundary.matching import Side
+from rocking.boundary.search import Codes, Floats
+
+
+@dataclass
+class Chains:
+    """Points of the outlines of overturning regions, chain after chain; all arrays (points,).
+
+    Attributes
+    ----------
+    chain : int array
+        Number of the chain.
+    slenderness, log_omega : float arrays [-]
+        The last point within the region along a line omega = const.
+    beyond : float array
+        1/a of the first point of the neighbour along that line [-].
+    own, neighbour : int arrays
+        Region codes within and beyond.
+    side : int array
+        1 where the region lies at larger 1/a than its neighbour, else 0.
+    width : float array
+        Of the region there along 1/a [-].
+    """
+
+    chain: Index
+    slenderness: Floats
+    log_omega: Floats
+    beyond: Floats
+    own: Codes
+    neighbour: Codes
+    side: NDArray[np.int64]
+    width: Floats
+
+    def take(self, index: Index) -> Chains:
+        """The points of some indices."""
+        return Chains(*(getattr(self, each.name)[index] for each in fields(self)))
+
+    def insert(self, before: Index, points: Chains) -> Chains:
+        """With further points, each before the one of its index."""
+        return Chains(
+            *(np.insert(getattr(self, each.name), before, getattr(points, each.name)) for each in fields(self))
+        )
+
+
+def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
+    """Follow the joins of one restitution from end to end; a closed chain ends with the point it begins with."""
+    number: dict[tuple[int, int, int], int] = {}
+    points: list[tuple[float, float, float, int, int, int, float]] = []
+    beside: list[list[int]] = []
+    for join in joins:
+        ends = []
+        for column, m, side in join:
+            key = id(column.whole), column.offset + m, side
+            if key not in number:
+                number[key] = len(points)
+                points.append(_point(column.whole, column.offset + m, side))
+                beside.append([])
+            ends.append(number[key])
+        beside[ends[0]].append(ends[1])
+        beside[ends[1]].append(ends[0])
+
+    order: list[int] = []
+    sizes: list[int] = []
+    seen = [False] * len(points)
+    # open chains begin at a point with one join; what is left after them is closed
+    for start in [*(k for k, near in enumerate(beside) if len(near) == 1), *range(len(points))]:
+        if seen[start]:
+            continue
+        chain, here = [start], start
+        seen[start] = True
+        while True:
+            further = [k for k in beside[here] if not seen[k]]
+            if not further:
+                break
+            here = further[0]
+            seen[here] = True
+            chain.append(here)
+        if len(beside[start]) == 2:
+            chain.append(start)
+        order += chain
+        sizes.append(len(chain))
+    table = np.array([points[k] for k in order]).reshape(-1, 7).T
+    return Chains(
+        chain=np.repeat(np.arange(len(sizes)), sizes),
+        slenderness=table[0],
+        log_omega=table[1],
+        beyond=table[2],
+        own=table[3].astype(np.int64),
+        neighbour=table[4].astype(np.int64),
+        side=table[5].astype(np.int64),
+        width=table[6],
+    )
+
+
+def _point(column: Column, m: int, side: int) -> tuple[float, float, float, int, int, int, float]:
+    if side:
+        top = column.below[m + 1] if m + 1 < column.below.size else column.top
+        x, beyond, width = column.above[m], column.below[m], top - column.above[m]
+    else:
+        bottom = column.above[m - 1] if m else column.bottom
+        x, beyond, width = column.below[m], column.above[m], column.below[m] - bottom
+    return (
+        float(x),
+        column.log_omega,
+        float(beyond),
+        column.codes[m + side],
+        column.codes[m + 1 - side],
+        side,
+        float(width),
+    )

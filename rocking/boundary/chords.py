@@ -1,0 +1,144 @@
+"""Chords of boundary curves, halved until they are as near to the curves as is asked."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.boundary.chains import Chains
+from rocking.boundary.columns import Index
+from rocking.boundary.search import Classify, Codes, Floats, refine_brackets
+
+SCAN = 31
+"""Points by which a region is looked for at the middle of a chord [-]."""
+
+WIDENINGS = 4
+"""Times that the distance at which the two sides of a curve are looked for is widened [-]."""
+
+SURE = 0.5
+"""Share of the largest distance below which it is not measured where the chords on both sides agree on it [-]."""
+
+HALVINGS = 12
+"""Times that a chord is halved at most [-]."""
+
+
+def refine_chords(
+    chains: Chains, eta: float, classify: Classify, *, largest: float, end: float
+) -> tuple[Chains, float, int]:
+    """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
+
+    Parameters
+    ----------
+    chains : Chains
+        The curves at one restitution.
+    eta : float
+        Restitution [-].
+    classify : Classify
+        The solver, with region codes.
+    largest : float
+        Distance in the plane of 1/a and log omega [-].
+    end : float
+        Width in log omega of the chords that end a region, which are not halved [-].
+
+    Returns
+    -------
+    chains, error, unknown
+        The curves, the largest distance found, and the number of chords whose curve was not found at the middle.
+    """
+    error, unknown = 0.0, 0
+    todo = np.ones(max(chains.chain.size - 1, 0), dtype=bool)
+    for _ in range(HALVINGS):
+        todo &= (
+            (np.diff(chains.chain) == 0)
+            & (np.abs(np.diff(chains.log_omega)) > 1.01 * end)
+            & (np.diff(chains.side) == 0)
+        )
+        first = np.flatnonzero(todo)
+        bend, spread = _bend(chains, first)
+        sure = np.abs(bend) + spread < SURE * largest
+        error = max(error, float((np.abs(bend) + spread)[sure].max(initial=0.0)))
+        first, bend = first[~sure], bend[~sure]
+        if not first.size:
+            break
+        middle, found, distance = _middles(chains, first, bend, eta, classify)
+        unknown += int((~found).sum())
+        close = ~found | (distance <= largest)
+        error = max(error, float(distance[found & close].max(initial=0.0)))
+        cut = first[~close]
+        chains = chains.insert(cut + 1, middle.take(np.flatnonzero(~close)))
+        todo = np.zeros(chains.chain.size - 1, dtype=bool)
+        place = cut + np.arange(cut.size)
+        todo[place] = todo[place + 1] = True
+    return chains, error, unknown
+
+
+def _middles(
+    chains: Chains, first: Index, bend: Floats, eta: float, classify: Classify
+) -> tuple[Chains, NDArray[np.bool_], Floats]:
+    """Points of the curves halfway along some chords, whether they were found, and their distance from the chords."""
+    one, two = chains.take(first), chains.take(first + 1)
+    y = 0.5 * (one.log_omega + two.log_omega)
+    chord = 0.5 * (one.slenderness + two.slenderness)
+    guess = chord + bend
+    outward = np.where(one.side == 1, -1.0, 1.0)
+    width = np.minimum(one.width, two.width)
+    near = np.clip(0.3 * np.abs(bend), 1e-8, 0.4 * width)
+    inside, beyond, found = np.empty(y.size), np.empty(y.size), np.zeros(y.size, dtype=bool)
+    for _ in range(WIDENINGS):
+        lost = np.flatnonzero(~found)
+        if not lost.size:
+            break
+        inside[lost] = guess[lost] - outward[lost] * near[lost]
+        beyond[lost] = guess[lost] + outward[lost] * near[lost]
+        codes, _ = classify(np.stack([inside[lost], beyond[lost]]), y[lost], np.asarray(eta))
+        found[lost] = (codes[0] == one.own[lost]) & (codes[1] != one.own[lost])
+        near = np.minimum(8.0 * near, 0.4 * width)
+    lost = np.flatnonzero(~found)
+    if lost.size:
+        reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
+        inside[lost], beyond[lost], found[lost] = _scan(
+            guess[lost], outward[lost], reach, one.own[lost], y[lost], eta, classify
+        )
+    k = np.flatnonzero(found)
+    points = np.stack([chord[k], y[k], np.full(k.size, eta)], axis=1)
+    x, other = guess.copy(), guess.copy()
+    x[k], other[k] = refine_brackets(0, points, np.stack([inside[k], beyond[k]], axis=1), one.own[k], classify)
+    slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
+    middle = Chains(one.chain, x, y, other, one.own, one.neighbour, one.side, width)
+    return middle, found, np.abs(x - chord) / np.hypot(1.0, slope)
+
+
+def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
+    """Distance of a curve from the middle of a chord, by the chords before and after it, and how much these differ."""
+    size = chains.chain.size
+    x, y = chains.slenderness, chains.log_omega
+    bends = np.full((2, first.size), np.nan)
+    for row, (a, b, c) in enumerate(((first - 1, first, first + 1), (first + 2, first + 1, first))):
+        inner = (a >= 0) & (a < size)
+        end = np.clip(a, 0, size - 1)
+        inner &= (chains.chain[end] == chains.chain[b]) & (chains.side[end] == chains.side[b])
+        before, here = y[b] - y[end], y[c] - y[b]
+        inner &= before * here > 0.0
+        before = np.where(inner, before, 1.0)
+        curvature = 2.0 * ((x[c] - x[b]) / here - (x[b] - x[end]) / before) / (here + before)
+        bends[row] = np.where(inner, -0.125 * curvature * here * here, np.nan)
+    known = np.isfinite(bends)
+    bend = np.where(known, bends, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    return bend, np.where(known.all(axis=0), np.abs(bends[0] - bends[1]), np.inf)
+
+
+def _scan(
+    guess: Floats, outward: Floats, reach: Floats, own: Codes, y: Floats, eta: float, classify: Classify
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Points within and beyond the region next to each other, and whether they are.
+
+    They are the nearest such pair to the guess among equally spaced points.
+    """
+    shares = np.linspace(-1.0, 1.0, SCAN)
+    x = guess[:, None] + outward[:, None] * reach[:, None] * shares
+    codes, _ = classify(np.clip(x, 1e-6, 1.0), y[:, None], np.asarray(eta))
+    within = codes == own[:, None]
+    leaves = within[:, :-1] & ~within[:, 1:]
+    k = np.argmin(np.where(leaves, np.abs(shares[:-1]), np.inf), axis=1)
+    rows = np.arange(guess.size)
+    return x[rows, k], x[rows, k + 1], leaves.any(axis=1)

@@ -1,0 +1,170 @@
+"""Columns: the regions of outcome along a line omega = const, as runs of 1/a with one region code each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.boundary.search import Classify, Codes, Floats, merge_nodes, refine_lines, without_layers
+
+THINNEST = 1e-6
+"""Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
+
+Index = NDArray[np.intp]
+
+
+@dataclass(eq=False)
+class Column:
+    """Regions along one line omega = const between two values of 1/a, ascending, and the thresholds between them.
+
+    Attributes
+    ----------
+    eta, log_omega : float
+        Restitution and log omega of the line [-].
+    below, above : float arrays (thresholds,)
+        1/a where the region below a threshold ends and where the one above it begins: `RESOLUTION` apart, or up to
+        `THINNEST` where thinner regions lie between them [-].
+    codes : list of int (thresholds + 1,)
+        Region codes, see `region_code`.
+    bottom, top : float
+        1/a at the two ends [-].
+    secant, step : float arrays (2, thresholds)
+        Slope of the chord of the boundary curve that ends at each threshold, and its width in log omega: of the one
+        from the left (row 0) and of the one from the right (row 1); nan where unknown.
+    curvature : float array (2, thresholds)
+        Second derivative of 1/a with respect to log omega there, from the last two chords; nan where unknown.
+    whole, offset : Column, int
+        The column that this one is a part of, and the index of its first threshold there.
+    """
+
+    eta: float
+    log_omega: float
+    below: Floats
+    above: Floats
+    codes: list[int]
+    bottom: float
+    top: float
+    secant: Floats = field(init=False)
+    step: Floats = field(init=False)
+    curvature: Floats = field(init=False)
+    whole: Column = field(init=False)
+    offset: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self.secant, self.step, self.curvature = np.full((3, 2, self.below.size), np.nan)
+        self.whole = self
+
+    @property
+    def middle(self) -> Floats:
+        """1/a of each threshold, halfway between its two regions."""
+        return 0.5 * (self.below + self.above)
+
+    @property
+    def kinds(self) -> list[tuple[int, int]]:
+        """Region codes below and above each threshold."""
+        return [*zip(self.codes[:-1], self.codes[1:], strict=True)]
+
+    def code_at(self, x: Floats) -> Codes:
+        """Region code at points between the two ends."""
+        return np.asarray(self.codes)[np.searchsorted(self.middle, x)]
+
+    def slope(self, side: int) -> Floats:
+        """Derivative of 1/a with respect to log omega at each threshold, known from one side; nan where unknown."""
+        return np.asarray(
+            self.secant[side] + 0.5 * (1 - 2 * side) * self.step[side] * np.nan_to_num(self.curvature[side])
+        )
+
+    def without_layers(self) -> Column:
+        """The column with regions of many impacts taken together, see `region_code`."""
+        codes = without_layers(np.asarray(self.codes))
+        kept = np.flatnonzero(np.diff(codes) != 0)
+        column = Column(
+            self.eta,
+            self.log_omega,
+            self.below[kept],
+            self.above[kept],
+            codes[np.append(kept, codes.size - 1)].tolist(),
+            self.bottom,
+            self.top,
+        )
+        column.secant, column.step, column.curvature = self.secant[:, kept], self.step[:, kept], self.curvature[:, kept]
+        return column
+
+    def between(self, first: int, last: int) -> Column:
+        """The thresholds from `first` to before `last`, and the regions beside them."""
+        bottom = self.above[first - 1] if first else self.bottom
+        top = self.below[last] if last < self.below.size else self.top
+        cut = slice(first, last)
+        part = Column(
+            self.eta, self.log_omega, self.below[cut], self.above[cut], self.codes[first : last + 1], bottom, top
+        )
+        part.secant, part.step, part.curvature = self.secant[:, cut], self.step[:, cut], self.curvature[:, cut]
+        part.whole, part.offset = self.whole, self.offset + first
+        return part
+
+
+class Lines:
+    """Classified nodes on many lines omega = const, every change of outcome between them refined.
+
+    Parameters
+    ----------
+    points : float array (lines, 3)
+        1/a (any), log omega and eta of each line.
+    classify : Classify
+        The solver, with region codes.
+    """
+
+    def __init__(self, points: Floats, classify: Classify) -> None:
+        self.points = points
+        self.classify = classify
+        self.nodes: list[tuple[Floats, Codes]] = [(np.empty(0), np.empty(0, dtype=np.int64))] * len(points)
+
+    def add(self, line: Index, x: Floats, codes: Codes) -> dict[int, Column]:
+        """Take in classified nodes, refine all changes between neighbours, and give the columns of these lines."""
+        touched = np.unique(line)
+        known = [self.nodes[k] for k in touched]
+        line, x, codes = merge_nodes(
+            np.concatenate([line, np.repeat(touched, [old[0].size for old in known])]),
+            np.concatenate([x, *(old[0] for old in known)]),
+            np.concatenate([codes, *(old[1] for old in known)]),
+        )
+        line, x, codes = refine_lines(0, self.points, line, x, codes, self.classify, THINNEST)
+        edge = (np.diff(line) != 0) | (np.diff(codes) != 0)
+        kept = np.append(True, edge) | np.append(edge, True)  # the ends of every run
+        line, x, codes = line[kept], x[kept], codes[kept]
+        bounds = np.append(np.searchsorted(line, touched), line.size)
+        for k, first, last in zip(touched, bounds[:-1], bounds[1:], strict=True):
+            self.nodes[k] = x[first:last], codes[first:last]
+        return {int(k): column for k, column in zip(touched, _columns(self.points, line, x, codes), strict=True)}
+
+
+def _columns(points: Floats, line: Index, x: Floats, codes: Codes) -> list[Column]:
+    """A column for each line of some nodes, regions thinner than `THINNEST` left out."""
+    start, end = _runs(line, codes)
+    line, codes, low, high = line[start], codes[start], x[start], x[end]
+    edge = np.diff(line) != 0
+    kept = np.append(True, edge) | np.append(edge, True) | (high - low >= THINNEST)
+    line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]
+    start, end = _runs(line, codes)
+    line, codes, low, high = line[start], codes[start], low[start], high[end]
+    first = np.flatnonzero(np.append(True, np.diff(line) != 0))
+    return [
+        Column(
+            float(points[line[a], 2]),
+            float(points[line[a], 1]),
+            high[a : b - 1],
+            low[a + 1 : b],
+            codes[a:b].tolist(),
+            float(low[a]),
+            float(high[b - 1]),
+        )
+        for a, b in zip(first, np.append(first[1:], line.size), strict=True)
+    ]
+
+
+def _runs(line: Index, codes: Codes) -> tuple[Index, Index]:
+    """First and last index of each run of one outcome on one line."""
+    edge = (np.diff(line) != 0) | (np.diff(codes) != 0)
+    return np.flatnonzero(np.append(True, edge)), np.flatnonzero(np.append(edge, True))
