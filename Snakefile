@@ -5,7 +5,7 @@ from snakemake.utils import min_version
 
 min_version("9.10")
 
-if not workflow.overwrite_configfiles:  # a --configfile stands alone, it is not merged into the default
+if not workflow.overwrite_configfiles:  # a --configfile replaces the default, it is not merged into it
 
     configfile: f"{workflow.basedir}/workflow/config/paper.yaml"
 

@@ -1,1 +1,1 @@
-"""Run time and accuracy, measured; run from the root of the checkout: `python -m benchmarks.NAME`."""
+"""Measurements of run time and accuracy; run one from the root of the checkout: `python -m benchmarks.GROUP.NAME`."""

@@ -1,4 +1,4 @@
-"""Cells with exact answers, read from benchmarks/data; `benchmarks.truth` made the tables."""
+"""Cells with exact peak rotations, read from benchmarks/data; `benchmarks.reference_tables` writes the tables."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DIAGRAMS = {
 
 @dataclass(frozen=True)
 class Cells:
-    """Blocks and their exact peaks; arrays (cells,), alpha in rad, 0 the slender limit, everything else [-]."""
+    """Blocks and their exact peak rotations; arrays (cells,), alpha in rad (0 is the slender limit), all else [-]."""
 
     pulse: NDArray[np.str_]
     slenderness: NDArray[np.float64]
@@ -31,20 +31,20 @@ class Cells:
     restitution: NDArray[np.float64]
     alpha: NDArray[np.float64]
     peak_rotation: NDArray[np.float64]
-    """nan where overturned."""
+    """nan where the block overturns."""
     peak_rotation_per_ulp: NDArray[np.float64]
-    """Largest relative change of the peak when an input moves by one unit in its last place; nan if not known."""
+    """Largest relative change of the peak when one input changes by one unit in the last place; nan if unknown."""
 
     def __len__(self) -> int:
         return len(self.slenderness)
 
-    def chosen(self, index: NDArray[Any]) -> Cells:
-        """Those of that index."""
+    def select(self, index: NDArray[Any]) -> Cells:
+        """Cells at the given indices."""
         return Cells(**{name: values[index] for name, values in vars(self).items()})
 
 
-def read(name: str) -> Cells:
-    """The table of that name, one of `TABLES`."""
+def read_table(name: str) -> Cells:
+    """Read the table of the given name, one of `reference_tables.TABLES`."""
     with (DATA / f"{name}.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
 

@@ -1,4 +1,4 @@
-"""What all benchmarks share: times in alternating rounds, errors against the truth, the versions that they speak of."""
+"""Shared by all benchmarks: times in alternating rounds, errors against the reference, versions, JSON records."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 
 Name = TypeVar("Name", bound=Hashable)
 
-SHORTEST = 0.02
-"""Processor time that is measured at least [s]."""
+MIN_MEASURED_TIME = 0.02
+"""Minimum processor time of one measurement [s]."""
 
 
 class Task(NamedTuple):
-    """A call that answers so many cells; `every` says in which rounds it takes part, the first one included."""
+    """A call that solves `cells` cells; it is measured in every `every`-th round, the first included."""
 
     call: Callable[[], Any]
     cells: int
@@ -30,16 +30,19 @@ class Task(NamedTuple):
 
 
 def microseconds(task: Task) -> float:
-    """Processor time per cell [us], of as many calls as it takes to see them on the clock."""
+    """Return the processor time per cell [us], averaged over as many calls as one measurement needs."""
     start, calls = time.process_time(), 0
-    while calls == 0 or time.process_time() - start < SHORTEST:
+    while calls == 0 or time.process_time() - start < MIN_MEASURED_TIME:
         task.call()
         calls += 1
     return 1e6 * (time.process_time() - start) / (calls * task.cells)
 
 
 def in_rounds(tasks: Mapping[Name, Task], rounds: int, title: str) -> dict[Name, list[float]]:
-    """Processor times per cell [us] (rounds,) of tasks, nan where one paused: a busy machine hurts all alike."""
+    """Return processor times per cell [us] (rounds,) of each task, nan in rounds without it.
+
+    The tasks alternate within a round, so that other load on the machine affects all of them alike.
+    """
     times: dict[Name, list[float]] = {name: [] for name in tasks}
     for k in range(rounds):
         for name, task in tasks.items():
@@ -49,12 +52,12 @@ def in_rounds(tasks: Mapping[Name, Task], rounds: int, title: str) -> dict[Name,
 
 
 def progress(text: str) -> None:
-    """Tell who waits."""
+    """Print a progress message to stderr."""
     print(text, file=sys.stderr, flush=True)
 
 
 def spread(values: ArrayLike) -> dict[str, float]:
-    """Median, smallest and largest of those that are known."""
+    """Return the median, smallest and largest value, ignoring nan."""
     return {
         "median": float(np.nanmedian(values)),
         "smallest": float(np.nanmin(values)),
@@ -63,15 +66,15 @@ def spread(values: ArrayLike) -> dict[str, float]:
 
 
 def relative_error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> NDArray[np.float64]:
-    """|found - exact|/exact of peaks, nan where one of them overturns."""
+    """Return |found - exact|/exact of peak rotations, nan where either block overturns."""
     return np.abs(found / exact - 1.0)
 
 
 def accuracy(found: NDArray[np.float64], exact: NDArray[np.float64]) -> dict[str, float | int]:
-    """Wrong fates; relative error of the peak where both stand."""
+    """Return the number of wrong outcomes, and quantiles of the relative error of the peak where both survive."""
     error = relative_error(found, exact)
     return {
-        "wrong_fates": int(np.sum(np.isnan(found) != np.isnan(exact))),
+        "wrong_outcomes": int(np.sum(np.isnan(found) != np.isnan(exact))),
         "median_error": float(np.nanmedian(error)),
         "error_99": float(np.nanquantile(error, 0.99)),
         "largest_error": float(np.nanmax(error)),
@@ -79,7 +82,7 @@ def accuracy(found: NDArray[np.float64], exact: NDArray[np.float64]) -> dict[str
 
 
 def versions(*packages: str) -> dict[str, str]:
-    """Of Python and of those of the packages that are installed."""
+    """Return the versions of Python and of those of the packages that are installed."""
     found = {"python": platform.python_version()}
     for package in packages:
         try:
@@ -90,6 +93,6 @@ def versions(*packages: str) -> dict[str, str]:
 
 
 def save(record: dict[str, Any], path: Path) -> None:
-    """As JSON."""
+    """Write a record as JSON."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(record, indent=1) + "\n")

@@ -1,1 +1,1 @@
-"""Instruments of the tests: slow, plain and independent of the package; not part of the wheel."""
+"""Multi-precision integrator for tests: slow, simple and independent of the package; not part of the wheel."""

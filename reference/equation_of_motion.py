@@ -33,9 +33,9 @@ class Motion(NamedTuple):
         """u = a f [-] at `tau` from the start of the pulse."""
         return self.amplitude * self.pulse.value(self.pulse.start + self.frequency_ratio * tau)
 
-    def fastest_rate(self) -> float:
+    def max_rate(self) -> float:
         """Inverse of the shortest time scale [-], a guide for the step."""
-        rate = max(1.0, self.pulse.fastest * float(self.frequency_ratio))
+        rate = max(1.0, self.pulse.max_rate * float(self.frequency_ratio))
         if self.alpha is not None:
             rate = max(rate, float(self.amplitude * self.alpha.tan()) ** 0.5)
         return rate
@@ -46,31 +46,31 @@ class Motion(NamedTuple):
         `at_crossing` says that the motion starts where |u| = 1: the acceleration is then zero without rounding.
         """
         phi = self.pulse.start + self.frequency_ratio * tau
-        push = self.pulse.series(phi, self.frequency_ratio * step, order)
+        forcing = self.pulse.series(phi, self.frequency_ratio * step, order)
         factor = -side * self.amplitude
-        push = [factor * f for f in push]
+        forcing = [factor * f for f in forcing]
         square = (step * step).mid()
         if self.alpha is None:
-            return _slender_series(z, (v * step).mid(), square, push, at_crossing)
-        return _rigid_series(z, (v * step).mid(), square, push, self.alpha, at_crossing)
+            return _slender_series(z, (v * step).mid(), square, forcing, at_crossing)
+        return _rigid_series(z, (v * step).mid(), square, forcing, self.alpha, at_crossing)
 
     def barrier_excess(self, z: arb, v: arb) -> arb:
-        """Growing part of free rocking, over that of the barrier: > 0 falls, < 0 comes back; z + z' - 1 if slender."""
+        """Return the growing part of free rocking relative to the barrier: > 0 overturns; z + z' - 1 if slender."""
         return v - self._distance(1 - z)
 
     def impact_speed(self, z: arb, v: arb) -> arb:
-        """|z'| at z = 0 in free rocking from (z, z'), by energy."""
+        """Return |z'| at z = 0 in free rocking from (z, z'), by energy."""
         return (v * v - self._distance(1 - z) ** 2 + self._distance(arb(1)) ** 2).sqrt()
 
     def turning_point(self, z: arb, v: arb) -> arb:
-        """Largest z of free rocking from (z, z') that does not pass the barrier, by energy."""
+        """Return the largest z of free rocking from (z, z') that does not pass the barrier, by energy."""
         depth = (self._distance(1 - z) ** 2 - v * v).sqrt()
         if self.alpha is None:
             return 1 - depth
         return 1 - 2 * (self.alpha * depth / 2).asin() / self.alpha
 
     def barrier_speed(self) -> arb:
-        """z' at z = 0 that just reaches the barrier; 1 if slender."""
+        """Return the z' at z = 0 that just reaches the barrier; 1 if slender."""
         return self._distance(arb(1))
 
     def _distance(self, below: arb) -> arb:
@@ -80,10 +80,10 @@ class Motion(NamedTuple):
         return 2 * (self.alpha * below / 2).sin() / self.alpha
 
 
-def _slender_series(z: arb, slope: arb, square: arb, push: list[arb], at_crossing: bool) -> list[arb]:
+def _slender_series(z: arb, slope: arb, square: arb, forcing: list[arb], at_crossing: bool) -> list[arb]:
     """z_{k+2} (k+1)(k+2) = h^2 [z_k - (1 if k = 0) + push_k]."""
     series = [z, slope]
-    for k, p in enumerate(push[:-1]):
+    for k, p in enumerate(forcing[:-1]):
         force = series[k] + p - 1 if k == 0 else series[k] + p
         if k == 0 and at_crossing:
             force = arb(0)
@@ -91,16 +91,16 @@ def _slender_series(z: arb, slope: arb, square: arb, push: list[arb], at_crossin
     return series
 
 
-def _rigid_series(z: arb, slope: arb, square: arb, push: list[arb], alpha: arb, at_crossing: bool) -> list[arb]:
+def _rigid_series(z: arb, slope: arb, square: arb, forcing: list[arb], alpha: arb, at_crossing: bool) -> list[arb]:
     """The same with S = sin(alpha (1 - z))/alpha, C = cos(alpha (1 - z)): S' = -C z', C' = alpha^2 S z'."""
     series = [z, slope]
     sine, cosine = (alpha * (1 - z)).sin_cos()
     s, c = [(sine / alpha).mid()], [cosine.mid()]
     weighted = [slope]  # (j + 1) z_{j+1}
     scale, alpha2 = (alpha.tan() / alpha).mid(), (alpha * alpha).mid()
-    push = [(scale * p).mid() for p in push]
-    for k in range(len(push) - 1):
-        force = sum(map(mul, push[: k + 1], c[::-1]), -s[k])
+    forcing = [(scale * p).mid() for p in forcing]
+    for k in range(len(forcing) - 1):
+        force = sum(map(mul, forcing[: k + 1], c[::-1]), -s[k])
         if k == 0 and at_crossing:
             force = arb(0)
         series.append((square * force / ((k + 1) * (k + 2))).mid())

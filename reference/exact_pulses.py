@@ -1,7 +1,7 @@
-"""The nine pulses in multi-precision arithmetic, stated a second time and independently of `rocking.excitation.pulses`.
+"""The nine pulses in multi-precision arithmetic, defined independently of `rocking.excitation`.
 
-The definitions are those of the table of reference pulses (docs/notation.md): f(phi) over a window of phase. Each pulse
-here knows its value, its Taylor series in time and the phases at which it is stationary, all in ball arithmetic.
+The definitions are those of the table of pulses in docs/notation.md: f(phi) over a window of phase. Each pulse has its
+value, its Taylor series in time and the phases at which it is stationary, all in ball arithmetic.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class ExactPulse(NamedTuple):
     start: arb
     end: arb
     stationary: tuple[arb, ...]
-    fastest: float
+    max_rate: float
     """Largest d(argument)/d(phi) of its trigonometric or Gaussian factors: the time scale that steps must resolve."""
     series: Callable[[arb, arb, int], list[arb]]
 
@@ -62,7 +62,7 @@ def _wavelet(polynomial: Sequence[arb], spread: int) -> Callable[[arb, arb, int]
 
 
 def _newton(function: Callable[[arb], tuple[arb, arb]], guess: arb) -> arb:
-    """Root near `guess` of a function that returns its value and its slope."""
+    """Return the root near `guess` of a function that returns its value and its slope."""
     x = guess.mid()
     for _ in range(100):
         value, slope = function(x)
@@ -70,7 +70,7 @@ def _newton(function: Callable[[arb], tuple[arb, arb]], guess: arb) -> arb:
         x = (x - step).mid()
         if abs(step) <= (abs(x) + 1) * arb(2) ** (4 - ctx.prec):
             return x
-    raise ArithmeticError("Newton's iteration does not settle")
+    raise ArithmeticError("Newton's iteration does not converge")
 
 
 def _type_c(cycles: int) -> ExactPulse:
@@ -127,7 +127,7 @@ def _mavroeidis_papageorgiou(gamma: arb, nu: arb) -> ExactPulse:
     grid = [(-end + 2 * end * k / n).mid() for k in range(n + 1)]
     slopes = [slope_and_curvature(phi)[0] for phi in grid]
     stationary = []
-    for k in range(1, n):  # the ends themselves are stationary for some (gamma, nu), and are no interior point
+    for k in range(1, n):  # for some (gamma, nu) the ends are stationary; they are not interior points
         if abs(slopes[k]) < arb(2) ** (16 - ctx.prec):
             stationary.append(grid[k])
         elif k > 1 and (slopes[k - 1] < 0) != (slopes[k] < 0):
@@ -138,9 +138,9 @@ def _mavroeidis_papageorgiou(gamma: arb, nu: arb) -> ExactPulse:
 
 
 @lru_cache(maxsize=64)
-def _made(name: str, precision: int, cycles: float, phase: float) -> ExactPulse:
+def _build_pulse(name: str, precision: int, cycles: float, phase: float) -> ExactPulse:
     if precision != ctx.prec:
-        raise ValueError("the precision must be the working one: it only tells the cache which numbers to keep apart")
+        raise ValueError("the precision must be the working precision; it is a key of the cache")
     pi = arb.pi()
     makers: dict[str, Callable[[], ExactPulse]] = {
         "sine": lambda: _one_sinusoid(arb(0), 2 * pi, [pi / 2, 3 * pi / 2]),
@@ -170,32 +170,33 @@ PULSES = (
 
 
 def exact_pulse(name: str, cycles: float = 2.0, phase: float = 0.0) -> ExactPulse:
-    """The pulse of that name at the working precision; a leading minus mirrors it."""
-    pulse = _made(name.removeprefix("-"), ctx.prec, cycles, phase)
+    """Return the named pulse at the working precision; a leading minus reverses its sign."""
+    pulse = _build_pulse(name.removeprefix("-"), ctx.prec, cycles, phase)
     if not name.startswith("-"):
         return pulse
     return pulse._replace(series=lambda phi, rate, n: [-c for c in pulse.series(phi, rate, n)])
 
 
 def unit_crossings(pulse: ExactPulse, amplitude: arb) -> list[arb]:
-    """Phases [rad], ascending, at which |amplitude f| rises through 1, to the working precision.
+    """Return the phases [rad], ascending, at which |amplitude f| rises through 1, to the working precision.
 
-    f is monotone between neighbouring stationary phases, hence at most one crossing of each sign there: none is missed.
+    f is monotone between neighbouring stationary phases, so that it has at most one crossing of each sign there: none
+    is missed.
     """
     ends = [pulse.start, *pulse.stationary, pulse.end]
     found = []
     for left, right in pairwise(ends):
         low, high = amplitude * pulse.value(left), amplitude * pulse.value(right)
         found += [
-            _bracketed(pulse, sign * amplitude, left.mid(), right.mid())
+            _root_in_bracket(pulse, sign * amplitude, left.mid(), right.mid())
             for sign in (1, -1)
             if sign * low < 1 and sign * high > 1
         ]
     return found
 
 
-def _bracketed(pulse: ExactPulse, factor: arb, left: arb, right: arb) -> arb:
-    """Root of factor f = 1 in a bracket where it rises: bisection far from it, Newton near it."""
+def _root_in_bracket(pulse: ExactPulse, factor: arb, left: arb, right: arb) -> arb:
+    """Return the root of factor f = 1 in a bracket where it rises: bisection far from it, Newton near it."""
     x = (left + right).mid() / 2
     for _ in range(1000):
         value, slope = pulse.series(x, arb(1), 2)

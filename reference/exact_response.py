@@ -1,4 +1,4 @@
-"""What a multi-precision integration returns, and the precision that it runs at."""
+"""Result of a multi-precision integration, and the working precision."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ NO_UPLIFT, SAFE, OVERTURNED_DIRECTLY, OVERTURNED_AFTER_IMPACT, CAPPED = 0, 1, 2,
 
 @dataclass
 class ExactResponse:
-    """What happened; times are tau = p t, `margin` is how far the deciding quantity is from the barrier (> 0 falls).
+    """Response of a block; times are tau = p t.
 
-    `uplifts` are those from rest; `slowest_impact` is the smallest speed at an impact during the pulse.
+    `margin` is the distance of the deciding quantity from the barrier (> 0 overturns), `uplifts` counts uplifts from
+    rest, `slowest_impact` is the smallest speed at an impact during the pulse.
     """
 
     outcome: int = NO_UPLIFT
@@ -37,7 +38,7 @@ class ExactResponse:
 
 @contextmanager
 def working_precision(bits: int) -> Iterator[None]:
-    """Compute with that many bits inside the block."""
+    """Compute with `bits` bits inside the with block."""
     previous = ctx.prec
     ctx.prec = bits
     try:

@@ -1,9 +1,9 @@
-"""Real roots of a polynomial in multi-precision arithmetic such that none in the interval can be passed over.
+"""Real roots of a polynomial in multi-precision arithmetic; no root in the interval can be missed.
 
-In Bernstein form a polynomial lies in the hull of its coefficients, and has at most as many roots in the interval as
-its coefficients change sign, an even number fewer if fewer (Descartes, Vincent). No change: no root; one: exactly one
-root; otherwise the interval is split. A first look in doubles, with a guard for their rounding, settles nearly every
-case; what it cannot settle is decided in multi-precision arithmetic.
+In Bernstein form a polynomial lies in the hull of its coefficients, and its number of roots in the interval is at most
+the number of sign changes of its coefficients, and differs from it by an even number (Descartes, Vincent). No change
+means no root, one change exactly one root; otherwise the interval is split. A first test in doubles, with a margin for
+their rounding, decides nearly every case; the remaining cases are decided in multi-precision arithmetic.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 
 @lru_cache(maxsize=256)
 def _to_bernstein(degree: int) -> NDArray[np.float64]:
-    """Matrix from the coefficients of x^k to those of the Bernstein form on [0, 1]."""
+    """Return the matrix from the coefficients of x^k to those of the Bernstein form on [0, 1]."""
     rows = [[comb(i, k) / comb(degree, k) if k <= i else 0.0 for k in range(degree + 1)] for i in range(degree + 1)]
     return np.array(rows)
 
 
 def bernstein_bounds(coefficients: list[arb], length: arb) -> tuple[float, float]:
-    """Smallest and largest Bernstein coefficient on [0, length]: the polynomial stays between them (to 1e-12)."""
+    """Return the smallest and largest Bernstein coefficient on [0, length], which bound the polynomial (to 1e-12)."""
     scaled = _scaled_doubles(coefficients, float(length))
     form = _to_bernstein(len(scaled) - 1) @ scaled
     guard = 1e-13 * float(np.abs(scaled).sum())
@@ -40,10 +40,10 @@ def _scaled_doubles(coefficients: list[arb], length: float) -> NDArray[np.float6
 
 
 def roots(coefficients: list[arb], length: arb) -> list[arb]:
-    """All simple roots in (0, length], ascending; roots at 0 itself must have been divided out before.
+    """Return all simple roots in (0, length], ascending; roots at 0 must have been divided out before.
 
-    A touching (double) root that the arithmetic cannot tell from no root counts as none, and so does a root within
-    rounding of `length`: who continues from there must look at the value.
+    A double root that the arithmetic cannot distinguish from no root is not returned, nor is a root within rounding of
+    `length`: the caller must check the value there.
     """
     scaled = _scaled_doubles(coefficients, float(length))
     form = _to_bernstein(len(scaled) - 1) @ scaled
@@ -53,12 +53,12 @@ def roots(coefficients: list[arb], length: arb) -> list[arb]:
         if changes == 0:
             return []
         if changes == 1:
-            return [polished(coefficients, arb(0), length)]
+            return [refine_root(coefficients, arb(0), length)]
     return _roots_by_splitting(coefficients, length)
 
 
 def _roots_by_splitting(coefficients: list[arb], length: arb) -> list[arb]:
-    """The same entirely in multi-precision arithmetic."""
+    """Return the same entirely in multi-precision arithmetic."""
     degree = len(coefficients) - 1
     scaled, power = [], arb(1)
     for c in coefficients:
@@ -77,11 +77,11 @@ def _roots_by_splitting(coefficients: list[arb], length: arb) -> list[arb]:
         if changes == 0:
             continue
         if changes == 1 and abs(form[0]) > noise and abs(form[-1]) > noise:
-            found.append(polished(coefficients, left * length, right * length))
+            found.append(refine_root(coefficients, left * length, right * length))
             continue
         if depth > ctx.prec // 2 - 16:  # a double root within rounding
             continue
-        for part in (arb(15) / 32, arb(17) / 32):  # one of them is not itself a root, unless both parts have one
+        for part in (arb(15) / 32, arb(17) / 32):  # at least one of them is no root
             first, second = _split(form, part)
             if abs(second[0]) > noise:
                 break
@@ -92,7 +92,7 @@ def _roots_by_splitting(coefficients: list[arb], length: arb) -> list[arb]:
 
 
 def _split(form: list[arb], part: arb) -> tuple[list[arb], list[arb]]:
-    """De Casteljau's algorithm: the Bernstein forms left and right of `part` of the interval."""
+    """Return the Bernstein forms left and right of `part` of the interval (de Casteljau)."""
     rest = 1 - part
     first, second = [form[0]], [form[-1]]
     while len(form) > 1:
@@ -102,8 +102,8 @@ def _split(form: list[arb], part: arb) -> tuple[list[arb], list[arb]]:
     return first, second[::-1]
 
 
-def polished(coefficients: list[arb], left: arb, right: arb) -> arb:
-    """The only root in a bracket, to the working precision: Newton, halving where Newton would leave the bracket."""
+def refine_root(coefficients: list[arb], left: arb, right: arb) -> arb:
+    """Return the only root in a bracket to the working precision: Newton, bisection where Newton leaves the bracket."""
     polynomial = arb_poly(coefficients)
     slope = polynomial.derivative()
     left, right = left.mid(), right.mid()

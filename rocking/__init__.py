@@ -1,7 +1,7 @@
 """Response spectra and overturning of the rocking rigid block under pulse ground motion.
 
-The public names are listed by hand in `__init__.pyi` and loaded when first used: a command or a service worker does not
-pay for what it does not touch.
+The public names are listed in `__init__.pyi` and loaded at first use, so that a command or a worker of the service
+imports only what it needs.
 """
 
 import lazy_loader

@@ -1,7 +1,7 @@
-"""Errors with three parts: which argument, what it was, what is allowed.
+"""Exceptions and argument checks. A message has three parts: which argument, its value, what is allowed.
 
-Every public function checks its arguments here, so that the same wrong question gets the same answer in Python, on
-the command line and over HTTP. Physical outcomes such as overturning are results and never raise.
+Every public function checks its arguments with these functions, so that Python, the command line and the HTTP service
+report the same errors. Physical outcomes such as overturning are results and raise nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _MAX_FLOAT = sys.float_info.max
 
 
 class InvalidArgumentError(ValueError):
-    """A wrong question: names the argument, its value and what is allowed.
+    """An invalid argument: its name, its value and what is allowed.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class InvalidArgumentError(ValueError):
     value : object
         The offending value.
     allowed : str
-        What would be accepted, in words or as an interval.
+        Accepted values, in words or as an interval.
     """
 
     def __init__(self, parameter: str, value: Any, allowed: str) -> None:
@@ -43,19 +43,19 @@ class InvalidArgumentError(ValueError):
 
 
 class DatasetError(RuntimeError):
-    """A data set file is missing, damaged or of another schema; the message says which file and what to do."""
+    """A data set file is missing, damaged or of another schema; the message names the file and the remedy."""
 
 
 class SearchError(RuntimeError):
-    """A search of the solver did not end within the steps that are proved to suffice: a fault of this package."""
+    """A search of the solver exceeded the number of steps that is proved to suffice: a defect of this package."""
 
 
 class StoppedError(RuntimeError):
-    """Work was given up, as its flag was set (`cancellation.StopFlag`)."""
+    """The work was cancelled through its flag (`rocking._numba.cancellation.StopFlag`)."""
 
 
 class OutsideCubeError(InvalidArgumentError, LookupError):
-    """A cube was asked for a point that it cannot answer with a promise (outside its axes, or a mixed cell)."""
+    """A point for which a cube gives no response with an error bound: outside its axes, or in a mixed cell."""
 
 
 def in_range(
@@ -68,7 +68,7 @@ def in_range(
     parameter : str
         Name for the error message.
     value : array_like of real numbers, any shape
-        Not flags, complex numbers, dates or text, which numpy would turn into numbers; no entry masked.
+        Boolean, complex, date and text values, which numpy would convert, are rejected, and so are masked entries.
     low, high : float
         Range; `high` may be infinite.
     closed : {"both", "left", "right", "neither"}
@@ -88,12 +88,12 @@ def in_range(
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         reject_range(parameter, value, low, high, closed, unit)
-    except OverflowError:  # an integer beyond all doubles: what its digits would be as a float
+    except OverflowError:  # an integer beyond the range of doubles
         wrong = next(entry for entry in np.asarray(value, dtype=object).flat if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
     if array.size == 0:
         return array
-    # two numbers instead of arrays of flags; nan if there is one
+    # two comparisons instead of arrays of them; min and max are nan if an entry is
     least, most = (float(array), float(array)) if array.ndim == 0 else (float(array.min()), float(array.max()))
     if not (_within(least, low, high, closed) and _within(most, low, high, closed)):
         wrong = next(entry for entry in array.flat if not _within(float(entry), low, high, closed))
@@ -102,7 +102,7 @@ def in_range(
 
 
 def _is_real(value: ArrayLike) -> bool:
-    """Whether all entries are real numbers; flags are not."""
+    """Whether all entries are real numbers; booleans are not."""
     if type(value) in (float, int):
         return True
     if np.ma.is_masked(value):
@@ -141,15 +141,15 @@ def broadcast(
     Parameters
     ----------
     given : mapping
-        The arguments by name, as the caller gave them.
+        The arguments by name, as given by the caller.
     checked : sequence of float arrays
         Their values.
 
     Raises
     ------
     InvalidArgumentError
-        If the shapes do not broadcast; also if labelled arguments (xarray, pandas) differ in their dimensions, the
-        order of these, or their indexes: numpy would pair their entries by position.
+        If the shapes do not broadcast; also if labelled arguments (xarray, pandas) differ in their dimensions, in the
+        order of these, or in their indexes: numpy would combine entries by position.
     """
     labelled = {name: _labels(value) for name, value in given.items() if np.ndim(value) > 0}  # type: ignore[arg-type]
     first: list[tuple[Hashable, Any]] = []
@@ -165,7 +165,7 @@ def broadcast(
     except ValueError:
         shapes = tuple(array.shape for array in checked)
         raise InvalidArgumentError(", ".join(given), shapes, "shapes that broadcast against each other") from None
-    # copies, since views of one entry many times over are not for kernels
+    # copies, because kernels need contiguous arrays
     return [array if array.shape == shape else np.array(np.broadcast_to(array, shape)) for array in checked]
 
 

@@ -1,4 +1,4 @@
-"""Orientational analysis (Siano 1985): dimensionless is not enough, groups must be free of orientation too.
+"""Orientational analysis (Siano 1985): similarity groups must be dimensionless and without orientation.
 
 A vector along x carries the orientation l_x, an angle in the x-y plane l_z, a scalar l_0. Orientations multiply as
 Klein's four-group, (4.4) and (4.5), and both sides of a physical equation must carry the same one, (4.8). Figure 1
@@ -18,7 +18,7 @@ from rocking.errors import InvalidArgumentError, one_of
 
 
 class Orientation(Enum):
-    """Unit orientations; each is a pair of parities, and a product adds them modulo 2."""
+    """Unit orientations, represented by pairs of parities. A product adds them modulo 2."""
 
     L0 = (0, 0)
     LX = (1, 0)
@@ -29,7 +29,7 @@ class Orientation(Enum):
         return Orientation(((self.value[0] + other.value[0]) % 2, (self.value[1] + other.value[1]) % 2))  # table 1
 
     def inverse(self) -> Orientation:
-        """The orientation that multiplies with this one to l_0: itself, (4.4)."""
+        """The inverse orientation, which is the orientation itself, (4.4)."""
         return self**-1
 
     def __truediv__(self, other: Orientation) -> Orientation:
@@ -41,7 +41,7 @@ class Orientation(Enum):
 
     @property
     def symbol(self) -> str:
-        """`l0`, `lx`, `ly` or `lz`, as the paper writes it."""
+        """`l0`, `lx`, `ly` or `lz`, as in the paper."""
         return self.name.lower()
 
 
@@ -68,7 +68,8 @@ def orientation_of_function(function: Callable[[float], float], argument: Orient
     Raises
     ------
     InvalidArgumentError
-        For a function neither even nor odd of an oriented argument, e.g. exp: its series adds unlike orientations.
+        For a function of an oriented argument that is neither even nor odd, such as exp: the terms of its series have
+        different orientations.
     """
     if argument is Orientation.L0:
         return argument
@@ -100,7 +101,7 @@ class Quantity:
 
     @property
     def is_free(self) -> bool:
-        """Dimensionless and orientationless: fit to be a similarity group."""
+        """Whether the quantity is dimensionless and without orientation, as a similarity group must be."""
         return self == Quantity(Orientation.L0)
 
 
@@ -131,7 +132,7 @@ def quantity_of(expression: str) -> Quantity:
     Raises
     ------
     InvalidArgumentError
-        For anything else, with the part that was not understood.
+        For any other expression; the message quotes the part.
     """
     try:
         tree = ast.parse(expression, mode="eval").body

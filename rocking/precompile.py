@@ -1,6 +1,6 @@
-"""Compiles every kernel, or loads it from the cache, by asking each a small question: `python -m rocking.precompile`.
+"""Compilation of all kernels in advance, by a small call of each: `python -m rocking.precompile`.
 
-`make environment` and the start of the service run it, so that no question of a user waits for the compiler.
+`make environment` and the start of the service run it, so that no request waits for the compiler.
 """
 
 from __future__ import annotations
@@ -19,32 +19,32 @@ from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectra
 
 COMPLETE_MARKER = "complete"
-"""File in the cache folder that says that all kernels are in it."""
+"""File in the cache folder that marks it as complete."""
 
 
 def is_missing() -> bool:
-    """Whether machine code can be kept on disk and is not all there yet."""
+    """Whether there is a cache folder and it is not complete."""
     folder = cache_folder()
     return folder is not None and not (Path(folder) / COMPLETE_MARKER).exists()
 
 
 def load_kernels() -> None:
-    """Load the machine code of all kernels into this process, compiled before if it is not in the cache."""
+    """Load all kernels into this process from the cache; compile those that are missing."""
     for name in PULSE_NAMES:
-        get_pulse(name)  # three of them load a part of scipy
+        get_pulse(name)  # three of them import a part of scipy
     block: dict[str, Any] = {"slenderness": 0.8, "frequency_ratio": 3.0, "restitution": 0.85}
     peak_response("sine", **block)
     peak_response("sine", **block, alpha=0.3)
     time_history("sine", **block, samples=2)
     time_history("sine", **block, alpha=0.3, samples=2)
     axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}
-    levels = [slice_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
-    cube = Cube("sine", np.array([level.restitution for level in levels]), levels.__getitem__)
+    slices = [slice_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
+    cube = Cube("sine", np.array([one.restitution for one in slices]), slices.__getitem__)
     cube.response(**block)
 
 
 def main() -> None:
-    """Compile what is not in the cache yet."""
+    """Compile the kernels that are not in the cache."""
     folder = cache_folder()
     if folder is not None and is_missing():
         load_kernels()

@@ -1,4 +1,4 @@
-"""All hard cases against their truth: `python -m stress`, or `make stress`; tells which promises are not kept."""
+"""Compare all hard cases with their reference: `python -m stress`, or `make stress`; reports violated requirements."""
 
 from __future__ import annotations
 
@@ -10,31 +10,31 @@ from typing import Any
 from numpy.typing import NDArray
 
 from benchmarks.measure import progress, save, versions
-from stress.examine import examined
-from stress.families import BY_NAME, known
+from stress.evaluate import evaluate_family
+from stress.families import BY_NAME, select_families
 from stress.figure import draw
-from stress.report import broken, markdown
-from stress.speed import over_ordinary, times_in_short
-from stress.truth import read
+from stress.report import markdown, violations
+from stress.speed import relative_times, time_summary
+from stress.tables import read_table
 
 
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("family", nargs="*", help=f"besides ordinary, by default all: {', '.join(BY_NAME)}")
+    parser.add_argument("family", nargs="*", help=f"in addition to ordinary; default: all of {', '.join(BY_NAME)}")
     parser.add_argument("--out", type=Path, default=Path("results/stress/stress.json"))
     options = parser.parse_args()
-    out, wanted = options.out, known(options.family, parser)
+    out, selected = options.out, select_families(options.family, parser)
     records: dict[str, dict[str, Any]] = {}
     parts: dict[str, dict[str, NDArray[Any]]] = {}
-    for count, name in enumerate(dict.fromkeys(("ordinary", *wanted)), start=1):
+    for count, name in enumerate(dict.fromkeys(("ordinary", *selected)), start=1):
         progress(f"family {count}: {name}")
-        records[name], parts[name] = examined(read(name))
-    times = over_ordinary(parts)
+        records[name], parts[name] = evaluate_family(read_table(name))
+    times = relative_times(parts)
     for name, record in records.items():
-        record["time"] = times_in_short(times[name], parts[name]["impacts"], read(name))
-    promises = broken(records)
-    save({"families": records, "broken": promises, "versions": versions("numpy", "numba")}, out)
+        record["time"] = time_summary(times[name], parts[name]["impacts"], read_table(name))
+    violated = violations(records)
+    save({"families": records, "violations": violated, "versions": versions("numpy", "numba")}, out)
     table = markdown(records)
     out.with_suffix(".md").write_text(table)
     draw(
@@ -44,9 +44,9 @@ def main() -> None:
         out,
     )
     print(table)
-    print(f"written to {out}, with .md, .png and .svg beside it")
-    if promises:
-        sys.exit("\n".join(["not kept:", *promises]))
+    print(f"written to {out}, and .md, .png and .svg with the same name")
+    if violated:
+        sys.exit("\n".join(["requirements violated:", *violated]))
 
 
 if __name__ == "__main__":

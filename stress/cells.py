@@ -1,4 +1,4 @@
-"""What families of hard cases are made of: cells drawn at random for every pulse, sign and equation in turn."""
+"""Families of hard cases: cells drawn at random for every pulse, sign and equation in turn."""
 
 from __future__ import annotations
 
@@ -10,23 +10,27 @@ from zlib import crc32
 
 import numpy as np
 
-from reference.conditioning import MOST_IMPACTS
+from reference.conditioning import MAX_IMPACTS
 from reference.exact_pulses import PULSES
 from reference.exact_response import ExactResponse, working_precision
 from reference.multiprecision import integrate
 
 Cell = dict[str, Any]
-"""A question to the solver: pulse, slenderness, frequency_ratio, restitution [-]; alpha [rad] if it is rigid."""
+"""Parameters of one block: pulse, slenderness, frequency_ratio, restitution [-]; alpha [rad] if it is rigid."""
 
-PROMISES = ("fates", "digits", "bounds", "times")
-"""No wrong fate that one ulp does not explain; few digits lost beyond the conditioning; error bounds; no slow cell."""
+REQUIREMENTS = ("outcomes", "digits", "bounds", "times")
+"""Requirements on a family.
+
+outcomes: every wrong outcome is explained by one ulp of the input; digits: few digits are lost beyond the
+conditioning; bounds: error bounds hold; times: no slow cell.
+"""
 
 BITS = 128
-"""Precision at which cells are looked for; their answers are computed anew at 192."""
+"""Precision [bits] of the search for cells; their responses are computed again with 192 bits."""
 
 
 class Draw:
-    """Random numbers of a family, the same on every run."""
+    """Random numbers of a family, the same in every run."""
 
     def __init__(self, name: str) -> None:
         self.random = np.random.default_rng(crc32(name.encode()))
@@ -35,21 +39,21 @@ class Draw:
         return float(self.random.uniform(low, high))
 
     def log(self, low: float, high: float) -> float:
-        """Uniform in the logarithm."""
+        """Return a number whose logarithm is uniformly distributed."""
         return float(np.exp(self.random.uniform(np.log(low), np.log(high))))
 
     def one_of(self, *values: float) -> float:
         return float(self.random.choice(values))
 
 
-def look(cell: Cell, most_impacts: int = MOST_IMPACTS, **changed: Any) -> ExactResponse:
-    """The response of a cell in multi-precision arithmetic, to see what happens."""
+def reference_response(cell: Cell, max_impacts: int = MAX_IMPACTS, **changed: Any) -> ExactResponse:
+    """Return the response of a cell in multi-precision arithmetic at `BITS`."""
     with working_precision(BITS):
-        return integrate(**(cell | changed), most_impacts=most_impacts)
+        return integrate(**(cell | changed), max_impacts=max_impacts)
 
 
 def any_angle(draw: Draw) -> float:
-    """Slenderness angles of real blocks and beyond [rad]."""
+    """Return a slenderness angle in a range that includes real blocks [rad]."""
     return draw.uniform(0.02, 1.2)
 
 
@@ -61,47 +65,47 @@ class Family:
     ----------
     name : str
         The table is stress/data/NAME.csv.
-    why : str
-        Why it is hard, in half a line.
+    reason : str
+        Why the family is hard.
     groups : callable
         Draws slenderness, frequency_ratio and restitution [-].
     pulses : tuple of str
-        In turn, each with both signs, slender and rigid.
+        Used in turn, each with both signs, slender and rigid.
     accept : callable
-        Whether the response is of the kind that is wanted.
+        Whether the response is of the required kind.
     angle : callable
-        Draws alpha [rad] of the rigid ones.
+        Draws alpha [rad] of the rigid blocks.
     rigid : tuple of bool
-        (False, True), or (True,) where the slender block has no part in it.
+        (False, True), or (True,) for rigid blocks only.
     size : int
         Number of cells.
-    promises : tuple of str
-        What is held against the answers: see `report.broken`.
+    requirements : tuple of str
+        What is required of the responses: see `report.violations`.
     """
 
     name: str
-    why: str
+    reason: str
     groups: Callable[[Draw], tuple[float, float, float]]
     pulses: tuple[str, ...] = PULSES
     accept: Callable[[ExactResponse], bool] | None = None
     angle: Callable[[Draw], float] = any_angle
     rigid: tuple[bool, ...] = (False, True)
     size: int = 252
-    promises: tuple[str, ...] = PROMISES
+    requirements: tuple[str, ...] = REQUIREMENTS
 
     def cells(self) -> Iterator[Cell]:
-        """All of them, in order."""
+        """Yield all cells in order."""
         found = 0
-        for cell in drawn(self):
-            if self.accept is None or self.accept(look(cell)):
+        for cell in draw_cells(self):
+            if self.accept is None or self.accept(reference_response(cell)):
                 yield cell
                 found += 1
                 if found == self.size:
                     return
 
 
-def drawn(family: Any) -> Iterator[Cell]:
-    """Endless candidates: pulses in turn, then the other sign, then the other equation."""
+def draw_cells(family: Any) -> Iterator[Cell]:
+    """Yield candidates without end: pulses in turn, then the other sign, then the other equation."""
     draw = Draw(family.name)
     kinds = list(product(family.rigid, ("", "-"), family.pulses))
     for k in count():

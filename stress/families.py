@@ -5,15 +5,15 @@ from __future__ import annotations
 from argparse import ArgumentParser
 
 from stress.cells import Draw, Family
-from stress.edges import ALPHA, END, FATE, GRAZE, ISLAND, EdgeFamily
+from stress.edges import ALPHA, GRAZING, ISLAND, OUTCOME, PULSE_END, EdgeFamily
 
-TWICE_PUSHED = ("cosine", "c1", "c2", "ricker", "ricker_antisymmetric", "mavroeidis_papageorgiou")
-"""Pulses that push to one side, back, and to the first side again."""
+THREE_LOBES = ("cosine", "c1", "c2", "ricker", "ricker_antisymmetric", "mavroeidis_papageorgiou")
+"""Pulses that accelerate to one side, back, and to the first side again."""
 
-SEVERAL_LOBES = ("sine", *TWICE_PUSHED)
+SEVERAL_LOBES = ("sine", *THREE_LOBES)
 
-MANY = 20_000
-"""Impacts that part the two families of nearly elastic blocks."""
+MANY_IMPACTS = 20_000
+"""Number of impacts that separates the two families of nearly elastic blocks."""
 
 
 def _ordinary(draw: Draw) -> tuple[float, float, float]:
@@ -28,7 +28,7 @@ def _chatter(draw: Draw) -> tuple[float, float, float]:
     return 1.0 - draw.log(1e-6, 0.1), draw.log(0.02, 2.0), draw.uniform(0.8, 0.98)
 
 
-def _again(draw: Draw) -> tuple[float, float, float]:
+def _uplift_again(draw: Draw) -> tuple[float, float, float]:
     return 1.0 - draw.log(1e-4, 0.2), draw.log(0.3, 12.0), draw.uniform(0.0, 0.6)
 
 
@@ -42,7 +42,10 @@ def _impulse(draw: Draw) -> tuple[float, float, float]:
 
 
 def _slow(draw: Draw) -> tuple[float, float, float]:
-    """Two in three close to onset, since a slow pulse overturns whatever it lifts in earnest."""
+    """Draw blocks under a slow pulse.
+
+    Two of three are close to the onset of uplift, since a slow pulse overturns every block that it uplifts clearly.
+    """
     omega = draw.log(1e-4, 1e-1)
     gap = omega * omega * draw.log(1e-2, 10.0)
     return draw.one_of(1.0 - gap, 1.0 - gap, draw.uniform(0.05, 0.95)), omega, draw.uniform(0.0, 0.9)
@@ -73,43 +76,47 @@ def _extreme_angle(draw: Draw) -> float:
 
 
 FAMILIES: tuple[Family | EdgeFamily, ...] = (
-    Family("ordinary", "nothing: cells at random, for comparison", _ordinary),
-    Family("onset", "1/a = 1 - 1e-2 to 1 - 1e-12: the push is the small difference of large numbers", _onset),
+    Family("ordinary", "random cells, for comparison", _ordinary),
+    Family("onset", "1/a = 1 - 1e-2 to 1 - 1e-12: the net acceleration is a small difference of large numbers", _onset),
     Family(
-        "chatter", "100 impacts and more", _chatter, pulses=SEVERAL_LOBES, accept=lambda r: r.impacts >= 100, size=168
+        "chatter", "100 impacts or more", _chatter, pulses=SEVERAL_LOBES, accept=lambda r: r.impacts >= 100, size=168
     ),
     Family(
         "uplift-again",
-        "at rest during the pulse, and lifted again",
-        _again,
+        "at rest during the pulse, then uplift again",
+        _uplift_again,
         pulses=SEVERAL_LOBES,
         accept=lambda r: r.uplifts >= 2,
     ),
-    EdgeFamily("grazing", "an impact of next to no velocity, or just none", _line, GRAZE, pulses=TWICE_PUSHED),
-    EdgeFamily("touching-alpha", "the peak is just below or above alpha, and comes back", _line, ALPHA, edges=60),
-    EdgeFamily("pulse-end", "the last impact just before or after the end of the pulse, as in (3.31)", _line, END),
-    EdgeFamily("separatrix", "1e-3 to 1e-12 from another fate", _line, FATE),
+    EdgeFamily("grazing", "an impact at a very small velocity, or just none", _line, GRAZING, pulses=THREE_LOBES),
+    EdgeFamily(
+        "touching-alpha", "the peak is just below or above alpha, and the block survives", _line, ALPHA, edges=60
+    ),
+    EdgeFamily(
+        "pulse-end", "the last impact just before or after the end of the pulse, as in (3.31)", _line, PULSE_END
+    ),
+    EdgeFamily("separatrix", "1e-3 to 1e-12 from another outcome", _line, OUTCOME),
     EdgeFamily(
         "islands",
-        "1e-3 to 1e-12 from overturning after three, five and more impacts",
+        "1e-3 to 1e-12 from overturning after three, five or more impacts",
         _island_line,
         ISLAND,
         line=(0.86, 0.98, 16),
         pulses=SEVERAL_LOBES,
         edges=54,
-        most_impacts=60,
+        max_impacts=60,
     ),
     EdgeFamily(
         "last-bits",
-        "1e-12 to 1e-16 from another fate: the input decides",
+        "1e-12 to 1e-16 from another outcome: rounding of the input decides",
         _line,
-        FATE,
+        OUTCOME,
         nearest=1e-16,
         farthest=1e-12,
-        promises=("digits", "bounds", "times"),
+        requirements=("digits", "bounds", "times"),
     ),
     Family("strong", "1/a down to 1e-4", _strong),
-    Family("impulse", "omega up to 1e4: flights of a ten-thousandth", _impulse),
+    Family("impulse", "omega up to 1e4: flights as short as 1e-4", _impulse),
     Family("quasi-static", "omega down to 1e-4: e^(p T) would overflow", _slow),
     Family("restitution", "eta of 0, 1e-3, 1 - 1e-12, 1", _restitution),
     Family("angles", "alpha of 1e-8 to 1.55 rad", _ordinary, angle=_extreme_angle, rigid=(True,)),
@@ -118,7 +125,7 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "eta from 0.9999 under slow pulses: thousands of impacts without rest",
         _elastic,
         pulses=("sine", "half_sine", "c1"),
-        accept=lambda r: 2_000 <= r.impacts < MANY,
+        accept=lambda r: 2_000 <= r.impacts < MANY_IMPACTS,
         size=12,
     ),
     Family(
@@ -126,7 +133,7 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
         "the same with 20,000 to 60,000 impacts",
         _unending,
         pulses=("sine",),
-        accept=lambda r: MANY < r.impacts <= 60_000,
+        accept=lambda r: MANY_IMPACTS < r.impacts <= 60_000,
         size=4,
     ),
 )
@@ -134,8 +141,8 @@ FAMILIES: tuple[Family | EdgeFamily, ...] = (
 BY_NAME = {family.name: family for family in FAMILIES}
 
 
-def known(names: list[str], parser: ArgumentParser) -> list[str]:
-    """The families of these names, all if there are none; a name that is none ends the command."""
+def select_families(names: list[str], parser: ArgumentParser) -> list[str]:
+    """Return the named families, all if no name is given; an unknown name ends the command with an error."""
     if wrong := sorted(set(names) - set(BY_NAME)):
         parser.error(f"no such family: {', '.join(wrong)}")
     return names or list(BY_NAME)

@@ -1,4 +1,4 @@
-"""The errors of every family in units of the conditioning, and the time of its cells beside an ordinary one."""
+"""The errors of every family in units of the conditioning, and the times of its cells relative to an ordinary cell."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 
 FLOOR = 1e-3
-"""Smaller errors, 0 among them, are drawn here [units of the conditioning]."""
+"""Smaller errors, 0 included, are drawn here [units of the conditioning]."""
 
 SPREAD = 0.28
 """Half the height over which the dots of one family are spread."""
@@ -26,7 +26,7 @@ def draw(
     rigid: Mapping[str, NDArray[np.bool_]],
     path: Path,
 ) -> None:
-    """Write the figure as .png and .svg: per family (cells,) errors over conditioning, times over the ordinary."""
+    """Write the figure as .png and .svg: per family (cells,) errors over conditioning, times over an ordinary cell."""
     figure, axes = plt.subplots(1, 2, sharey=True, figsize=(WIDTH, 0.27 * len(errors) + 0.9), width_ratios=(3, 2))
     for row, name in enumerate(errors):
         for ax, values, floor in ((axes[0], errors[name], FLOOR), (axes[1], times[name], 1e-1)):
@@ -39,7 +39,7 @@ def draw(
         ax.set(xscale="log")
         ax.tick_params(axis="y", length=0)
     axes[0].set(yticks=range(len(errors)), yticklabels=list(errors), ylim=(len(errors) - 0.5, -0.5))
-    axes[0].set_xlabel("error of the peak over what one ulp of the input explains [-]")
+    axes[0].set_xlabel("error of the peak over the effect of one ulp of the input [-]")
     axes[1].set_xlabel("time over the median ordinary cell [-]")
     axes[1].axvline(100.0, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
@@ -49,7 +49,7 @@ def draw(
 
 
 def _strip(ax: Axes, row: int, values: NDArray[np.float64], rigid: NDArray[Any]) -> None:
-    """Dots side by side in their order, slender above rigid, and the median."""
+    """Draw one dot per cell in their order, slender above rigid, and the median."""
     for part, centre, colour in ((~rigid, row - 0.16, BLUE), (rigid, row + 0.16, VERMILION)):
         some = values[part & np.isfinite(values)]
         height = centre + SPREAD * (np.arange(len(some)) / max(len(some), 1) - 0.5)

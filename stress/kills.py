@@ -1,9 +1,9 @@
-"""Runs of the workflow killed at random moments, each followed by one `make reproduce`: `python -m stress.kills`.
+"""Kill runs of the workflow at random moments; each must recover by one `make reproduce`: `python -m stress.kills`.
 
-A finished run of `smoke.yaml` is made first. For each trial some jobs of it are undone, `make reproduce` is started and
-killed (`kill -9`) at a random moment: the whole process group in every other trial, else `make` alone or the run alone.
-The same command is then given once. It has to succeed, with the same bytes in every product and no file that an
-undisturbed run does not leave.
+A finished run of `smoke.yaml` is made first. For each trial some of its jobs are undone, and `make reproduce` is
+started and killed (`kill -9`) at a random moment: the whole process group in every other trial, otherwise only `make`
+or only the process that runs Snakemake. The same command is then run once. It must succeed, with the same bytes in
+every product and no file that an undisturbed run does not leave.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ STAGES = (
     ("overturning/*",), ("overturning/sine",), ("spectra/*",), ("spectra/cosine",), ("figures/figure-1*",),
     ("figures/figure-0*", "claims"), ("claims",), ("figures/table-1",), ("manifest",), ("check_results",),
 )  # fmt: skip
-"""Jobs that a trial undoes, by their records; what depends on them is made again too."""
+"""Jobs that a trial undoes, by their records; the jobs that depend on them run again too."""
 
-PASSING = (".snakemake/log", ".snakemake/metadata", "logs")
-"""Folders whose files hold times."""
+WITH_TIMES = (".snakemake/log", ".snakemake/metadata", "logs")
+"""Folders whose files contain times."""
 
 
 def project(folder: Path) -> Path:
-    """A copy of what the commands of this checkout read, where they can be given: its results are its own."""
+    """Copy what the commands of this checkout read to a folder that has its own results."""
     folder.mkdir()
     for name in ("Makefile", "Snakefile", "environment.lock", "pyproject.toml"):
         shutil.copy2(PROJECT / name, folder)
@@ -53,48 +53,48 @@ def project(folder: Path) -> Path:
 
 
 def content(folder: Path) -> dict[str, str]:
-    """Digests of all that a run left, but for what holds times."""
+    """Return the digests of all files that a run left, except those that contain times."""
     found = (path for top in ("results", "logs", ".snakemake") for path in (folder / top).rglob("*") if path.is_file())
     names = {path.relative_to(folder).as_posix(): path for path in found}
     return {
-        name: "" if name.startswith(PASSING) else hashlib.sha256(path.read_bytes()).hexdigest()
+        name: "" if name.startswith(WITH_TIMES) else hashlib.sha256(path.read_bytes()).hexdigest()
         for name, path in sorted(names.items())
         if not name.startswith((".snakemake/log", ".snakemake/run.lock", ".snakemake/iocache"))
     }
 
 
 def reproduce(folder: Path) -> subprocess.CompletedProcess[str]:
-    """The documented command, given once."""
+    """Run the documented command once."""
     return subprocess.run(
         COMMAND, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, timeout=1800
     )
 
 
 def processes(group: int) -> dict[int, str]:
-    """Processes of a group, with their commands."""
+    """Return the processes of a group, with their commands."""
     found = {}
     for place in Path("/proc").glob("[0-9]*"):
         try:
             if os.getpgid(int(place.name)) == group:
                 found[int(place.name)] = (place / "cmdline").read_text().replace("\0", " ")
-        except (ProcessLookupError, FileNotFoundError):  # it has ended meanwhile
+        except (ProcessLookupError, FileNotFoundError):  # it has ended in the meantime
             continue
     return found
 
 
 def jobs(commands: Iterable[str]) -> list[str]:
-    """Names of the scripts that are running, by Snakemake's copies of them."""
+    """Return the names of the running scripts, from Snakemake's copies of them."""
     return sorted(found[1] for command in commands if (found := re.search(r"scripts/tmp\w+\.(\w+)\.py", command)))
 
 
-def interrupt(folder: Path, what: str, ripe: Callable[[list[str]], bool]) -> str:
-    """Start the command and kill `what` once `ripe` of the running jobs; tell which they were."""
+def interrupt(folder: Path, what: str, condition: Callable[[list[str]], bool]) -> str:
+    """Start the command and kill `what` as soon as `condition(running jobs)` holds; return which jobs were running."""
     with tempfile.TemporaryFile() as log:
         command = subprocess.Popen(COMMAND, cwd=folder, stdout=log, stderr=log, start_new_session=True)
         while command.poll() is None:
             found = processes(command.pid)
-            if ripe(jobs(found.values())):
-                runs = [one for one, words in found.items() if words.startswith("python -m workflow.run")]
+            if condition(jobs(found.values())):
+                runs = [one for one, command_line in found.items() if command_line.startswith("python -m workflow.run")]
                 if what == "group":
                     os.killpg(command.pid, signal.SIGKILL)
                 else:
@@ -105,8 +105,8 @@ def interrupt(folder: Path, what: str, ripe: Callable[[list[str]], bool]) -> str
     return TOO_LATE
 
 
-def killed_at_random(folder: Path, stage: Iterable[str], what: str, draw: random.Random) -> str:
-    """Undo the jobs of a stage and kill the run that makes them again; where the kill came too late, once more."""
+def kill_at_random(folder: Path, stage: Iterable[str], what: str, draw: random.Random) -> str:
+    """Undo the jobs of a stage and kill the run that repeats them; try again where the kill came too late."""
     latest, where = 40.0, TOO_LATE
     while where == TOO_LATE:
         for pattern in stage:
@@ -118,19 +118,21 @@ def killed_at_random(folder: Path, stage: Iterable[str], what: str, draw: random
 
 
 def trial(folder: Path, expected: dict[str, str], what: str, draw: random.Random) -> tuple[bool, str]:
-    """Kill a run and recover; whether that succeeded, and what happened."""
+    """Kill a run and recover; return whether that succeeded, and a description."""
     stage = draw.choice(STAGES)
-    where = killed_at_random(folder, stage, what, draw)
+    where = kill_at_random(folder, stage, what, draw)
     unfinished = sum(1 for _ in (folder / "results").rglob(".*.partial"))
     start = time.perf_counter()
     recovered = reproduce(folder)
     found = content(folder)
     wrong = sorted(name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name))
     seconds = time.perf_counter() - start
-    said = f"{what:5} killed {where}, {unfinished} unfinished; {' '.join(stage)} undone; recovered in {seconds:.0f} s"
+    description = (
+        f"{what:5} killed {where}, {unfinished} unfinished; {' '.join(stage)} undone; recovered in {seconds:.0f} s"
+    )
     if recovered.returncode != 0:
-        return False, f"{said}\n{recovered.stdout}"
-    return not wrong, said + (f"; differs: {', '.join(wrong)}" if wrong else "")
+        return False, f"{description}\n{recovered.stdout}"
+    return not wrong, description + (f"; differs: {', '.join(wrong)}" if wrong else "")
 
 
 def main() -> None:
@@ -151,9 +153,9 @@ def main() -> None:
             sys.exit(first.stdout)
         expected, failed = content(folder), 0
         for number in range(options.trials):
-            held, said = trial(folder, expected, IN_TURN[number % len(IN_TURN)], draw)
-            failed += not held
-            print(f"{number + 1:3} {'ok  ' if held else 'FAIL'} {said}", flush=True)
+            recovered, description = trial(folder, expected, IN_TURN[number % len(IN_TURN)], draw)
+            failed += not recovered
+            print(f"{number + 1:3} {'ok  ' if recovered else 'FAIL'} {description}", flush=True)
     sys.exit(f"{failed} of {options.trials} did not recover" if failed else 0)
 
 

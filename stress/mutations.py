@@ -1,8 +1,8 @@
-"""Mutation trial: single changes of the source, and whether the tests notice: `python -m stress.mutations`.
+"""Mutation trial: change single operators and constants, run the tests: `python -m stress.mutations`.
 
 A change replaces an operator, a comparison, `and`/`or`, a sign, a constant, `min`/`max` or `sin`/`cos`. It is drawn
 from a seed and made in a copy of the tracked files; the tests of its area run until the first failure. The log holds
-one JSON line for each change; a run with the same log goes on where the last one ended.
+one JSON line for each change; a run with the same log continues where the last one ended.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numba  # noqa: F401  # loaded once, before each trial forks
+import numba  # noqa: F401  # loaded once, before the trials fork
 import pytest
 import scipy.optimize  # noqa: F401
 import xarray  # noqa: F401
@@ -48,15 +48,15 @@ SWAPS: dict[type[ast.AST], tuple[str, tuple[str, ...]]] = {
     ast.BitAnd: ("&", ("|",)),
     ast.BitOr: ("|", ("&",)),
 }
-"""Operators: how they are written, and by what they are replaced."""
+"""Operators: how they are written, and their replacements."""
 
 NAMES = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum", "sin": "cos", "cos": "sin"}
-"""Functions that are exchanged."""
+"""Functions that replace each other."""
 
 
 @dataclass(frozen=True)
 class Area:
-    """Modules whose changes the same tests should notice."""
+    """Modules whose changes should fail the same tests."""
 
     name: str
     sources: tuple[str, ...]
@@ -66,13 +66,13 @@ class Area:
     """Tests that run if those pass."""
 
     def tests(self, tree: Path) -> tuple[str, ...]:
-        """The files of a tree that hold its tests, in the order in which they run."""
+        """Return the test files of a tree in the order in which they run."""
         found = (path for pattern in (*self.first, *self.then) for path in sorted(tree.glob(pattern)))
         return tuple(dict.fromkeys(str(path.relative_to(tree)) for path in found))
 
 
 def tests(*names: str) -> tuple[str, ...]:
-    """Paths of test files."""
+    """Return the paths of test files."""
     return tuple(f"tests/*/test_{name}.py" for name in names)
 
 
@@ -83,13 +83,13 @@ AREAS = (
             f"rocking/{name}.py"
             for name in ("solver/kernels/*", "solver/arcs/*", "solver/taylor/*", "history/sampling")
         ),
-        tests("cuts", "free_rocking", "golden_thresholds", "slender_arcs", "taylor", "against_truth", "chatter"),
+        tests("intervals", "free_rocking", "golden_thresholds", "slender_arcs", "taylor", "against_tables", "chatter"),
         tests(
-            "rigid_against_truth",
+            "rigid_against_tables",
             "equations_of_motion",
             "limits",
             "symmetries",
-            "solve",
+            "peak_response",
             "history",
             "corners",
             "searches_end",
@@ -107,11 +107,11 @@ AREAS = (
         ),
         tests(
             *("block", "pulses", "contact", "orientation", "groups", "boundary", "boundary_frequency", "history"),
-            *("boundary_curves", "free_rocking", "solve", "closed_form_peak"),
+            *("boundary_curves", "free_rocking", "peak_response", "closed_form_peak"),
         ),
         tests(
             *("limits", "symmetries", "golden_thresholds", "equations_of_motion", "lookup", "history_contact"),
-            *("rigid_against_truth", "skips", "cli", "arguments", "fate_margin", "boundary_cells"),
+            *("rigid_against_tables", "ablations", "cli", "arguments", "outcome_margin", "boundary_cells"),
         ),
     ),
     Area(
@@ -130,7 +130,7 @@ AREAS = (
             "rocking/datasets/cube.py",
         ),
         tests("interpolation", "sweep_gap", "lookup", "lookup_levels", "boundary_curves"),
-        (*tests("cube", "skips"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
+        (*tests("cube", "ablations"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
     ),
     Area("service", ("api/rocking_api/**/*.py",), ("tests/api/test_*.py",), ()),
 )
@@ -148,7 +148,7 @@ class Mutant:
 
 
 def mutants_of(path: Path) -> list[Mutant]:
-    """Every change of a file."""
+    """Return every possible change of a file."""
     text = path.read_text()
     lines = text.splitlines(keepends=True)
     before = [0]
@@ -213,8 +213,8 @@ def _without_annotations(tree: ast.Module) -> ast.Module:
     return tree
 
 
-def drawn(area: Area, count: int, seed: int) -> list[Mutant]:
-    """Changes of an area, drawn without replacement; each file takes its turn."""
+def draw_mutants(area: Area, count: int, seed: int) -> list[Mutant]:
+    """Draw changes of an area without replacement."""
     random_ = random.Random(f"{area.name} {seed}")
     queues = []
     for pattern in area.sources:
@@ -224,7 +224,7 @@ def drawn(area: Area, count: int, seed: int) -> list[Mutant]:
             queues.append(queue)
     found: list[Mutant] = []
     while len(found) < count and any(queues):
-        # a file comes up as often as the square root of the places where it can change
+        # the probability of a file is proportional to the square root of its number of changes
         queue = random_.choices(queues, [len(queue) ** 0.5 for queue in queues])[0]
         mutant = queue.pop()
         if all((mutant.path, mutant.start) != (other.path, other.start) for other in found):
@@ -232,8 +232,8 @@ def drawn(area: Area, count: int, seed: int) -> list[Mutant]:
     return found
 
 
-def tested(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, str]:
-    """Run test files of a tree until the first failure, in a child that starts with the libraries loaded."""
+def run_tests(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, str]:
+    """Run test files of a tree until the first failure, in a forked process that has the libraries loaded."""
     with tempfile.TemporaryFile("w+") as output:
         child = os.fork()
         if child == 0:
@@ -251,7 +251,7 @@ def tested(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, str
         if status[0] == 0:
             os.killpg(child, signal.SIGKILL)
             os.waitpid(child, 0)
-            return "hangs", ""
+            return "timeout", ""
         output.seek(0)
         lines = output.read().splitlines()
     if status[1] == 0:
@@ -261,7 +261,7 @@ def tested(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, str
 
 
 def run(mutant: Mutant, area: Area, tree: Path, kept: set[Path], timeout: float) -> dict[str, Any]:
-    """Make a change in a copy of the tree, run the tests, and take it back; what the log says of it."""
+    """Make a change in a copy of the tree, run the tests, undo the change; return the line of the log."""
     path = tree / mutant.path
     before, stat = path.read_text(), path.stat()
     stop = mutant.start + len(mutant.old)
@@ -270,30 +270,30 @@ def run(mutant: Mutant, area: Area, tree: Path, kept: set[Path], timeout: float)
     files = sorted(area.tests(tree), key=lambda name: path.stem not in name)
     try:
         path.write_text(before[: mutant.start] + mutant.new + before[stop:])
-        result, by = tested(tree, tuple(files), timeout)
+        result, by = run_tests(tree, tuple(files), timeout)
     finally:
         path.write_text(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
-        for folder in compiled(tree) - kept:
+        for folder in compiled_kernels(tree) - kept:
             shutil.rmtree(folder)
     source = before.splitlines()[mutant.line - 1].strip()
     return asdict(mutant) | {"area": area.name, "source": source, "result": result, "by": by}
 
 
-def compiled(tree: Path) -> set[Path]:
-    """Folders of compiled kernels."""
+def compiled_kernels(tree: Path) -> set[Path]:
+    """Return the folders of compiled kernels."""
     return set((tree / "rocking" / "__pycache__").glob("kernels-*"))
 
 
-def prepared(tree: Path, areas: list[Area]) -> set[Path]:
-    """Copy the tracked files as they are staged, and run all tests once: they pass, and the kernels are compiled."""
-    if not tree.exists():  # of what git has staged
+def prepare_tree(tree: Path, areas: list[Area]) -> set[Path]:
+    """Copy the files as they are staged, and run all tests once: they must pass, which also compiles the kernels."""
+    if not tree.exists():  # the files that git has staged
         subprocess.run(["git", "checkout-index", "--all", f"--prefix={tree.resolve()}/"], cwd=ROOT, check=True)
     for area in areas:
-        result, by = tested(tree, area.tests(tree), 3600.0)
+        result, by = run_tests(tree, area.tests(tree), 3600.0)
         if result != "survived":
             sys.exit(f"{area.name}: the tests fail without a change: {by}")
-    return compiled(tree)
+    return compiled_kernels(tree)
 
 
 def main() -> None:
@@ -302,17 +302,19 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=32, help="changes of each area")
     parser.add_argument("--area", nargs="*", choices=[area.name for area in AREAS])
-    parser.add_argument("--tree", type=Path, default=ROOT / "build" / "mutants", help="the copy; made if missing")
+    parser.add_argument(
+        "--tree", type=Path, default=ROOT / "build" / "mutants", help="folder of the copy; created if missing"
+    )
     parser.add_argument("--log", type=Path, default=ROOT / "build" / "mutants.jsonl")
-    parser.add_argument("--most", type=int, help="changes of this run; all by default")
+    parser.add_argument("--most", type=int, help="maximum number of changes in this run; default: all")
     parser.add_argument("--timeout", type=float, default=400.0, help="seconds for each group of tests")
     options = parser.parse_args()
     lines = options.log.read_text().splitlines() if options.log.exists() else []
     done = {(record["path"], record["start"], record["new"]) for record in map(json.loads, lines)}
     areas = [area for area in AREAS if not options.area or area.name in options.area]
-    wanted = [(mutant, area) for area in areas for mutant in drawn(area, options.count, options.seed)]
+    wanted = [(mutant, area) for area in areas for mutant in draw_mutants(area, options.count, options.seed)]
     left = [pair for pair in wanted if (pair[0].path, pair[0].start, pair[0].new) not in done]
-    kept = prepared(options.tree, areas)
+    kept = prepare_tree(options.tree, areas)
     for mutant, area in left[: options.most]:
         record = run(mutant, area, options.tree, kept, options.timeout)
         with options.log.open("a") as log:

@@ -1,4 +1,4 @@
-"""The solver's answers to a table, and how far they are from the truth in units of the conditioning."""
+"""Responses of the solver to a table, and their errors relative to the conditioning."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from numpy.typing import NDArray
 import rocking
 from reference.exact_response import ExactResponse
 from rocking.model.fields import RESPONSE_FIELDS
-from stress.cells import Cell, look
-from stress.truth import INPUTS, Table
+from stress.cells import Cell, reference_response
+from stress.tables import INPUTS, Table
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
 
 ULPS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
-"""By how many units in the last place inputs are moved in search of the fate that was found."""
+"""Units in the last place by which inputs are changed in search of the outcome that was found."""
 
-LONG, ENDLESS = 2_000, 20_000
-"""Impacts from which on that search is made for one unit alone, and from which on it is not made."""
+LONG_RESPONSE, MAX_RESPONSE = 2_000, 20_000
+"""Impacts above which that search uses one unit only, and above which there is no search."""
 
 
 def solve(table: Table) -> rocking.Response:
-    """All rows, pulse by pulse."""
+    """Solve all rows, pulse by pulse."""
     fields: dict[str, NDArray[np.generic]] = {}
     for pulse in np.unique(table.pulse):
         rows = table.pulse == pulse
@@ -43,15 +43,15 @@ class Errors(NamedTuple):
     peak: Array
     """|found - exact|/exact of the peak."""
     peak_in_ulps: Array
-    """The same over what one unit in the last place of an input, or of the peak itself, changes."""
+    """The same over the effect of one unit in the last place of an input, or of the peak itself."""
     uplift_time_in_ulps: Array
-    """Likewise of the first uplift, with the last place of the pulse's duration instead of its own."""
+    """The same of the first uplift, with the last place of the duration of the pulse instead of its own."""
     impact_time_in_ulps: Array
-    """Likewise of the first impact."""
+    """The same of the first impact."""
 
 
 def errors(table: Table, found: rocking.Response) -> Errors:
-    """Distances of the solver's numbers from the truth."""
+    """Return the errors of the solver."""
     exact = table["peak_rotation"]
     with np.errstate(invalid="ignore", divide="ignore"):
         peak = np.where(exact == 0.0, np.abs(found.peak_rotation), np.abs(found.peak_rotation / exact - 1.0))
@@ -70,43 +70,47 @@ def _window(name: str) -> float:
     return float(pulse.end - pulse.start)
 
 
-def wrong_fates(table: Table, found: rocking.Response) -> Flags:
-    """Where the outcome is another one."""
+def wrong_outcomes(table: Table, found: rocking.Response) -> Flags:
+    """Return where the outcome is wrong."""
     return np.asarray(found.outcome != table["outcome"])
 
 
 def wrong_events(table: Table, found: rocking.Response) -> Flags:
-    """Where the fate is right, but not whether alpha was passed, or the number of impacts where none is summed up."""
+    """Return where the outcome is right, but exceeded_alpha or (without chatter) the number of impacts is wrong."""
     counted = ~found.chatter & (table["chatter"] == 0)
     wrong = (found.exceeded_alpha != (table["exceeded_alpha"] == 1)) | (counted & (found.impacts != table["impacts"]))
-    return np.asarray(wrong & ~wrong_fates(table, found))
+    return np.asarray(wrong & ~wrong_outcomes(table, found))
 
 
 def ulps_that_explain(table: Table, k: int, found: rocking.Response) -> int | None:
-    """The number of units in the last place of the inputs within which the truth is what the solver found for row `k`.
+    """Return the change of the inputs, in ulps, for which the exact response is what the solver found for row `k`.
 
-    Inputs are moved alone and together, up and down; None if no such change is found among `ULPS`.
+    Inputs are changed alone and together, up and down; None if no change in `ULPS` explains it.
     """
-    if table["impacts"][k] > ENDLESS:
+    if table["impacts"][k] > MAX_RESPONSE:
         return None
     cell = table.cell(k)
     names = [name for name in INPUTS if name in cell]
-    for ulps in ULPS[:1] if table["impacts"][k] > LONG else ULPS:
+    for ulps in ULPS[:1] if table["impacts"][k] > LONG_RESPONSE else ULPS:
         for steps in product((-ulps, 0, ulps), repeat=len(names)):
-            moved: Cell = {name: _moved(cell[name], step) for name, step in zip(names, steps, strict=True)}
-            if any(steps) and moved["restitution"] <= 1.0 and _agree(look(cell, **moved), k, found):
+            moved: Cell = {name: _changed_by(cell[name], step) for name, step in zip(names, steps, strict=True)}
+            if (
+                any(steps)
+                and moved["restitution"] <= 1.0
+                and _same_response(reference_response(cell, **moved), k, found)
+            ):
                 return ulps
     return None
 
 
-def _moved(value: float, ulps: int) -> float:
+def _changed_by(value: float, ulps: int) -> float:
     return value if value == 0.0 else value + ulps * float(np.spacing(value))
 
 
-def _agree(truth: ExactResponse, k: int, found: rocking.Response) -> bool:
-    counted = not truth.chatter and not found.chatter[k]
+def _same_response(exact: ExactResponse, k: int, found: rocking.Response) -> bool:
+    counted = not exact.chatter and not found.chatter[k]
     return (
-        truth.outcome == found.outcome[k]
-        and truth.exceeded_alpha == found.exceeded_alpha[k]
-        and (not counted or truth.impacts == found.impacts[k])
+        exact.outcome == found.outcome[k]
+        and exact.exceeded_alpha == found.exceeded_alpha[k]
+        and (not counted or exact.impacts == found.impacts[k])
     )

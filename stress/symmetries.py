@@ -1,8 +1,8 @@
-"""What must not change the answer, on the hard cells: mirror, company, size of the block, units.
+"""Transformations that must not change the response: mirror, neighbours, size of the block, units.
 
-The SI problems are built with `rocking.Block` and `rocking.groups`. A factor of 4 in lengths halves p exactly, and one
-of 1,024 between units divides out exactly: then the groups are the same to the last bit, and so must be the answers.
-Other factors leave groups that differ by rounding, and answers that differ by what this explains.
+The SI problems are built with `rocking.Block` and `rocking.groups`. A factor of 4 in lengths halves p exactly, and a
+factor of 1,024 between units divides out exactly: the groups, and hence the responses, must be equal to the last bit.
+Other factors leave groups that differ by rounding, and responses that differ accordingly.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import rocking
 from rocking.groups import GroupSet, groups_of, problem_of_block
 from rocking.model.block import STANDARD_GRAVITY
 from stress.solver import EPS, solve
-from stress.truth import Table
+from stress.tables import Table
 
 SLENDER_ANGLE = 0.01
-"""Slenderness angle [rad] of the blocks that stand for the slender limit, in the groups (4.10)."""
+"""Slenderness angle [rad] of the blocks that represent the slender limit, in the groups (4.10)."""
 
 FIELDS = (
     *("peak_rotation", "peak_mode", "outcome", "impacts", "chatter", "exceeded_alpha"),
@@ -28,17 +28,17 @@ FIELDS = (
 
 
 def symmetries(table: Table, found: rocking.Response) -> dict[str, Any]:
-    """How many cells keep their answer to the last bit, and how far the others move."""
+    """Count the cells that keep their response to the last bit, and measure the change of the others."""
     order = np.random.default_rng(1).permutation(len(table))
     one = in_units(table, length=1.0, time=1.0, size=1.0)
     same = solve(one)
     return {
         "mirror": identical(found, solve(_mirrored(table)), sign=-1.0),
-        "company": identical(solve(table.chosen(order)), found, order=order),
+        "neighbours": identical(solve(table.select(order)), found, order=order),
         "size_4": identical(same, solve(in_units(table, length=1.0, time=1.0, size=4.0))),
         "units_1024": identical(same, solve(in_units(table, length=1024.0, time=1.0, size=1.0))),
-        "size_3.7": apart(table, same, solve(in_units(table, length=1.0, time=1.0, size=3.7))),
-        "units_mm_ms": apart(table, same, solve(in_units(table, length=1e3, time=1e3, size=1.0))),
+        "size_3.7": difference(table, same, solve(in_units(table, length=1.0, time=1.0, size=3.7))),
+        "units_mm_ms": difference(table, same, solve(in_units(table, length=1e3, time=1e3, size=1.0))),
     }
 
 
@@ -48,7 +48,7 @@ def _mirrored(table: Table) -> Table:
 
 
 def in_units(table: Table, *, length: float, time: float, size: float) -> Table:
-    """The same groups by way of a block of half-diagonal `size` [m] under a pulse, in units of 1/length m, 1/time s."""
+    """Return the same groups computed from a block of half-diagonal `size` [m], in units of 1/length m and 1/time s."""
     rigid = table["alpha"] > 0.0
     columns = {name: values.copy() for name, values in table.columns.items()}
     gravity = STANDARD_GRAVITY * length / time**2
@@ -69,7 +69,7 @@ def in_units(table: Table, *, length: float, time: float, size: float) -> Table:
 def identical(
     one: rocking.Response, other: rocking.Response, *, sign: float = 1.0, order: NDArray[Any] | None = None
 ) -> dict[str, int]:
-    """Cells all of whose answers are the same bits; `other` is put in `order` first."""
+    """Count the cells whose responses are equal in all bits; `other` is put in `order` first."""
     where = slice(None) if order is None else order
     same = np.ones(one.shape, np.bool_)
     for name in FIELDS:
@@ -80,14 +80,14 @@ def identical(
     return {"cells": same.size, "identical": int(same.sum())}
 
 
-def apart(table: Table, one: rocking.Response, other: rocking.Response) -> dict[str, float]:
-    """Fates that differ, and the largest change of the peak in units of the conditioning."""
+def difference(table: Table, one: rocking.Response, other: rocking.Response) -> dict[str, float]:
+    """Return the number of outcomes that differ, and the change of the peak in units of the conditioning."""
     with np.errstate(invalid="ignore", divide="ignore"):
         change = np.abs(other.peak_rotation - one.peak_rotation) / np.abs(one.peak_rotation)
     ulps = change / (EPS + table["peak_rotation_per_ulp"])
     return {
         "cells": len(table),
-        "other_fates": int(np.sum(one.outcome != other.outcome)),
+        "other_outcomes": int(np.sum(one.outcome != other.outcome)),
         "median_in_ulps": float(np.nanmedian(ulps)),
         "largest_in_ulps": float(np.nanmax(ulps)),
     }

@@ -1,8 +1,8 @@
-"""Settings shared by all tests: the same random examples on every run, one run of the workflow."""
+"""Settings of all tests: the same random examples in every run, one run of the workflow."""
 
 from hypothesis import HealthCheck, settings
 
-# Derandomized: a failure seen once is seen by everybody. No deadline: the first call of a kernel compiles it.
+# Derandomized: a failure can be repeated. No deadline: the first call of a kernel compiles it.
 settings.register_profile(
     "rocking", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
 )

@@ -1,28 +1,37 @@
-"""A flight set up for tests that call the compiled kernels one by one."""
+"""Solver states for tests that call single kernels."""
 
+import subprocess
+import sys
+
+from rocking import precompile
 from rocking._numba.compilation import Record
 from rocking.excitation.pulses import AbstractPulse, get_pulse
 from rocking.solver.arcs.flight import set_angles
 from rocking.solver.kernels.event_loop import init_state, start_flight
 from rocking.solver.state import pulse_state
 
+if precompile.is_missing():
+    # numba crashes if a kernel that was compiled in this process as a part of an entry is also called from Python:
+    # fill the cache in another process, so that entries are loaded and not compiled here
+    subprocess.run([sys.executable, "-m", "rocking.precompile"], check=True)
+
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
-    """The record of a block at rest before the pulse."""
+    """Return the record of a block at rest before the pulse."""
     flight = pulse_state(get_pulse(pulse) if isinstance(pulse, str) else pulse).copy()
     init_state(slenderness, omega, alpha, flight)
     return flight
 
 
 def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
-    """The record of a block that has just been lifted."""
+    """The record of a block at the start of its first flight."""
     flight = cell(pulse, slenderness, omega, alpha)
     assert start_flight(flight)
     return flight
 
 
 def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
-    """The record, at the start of a flight after an impact at `phase`."""
+    """Return the record at the start of a flight after an impact at `phase`."""
     set_angles(flight, phase, flight["cosine0"], flight["sine0"])
     flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
     assert start_flight(flight)

@@ -1,4 +1,4 @@
-"""A small grid for the tests of lookup: its nodes, the cells that boundaries cross, random questions over it."""
+"""A small grid for the tests of lookup: nodes, cells that boundaries cross, random points."""
 
 import numpy as np
 
@@ -9,13 +9,13 @@ GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomsp
 
 
 def crossed(eta, alpha):
-    """Cells that a boundary crosses."""
+    """Return the cells that a boundary crosses."""
     curves = overturning_boundary("sine", restitution=eta, alpha=alpha or None, nodes=101)
     curves["alpha"] = "curve", np.full(curves.sizes["curve"], alpha)
     return crossed_cells(curves, alpha, *GRID.values())
 
 
-def questions(count, seed=5):
+def random_points(count, seed=5):
     rng = np.random.default_rng(seed)
     frequency_ratio = np.exp(rng.uniform(np.log(0.5), np.log(12.0), count))
     return {"slenderness": rng.uniform(0.05, 0.95, count), "frequency_ratio": frequency_ratio}

@@ -1,4 +1,4 @@
-"""The finished products of a real run of the smallest configuration, shared by all tests of a session."""
+"""The products of a real run of the smallest configuration, shared by all tests of a session."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def snakemake(
     project: Path = PROJECT,
     module: str = "snakemake",
 ) -> subprocess.CompletedProcess[str]:
-    """Run the workflow of `project` in `directory` as a user would; stdout and stderr are joined in stdout."""
+    """Run the workflow of `project` in `directory` as a user would; stderr is included in stdout."""
     command: Sequence[str | Path] = (
         sys.executable, "-m", module, "--snakefile", project / "Snakefile", "--directory", directory,
         "--configfile", configuration, "--nocolor", *arguments,
@@ -34,21 +34,21 @@ def snakemake(
 
 
 def reproduce(directory: Path) -> subprocess.CompletedProcess[str]:
-    """What `make reproduce` runs."""
+    """Run what `make reproduce` runs."""
     return snakemake(directory, module="workflow.run")
 
 
 def rules_to_run(output: str) -> set[str]:
-    """Names in the job table of a dry run."""
+    """Return the rule names in the job table of a dry run."""
     table = output.partition("Job stats:")[2].partition("total")[0]
     return set(re.findall(r"^(\w+) +\d+$", table, flags=re.MULTILINE))
 
 
 @pytest.fixture(scope="session")
 def smoke_run(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Path:
-    """Folder in which the workflow ran with smoke.yaml; do not change anything in it.
+    """Folder in which the workflow ran with smoke.yaml; tests must not change it.
 
-    The first worker process of a test run that needs it makes it; the others wait for it.
+    The first worker process of a test run that needs it runs the workflow; the others wait.
     """
     base = tmp_path_factory.getbasetemp()
     if os.environ.get("PYTEST_XDIST_WORKER"):

@@ -1,6 +1,6 @@
-"""What a configuration may say: keys, types and ranges, checked before the first job, each limit at one place.
+"""Validation of the configuration before the first job: keys, types and ranges.
 
-Every refusal is one line that names the key, its value and what is allowed.
+Every error is one line that names the key, its value and what is allowed.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from rocking.excitation.pulses import PULSE_NAMES
 from workflow.scripts.axes import stepped, steps_between
 
 NODES = 200_000_000
-"""Most nodes of the cubes, or of the grid of the boundaries, of one pulse: they are in memory together."""
+"""Largest number of nodes of the cubes, or of the boundary grids, of one pulse, which are in memory together."""
 
 BYTES = 125
-"""Memory of one node of a cube while the cubes of a pulse are made, measured from 0.2 to 8 million nodes."""
+"""Memory per node while the cubes of a pulse are computed [bytes], measured from 0.2 to 8 million nodes."""
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
@@ -41,7 +41,7 @@ DATA_OF_FIGURES = {
 
 
 class ConfigurationError(ValueError):
-    """A configuration that is refused; the message is one line."""
+    """An invalid configuration; the message is one line."""
 
 
 class Section(BaseModel):
@@ -52,7 +52,7 @@ class Section(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _keys(cls, given: Any) -> Any:
-        """Refuse other keys than the fields."""
+        """Raise an error unless the keys are the fields."""
         keys, fields = set(given if isinstance(given, dict) else ()), set(cls.model_fields)
         if keys != fields:
             found = [f"unknown key {key}" for key in sorted(map(str, keys - fields))]
@@ -67,7 +67,7 @@ def section(**fields: Any) -> Any:
 
 
 def leaf(allowed: str, accepts: Callable[[Any], bool]) -> Any:
-    """A value that `accepts` is true of; `allowed` says in words which."""
+    """A value for which `accepts` is true; `allowed` is the description of such values."""
 
     def check(value: Any) -> Any:
         if not accepts(value):
@@ -104,7 +104,7 @@ def several(item: Any, least: int = 1, most: int = 200, *, ascending: bool = Fal
     return Annotated[list[item], AfterValidator(check)]
 
 
-# Fields of a section come from a table, so their types are known to pydantic and not to a type checker.
+# Sections are created from tables: their types are known to pydantic, but not to a type checker.
 def _rising(limits: Any) -> Any:
     if not limits.low < limits.high:
         raise ValueError(f"low = {limits.low:g}, high = {limits.high:g}; allowed: low < high")
@@ -237,12 +237,12 @@ CONFIGURATION = section(
 
 
 def check(config: Mapping[str, Any]) -> None:
-    """Refuse a configuration that no run could finish.
+    """Raise an error for a configuration that no run could finish.
 
     Raises
     ------
     ConfigurationError
-        With one line for the first wrong value: key, value and what is allowed.
+        One line for the first invalid value: key, value and what is allowed.
     """
     try:
         CONFIGURATION.model_validate(config)
@@ -256,19 +256,19 @@ def check(config: Mapping[str, Any]) -> None:
 
 
 def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:
-    """All values of a figure, the paper's and ours."""
+    """All values of a figure, those of the paper and those chosen here."""
     values = config["figures"][figure]
     return {**values.get("paper", {}), **values.get("ours", {})}
 
 
 def restitutions(config: Mapping[str, Any], figure: str) -> list[float]:
-    """Its restitutions as a list, also where it has only one."""
+    """The restitutions of a figure as a list, also if there is only one."""
     eta = chosen(config, figure)["restitution"]
     return eta if isinstance(eta, list) else [eta]
 
 
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
-    """Grids that do not fit into memory, found without making them."""
+    """Grids that do not fit into memory, from their sizes."""
     grid, boundary, etas = config["grid"], config["boundary"], len(config["restitution"])
     rows, columns = 1 + sum(steps_between(**grid["slenderness"])), grid["frequency_ratio"]["points"]
     limit = f"allowed: {NODES:,}"
@@ -284,7 +284,7 @@ def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
-    """Figures of data that nobody makes."""
+    """Figures that need data which the configuration does not compute."""
     grid, columns = config["grid"], config["grid"]["frequency_ratio"]
     rows = stepped(**grid["slenderness"])
     for figure, pulses in DATA_OF_FIGURES.items():

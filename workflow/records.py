@@ -1,38 +1,38 @@
-"""Digests of the products, noted by the job that made them: a product that is not as recorded is made again.
+"""Digests of the products, recorded by the job that made them: a product that differs from its record is made again.
 
-The record of a job is one of its outputs, so a job without its record is run again like one without any other output.
+The record of a job is one of its outputs: a job without its record is run again, as without any other output.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
+
+from rocking.datasets.checksum import sha256_of_file
 
 FOLDER = Path("results/.records")
 
 
 def digest(path: Path) -> dict[str, Any]:
     """Size [bytes] and sha256 of a file."""
-    with path.open("rb") as file:
-        return {"sha256": hashlib.file_digest(file, "sha256").hexdigest(), "size": path.stat().st_size}
+    return {"sha256": sha256_of_file(path), "size": path.stat().st_size}
 
 
 def write_record(record: Path, products: Iterable[Path]) -> None:
-    """Note the digests of a job's products."""
+    """Write the digests of the products of a job."""
     content = {path.as_posix(): digest(path) for path in products}
     record.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 def read_record(record: Path) -> dict[str, Any]:
-    """What `write_record` noted.
+    """The digests that `write_record` wrote.
 
     Raises
     ------
     ValueError
-        If the file is no record.
+        If the file is not a record.
     """
     content = json.loads(record.read_bytes())
     if not isinstance(content, dict) or not content:
@@ -41,7 +41,7 @@ def read_record(record: Path) -> dict[str, Any]:
 
 
 def differences(folder: Path, recorded: Mapping[str, Any]) -> Iterator[str]:
-    """What is missing in a folder, or holds other bytes than recorded, in words; nothing if all is well."""
+    """Descriptions of the files that are missing in a folder or differ from their recorded digests."""
     for name, expected in recorded.items():
         path = folder / name
         try:
@@ -65,7 +65,7 @@ def false_records(folder: Path) -> Iterator[tuple[Path, list[str]]]:
 
 
 def forget_false_records(folder: Path) -> Iterator[str]:
-    """Delete these records, so that Snakemake runs their jobs again; tell why."""
+    """Delete these records, so that Snakemake runs their jobs again; yields the reasons."""
     for record, found in false_records(folder):
         record.unlink()
         yield from found

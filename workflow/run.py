@@ -1,24 +1,27 @@
-"""Makes what is missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
+"""Makes products that are missing, out of date or not as recorded: `python -m workflow.run [options of Snakemake]`.
 
-The command is safe to repeat after any interruption, `kill -9` included, and refuses to work beside another live run.
+The command may be repeated after any interruption, including `kill -9`. It refuses to start while another run is
+active.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import shutil
 import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from snakemake.cli import main as snakemake
 
 from workflow.records import forget_false_records
-from workflow.run_lock import RUN_ID, RunningError, acquire, end_with
+from workflow.run_lock import FOLDER, RUN_ID, RunningError, acquire, end_with
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Hold the folder, forget what is recorded wrongly, and hand over to Snakemake."""
+    """Lock the folder, delete records that do not match their products, and call Snakemake."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--directory", "-d", type=Path, default=Path())
     parser.add_argument("--configfile", "--configfiles", type=Path, nargs="+", default=[])
@@ -32,9 +35,22 @@ def main(arguments: Sequence[str]) -> None:
         acquire(options.directory)
     except RunningError as error:
         sys.exit(str(error))
+    use_temporary_folder(options.directory)
     for difference in forget_false_records(options.directory):
         print(f"{difference}; it is made again", flush=True)
     snakemake(list(arguments))
+
+
+def use_temporary_folder(directory: Path) -> None:
+    """Make this process and its jobs write temporary files to `.snakemake/tmp` in the directory of the run.
+
+    What an earlier run left there is deleted first, so that a killed run leaves no temporary file for good. The caller
+    must hold the lock of the directory.
+    """
+    folder = (directory / FOLDER / "tmp").resolve()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(exist_ok=True)
+    os.environ["TMPDIR"] = tempfile.tempdir = str(folder)
 
 
 if __name__ == "__main__":

@@ -13,13 +13,13 @@ from workflow.records import FOLDER, differences, false_records, read_record
 MANIFEST = "results/manifest.json"
 
 LISTS = {MANIFEST: "manifest.json", "results/checks.txt": "check_results.json"}
-"""What the manifest cannot list, and the record of each."""
+"""Products that the manifest cannot list, and the record of each."""
 
 
 def problems(folder: Path) -> Iterator[str]:
-    """What differs from the manifest in `folder`, which holds `results`, in words.
+    """Descriptions of the differences from the manifest in `folder`, which contains `results`.
 
-    Where the manifest itself is not as recorded, the products are compared with the records that it was made from.
+    If the manifest itself differs from its record, the products are compared with the records from which it was made.
     """
     flaws = {name: [*_flaws_of_list(folder, name)] for name in LISTS}
     yield from chain.from_iterable(flaws.values())
@@ -41,7 +41,7 @@ def _flaws_of_list(folder: Path, name: str) -> Iterator[str]:
 
 
 def main(folder: Path) -> None:
-    """Print what differs; exit status 1 if anything does."""
+    """Print the differences; exit status 1 if there are any."""
     found = [*problems(folder)]
     if found:
         advice = "`make reproduce`, with the CONFIG they were made with, makes them again"

@@ -1,1 +1,1 @@
-"""What the benchmarks draw."""
+"""Figures of the benchmarks."""

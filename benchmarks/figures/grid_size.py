@@ -1,4 +1,4 @@
-"""Errors of interpolation over the size of the grid, bytes over error, and what a cube may answer."""
+"""Interpolation errors over the size of the grid, file size over error, and the share of points a cube can answer."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters
 
-SCHEMES = {"linear": ("linear", VERMILION), "ours": ("ours", BLUE)}
-SHARES = {"0.5": ("-", "half"), "0.9": ("--", "90 %")}
+SCHEMES = {"linear": ("linear", VERMILION), "package": ("rocking", BLUE)}
+SHARES = {"0.5": ("-", "50 %"), "0.9": ("--", "90 %")}
 BOUNDS = {"1e-04": ("$10^{-4}$", BLACK), "1e-06": ("$10^{-6}$", GREY)}
 SLENDER: dict[str, Any] = {"marker": "o", "markersize": 3.5}
 RIGID: dict[str, Any] = {"marker": "s", "markersize": 6, "markerfacecolor": "none", "linestyle": "", "linewidth": 0.7}
 
 
 def draw(record: dict[str, Any], paths: list[Path]) -> None:
-    """Write the figure of a record of `benchmarks.grid_size`; the grid of paper.yaml is marked."""
+    """Write the figure of a record of `benchmarks.accuracy.grid_size`; the grid of paper.yaml is marked."""
     grids = record["grids"]
     nodes = np.array([row["nodes"][0] * row["nodes"][1] for row in grids])
     size = np.array([row["bytes"] for row in grids])
@@ -28,14 +28,14 @@ def draw(record: dict[str, Any], paths: list[Path]) -> None:
     for scheme, (name, color) in SCHEMES.items():
         for share, (line, cells) in SHARES.items():
             kept = [one[scheme]["error"][share] for one in slender]
-            look = {"color": color, "linestyle": line, **SLENDER}
-            errors.plot(nodes, kept, label=f"{name}, {cells} keep it", **look)
-            bytes_.plot(kept, size, **look)
+            style = {"color": color, "linestyle": line, **SLENDER}
+            errors.plot(nodes, kept, label=f"{name}, {cells} of points", **style)
+            bytes_.plot(kept, size, **style)
             kept = [one[scheme]["error"][share] for one in rigid]
             errors.plot(nodes, kept, color=color, **RIGID)
             bytes_.plot(kept, size, color=color, **RIGID)
     for limit, (name, color) in BOUNDS.items():
-        share_of = [[100.0 * one["ours"]["within"][limit] for one in found] for found in (slender, rigid)]
+        share_of = [[100.0 * one["package"]["within"][limit] for one in found] for found in (slender, rigid)]
         shares.plot(nodes, share_of[0], color=color, label=f"within {name}, slender", **SLENDER)
         shares.plot(nodes, share_of[1], color=color, label=f"within {name}, 20°", **RIGID)
     if default is not None:
@@ -47,7 +47,7 @@ def draw(record: dict[str, Any], paths: list[Path]) -> None:
     errors.set(xscale="log", yscale="log", xlabel="nodes of a layer", ylabel=error)
     bytes_.set(xscale="log", yscale="log", xlabel=error, ylabel="bytes of a layer in its file [B]")
     bytes_.invert_xaxis()
-    shares.set(xscale="log", xlabel="nodes of a layer", ylabel="questions the cube may answer [%]", ylim=(0.0, 100.0))
+    shares.set(xscale="log", xlabel="nodes of a layer", ylabel="points that the cube answers [%]", ylim=(0.0, 100.0))
     errors.legend(loc="lower left")
     errors.set_ylim(bottom=1e-13)
     shares.legend(loc="lower right")

@@ -17,7 +17,7 @@ MARKERS = "osD^"
 
 
 def draw(record: dict[str, Any], paths: list[Path]) -> None:
-    """Write the figure of a record of `benchmarks.growth`: medians, bars from the fastest to the slowest."""
+    """Write the figure of a record of `benchmarks.cost.growth`: medians, bars from the fastest to the slowest."""
     figure, (total, each, memory) = plt.subplots(1, 3, figsize=(WIDTH, 0.45 * WIDTH))
     threads = sorted({one["threads"] for one in record["sizes"]})
     for kind, (name, color) in KINDS.items():
@@ -27,13 +27,13 @@ def draw(record: dict[str, Any], paths: list[Path]) -> None:
             times = [spread(one["seconds"]) for one in rows]
             middle, fast, slow = (np.array([time[key] for time in times]) for key in ("median", "smallest", "largest"))
             label = f"{name}, {count} thread{'s' if count > 1 else ''}"
-            look: dict[str, Any] = {"color": color, "linestyle": line, "marker": marker, "markersize": 3.5}
+            style: dict[str, Any] = {"color": color, "linestyle": line, "marker": marker, "markersize": 3.5}
             bars = np.array([middle - fast, slow - middle])
-            total.errorbar(cells, middle, bars, capsize=1.5, elinewidth=0.7, **look)
+            total.errorbar(cells, middle, bars, capsize=1.5, elinewidth=0.7, **style)
             each.errorbar(
-                cells, 1e6 * middle / cells, 1e6 * bars / cells, label=label, capsize=1.5, elinewidth=0.7, **look
+                cells, 1e6 * middle / cells, 1e6 * bars / cells, label=label, capsize=1.5, elinewidth=0.7, **style
             )
-            memory.plot(cells, [one["peak_bytes"] / 1e6 for one in rows], **look)
+            memory.plot(cells, [one["peak_bytes"] / 1e6 for one in rows], **style)
     total.set(xscale="log", yscale="log", xlabel="cells", ylabel="wall-clock time [s]")
     each.set(xscale="log", yscale="log", xlabel="cells", ylabel="wall-clock time of a cell [µs]")
     each.set_ylim(0.1, 20.0)

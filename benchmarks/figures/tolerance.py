@@ -1,4 +1,4 @@
-"""Errors over the tolerance asked for: every cell a dot, quantiles as lines."""
+"""Errors over the requested tolerance: one dot per cell, quantiles as lines."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ from numpy.typing import NDArray
 
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 
-SMALLEST = 1e-17
+MIN_ERROR = 1e-17
 """Errors of 0 are drawn here."""
 
-WIDTH_OF_DOTS = 0.6
+DOT_SPREAD = 0.6
 """Share of the distance between two tolerances over which the dots of one are spread."""
 
 
 def draw(tolerances: NDArray[np.float64], errors: NDArray[np.float64], path: Path) -> None:
     """Write the figure of relative errors (tolerances, cells), nan where a block overturns."""
     figure, ax = plt.subplots(figsize=(WIDTH, 0.6 * WIDTH))
-    drawn = np.maximum(errors, SMALLEST)
-    apart = np.linspace(-0.5, 0.5, errors.shape[1]) * WIDTH_OF_DOTS
+    drawn = np.maximum(errors, MIN_ERROR)
+    offsets = np.linspace(-0.5, 0.5, errors.shape[1]) * DOT_SPREAD
     for tolerance, row in zip(tolerances, drawn, strict=True):
-        ax.plot(tolerance * 10.0**apart, row, ".", color=GREY, markersize=1.0, alpha=0.5, rasterized=True)
+        ax.plot(tolerance * 10.0**offsets, row, ".", color=GREY, markersize=1.0, alpha=0.5, rasterized=True)
     for share, label in ((0.5, "median"), (0.99, "99 %"), (1.0, "largest")):
         style = {0.5: ":", 0.99: "--", 1.0: "-"}[share]
         ax.plot(tolerances, np.nanquantile(drawn, share, axis=1), style, color=BLUE, label=f"{label} of the cells")
     ends = np.array([tolerances.min() / 3.0, tolerances.max() * 3.0])
     ax.plot(ends, ends, color=BLACK, label="error = tolerance")
     ax.plot(ends, 10.0 * ends, color=VERMILION, label="error = 10 tolerance")
-    ax.set(xscale="log", yscale="log", xlim=ends[::-1], ylim=(SMALLEST / 3.0, 1e-2))
-    ax.set(xlabel="tolerance asked for [-]", ylabel="relative error of the peak [-]")
+    ax.set(xscale="log", yscale="log", xlim=ends[::-1], ylim=(MIN_ERROR / 3.0, 1e-2))
+    ax.set(xlabel="requested tolerance [-]", ylabel="relative error of the peak [-]")
     ax.legend(loc="upper right")
     figure.savefig(path)
     plt.close(figure)

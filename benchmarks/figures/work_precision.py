@@ -16,7 +16,7 @@ from benchmarks.measure import spread
 from workflow.figures.style import BLACK, BLUE, VERMILION, WIDTH, panel_letters
 
 ORANGE, SKY, GREEN, PURPLE = "#E69F00", "#56B4E9", "#009E73", "#CC79A7"
-LOOKS: dict[str, dict[str, Any]] = {
+STYLES: dict[str, dict[str, Any]] = {
     "rocking": {"color": BLACK, "marker": "*", "markersize": 7, "linewidth": 1.6},
     "heyoka": {"color": BLUE, "marker": "o"},
     "numbalsoda DOP853": {"color": GREEN, "marker": "s"},
@@ -28,21 +28,21 @@ LOOKS: dict[str, dict[str, Any]] = {
     "scipy LSODA": {"color": PURPLE, "marker": "D", "linestyle": "--"},
     "scipy Radau": {"color": SKY, "marker": "p"},
 }
-MEASURES = {"error_99": "relative error that 99 % of the cells keep [-]", "median_error": "median relative error [-]"}
+MEASURES = {"error_99": "99 % quantile of the relative error [-]", "median_error": "median relative error [-]"}
 
 
 def panel(ax: Axes, record: dict[str, Any], measure: str) -> None:
-    """One diagram: median time over error, the bar from the fastest to the slowest round; hollow: a wrong fate."""
+    """Draw one diagram: median time over error, bars over the rounds; hollow markers have wrong outcomes."""
     for name, rows in record["methods"].items():
-        look: dict[str, Any] = {"markersize": 4, **LOOKS[name]}
+        style: dict[str, Any] = {"markersize": 4, **STYLES[name]}
         error = np.array([row[measure] for row in rows])
         times = [spread(row["us"]) for row in rows]
         middle = np.array([time["median"] for time in times])
         bars = [middle - [time["smallest"] for time in times], [time["largest"] for time in times] - middle]
-        ax.errorbar(error, middle, bars, label=name, capsize=1.5, elinewidth=0.7, **look)
-        wrong = np.array([row["wrong_fates"] > 0 for row in rows])
+        ax.errorbar(error, middle, bars, label=name, capsize=1.5, elinewidth=0.7, **style)
+        wrong = np.array([row["wrong_outcomes"] > 0 for row in rows])
         hollow = {"linestyle": "", "markerfacecolor": "white", "zorder": 5}
-        ax.plot(error[wrong], middle[wrong], **{**look, **hollow})
+        ax.plot(error[wrong], middle[wrong], **{**style, **hollow})
     kind, pulse = record["diagram"].split("-")
     names = {"slender": "slender block", "rigid": "rigid block, 20°", "sine": "one sine", "ricker": "Ricker wavelet"}
     ax.set_title(f"{names[kind]}, {names[pulse]}")
@@ -51,7 +51,7 @@ def panel(ax: Axes, record: dict[str, Any], measure: str) -> None:
 
 
 def draw(records: list[dict[str, Any]], measure: str, paths: list[Path]) -> None:
-    """Four panels, the slender ones above."""
+    """Draw four panels, slender blocks in the upper row."""
     figure, axes = plt.subplots(2, 2, figsize=(WIDTH, 1.05 * WIDTH), sharex=True, sharey=True)
     for ax, record in zip(axes.flat, records, strict=True):
         panel(ax, record, measure)
@@ -70,7 +70,7 @@ def draw(records: list[dict[str, Any]], measure: str, paths: list[Path]) -> None
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="of the measurements")
+    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="folder of the measurements")
     parser.add_argument("--measure", choices=MEASURES, default="error_99")
     options = parser.parse_args()
     records = [json.loads((options.folder / f"work-precision-{name}.json").read_text()) for name in DIAGRAMS]

@@ -1,7 +1,7 @@
-"""Stops work that takes too long: a flag that any thread sets, read by searches and by the loops of the kernels.
+"""Cancellation: a flag that any thread can set, read by searches and by the loops of the kernels.
 
-Functions that may take long have an argument `stop`. They raise `StoppedError` soon after the flag was set, hundredths
-of a second as a rule, and return nothing: what a kernel that was stopped has written is not complete.
+Functions that may run long have an argument `stop`. They raise `StoppedError` within hundredths of a second, as a rule,
+after the flag was set. The arrays that a stopped kernel has written are incomplete.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from rocking.errors import StoppedError
 T = TypeVar("T")
 
 NEVER_STOPPED = np.zeros(1, np.uint8)
-"""For kernels that nobody stops."""
+"""Flag of kernels that are not cancelled."""
 
 
 class StopFlag:
-    """Asks for an end of the work that was given this flag; once set it stays set.
+    """Requests the end of the work that holds this flag. Once set it remains set.
 
     Attributes
     ----------
     array : uint8 array (1,)
-        What the kernels read: 0, or 1 when set.
+        Read by the kernels: 0, or 1 when set.
     """
 
     def __init__(self) -> None:
@@ -39,17 +39,17 @@ class StopFlag:
         self._children: list[StopFlag] = []
 
     def set(self) -> None:
-        """Ask the work, and its parts, to stop; from any thread."""
+        """Request the end of the work and of its children; from any thread."""
         self.array[0] = 1
         for part in self._children.copy():
             part.set()
 
     def is_set(self) -> bool:
-        """Whether the work shall stop."""
+        """Whether the flag is set."""
         return bool(self.array[0])
 
     def check(self) -> None:
-        """Go on, or not.
+        """Raise if the flag is set.
 
         Raises
         ------
@@ -57,11 +57,11 @@ class StopFlag:
             If the flag is set.
         """
         if self.array[0]:
-            raise StoppedError("the work was stopped before its end")
+            raise StoppedError("the work was cancelled")
 
     @contextmanager
     def child(self) -> Iterator[StopFlag]:
-        """A flag for a part of the work: it is set with this one, or by itself."""
+        """A flag for a part of the work; set together with this one, or separately."""
         part = StopFlag()
         self._children.append(part)
         try:
@@ -73,12 +73,12 @@ class StopFlag:
 
 
 def run_with_timeout(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T | None:
-    """Do a part of the work of this thread within some time [s]; None if that was not enough.
+    """Run a part of the work of this thread with a time limit [s]; None if the limit was exceeded.
 
     Raises
     ------
     StoppedError
-        If `stop`, the flag of the whole, was set meanwhile.
+        If `stop`, the flag of the whole work, was set.
     """
     with stop.child() as part:
         timer = threading.Timer(seconds, part.set)
@@ -94,13 +94,13 @@ def run_with_timeout(work: Callable[[StopFlag], T], seconds: float, stop: StopFl
 
 
 def check_stop(stop: StopFlag | None) -> None:
-    """Raise `StoppedError` if there is a flag and it is set."""
+    """Raise `StoppedError` if a flag is given and set."""
     if stop is not None:
         stop.check()
 
 
 def flag_array(stop: StopFlag | None) -> NDArray[np.uint8]:
-    """What kernels read."""
+    """The array that kernels read."""
     return NEVER_STOPPED if stop is None else stop.array
 
 

@@ -1,17 +1,17 @@
-"""Compiles the numerical kernels with numba and keeps the machine code on disk, so that only the very first call pays.
+"""Compilation of the numerical kernels with numba, with a cache of the machine code on disk.
 
-`kernel` marks a function that other kernels call; `entry` marks one that is called from Python. Only entries are kept
-on disk, each as one module that holds all kernels it calls, and every entry has one signature.
+`kernel` marks a function that other kernels call; `entry` marks one that is called from Python. Only entries are
+cached, each as one module with all the kernels that it calls, and each entry has one signature.
 
-Why one module: numba compiles each kernel as a library of its own and links a copy of it, as a weak symbol, into each
-of its callers, where it is optimised once more. In a process that compiles, the loader prefers the strong symbol of the
-separate library; in a process that loads the caller from the cache there is only the copy. Both are correct, but the
-second optimisation may fuse other multiplications and additions, so that answers differed in the last bits between the
-two processes. Here the copies are made internal to the module of the entry: every process runs the same instructions.
+Reason for the single module: numba compiles each kernel as a separate library and links a copy of it, as a weak symbol,
+into each caller, where it is optimised again. A process that compiles uses the strong symbol of the separate library; a
+process that loads the caller from the cache has only the copy. Both are correct, but the second optimisation may fuse
+other multiplications and additions, so that results differed in the last bits between the two processes. Here the
+copies have internal linkage in the module of the entry, and every process runs the same instructions.
 
-Numba's own cache watches the file of the function that is called, not the files of the kernels that it calls. Here
-the cache folder is named after a digest of the kernels' sources and of all that these import from the package, so that
-an edit of any of them compiles anew.
+The cache of numba tracks the file of the called function, not the files of the kernels that it calls. Here the name of
+the cache folder contains a digest of the sources of the kernels and of the modules of the package that they import, so
+that a change in any of them leads to recompilation.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 Record = Any
-"""A numpy record of named numbers and short arrays, handed to a kernel by address."""
+"""A numpy record of named numbers and short arrays, passed to a kernel by address."""
 
 FloatArray = NDArray[np.float64]
 """A float64 array; the kernels' docstrings give shapes."""
 
 SimdVector = Any
-"""One number for each of several cells, see `lanes`."""
+"""One number for each SIMD lane, see `rocking._numba.simd`."""
 
 Series = NDArray[np.float64]
-"""Coefficients of power series in tau, one column for each cell: shape (degree + 1, lanes)."""
+"""Coefficients of power series in tau, one column for each SIMD lane: shape (degree + 1, LANES)."""
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -56,7 +56,7 @@ _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {
 
 
 class _SingleModuleLibrary(JITCodeLibrary):
-    """A library in which the copies of other kernels are internal."""
+    """A library in which the copies of other kernels have internal linkage."""
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
@@ -67,7 +67,7 @@ class _SingleModuleLibrary(JITCodeLibrary):
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _UseSingleModuleLibrary(LoweringPass):
-    """Has the code generated into a `_SingleModuleLibrary`."""
+    """Selects `_SingleModuleLibrary` as the target of code generation."""
 
     _name = "rocking_one_module"
 
@@ -81,7 +81,7 @@ class _UseSingleModuleLibrary(LoweringPass):
 
 
 class _EntryCompiler(CompilerBase):
-    """Numba's compiler with that pass before the generation of code."""
+    """The compiler of numba with `_UseSingleModuleLibrary` before lowering."""
 
     def define_pipelines(self) -> list[Any]:
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
@@ -96,7 +96,7 @@ class _EntryCompiler(CompilerBase):
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile `function` as a part of the entries that call it; called from Python it is compiled anew each time."""
+    """Compile `function` for the entries that call it. Calls from Python compile it in each process."""
     compiled: Callable[..., Any] = numba.njit(**_OPTIONS)(function)
     return compiled
 
@@ -125,16 +125,16 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def contiguous_array(array: NDArray[Any]) -> NDArray[Any]:
-    """The array, or a copy, contiguous, aligned and writable: the one kind that entries take."""
-    # to ask a view that numpy has broadcast whether it is writable raises a warning
+    """The array, or a copy of it, contiguous, aligned and writable: the only layout that entries accept."""
+    # numpy warns when the flag `writeable` of a broadcast view is read
     return array if array.flags.owndata and array.flags.carray else np.array(array, order="C")
 
 
 @lru_cache(maxsize=1)
 def cache_folder() -> str | None:
-    """Folder of the machine code: below NUMBA_CACHE_DIR if that is set, else beside the package, else of the user.
+    """Folder of the compiled kernels: below NUMBA_CACHE_DIR if set, else beside the package, else in the user cache.
 
-    None, with a warning, if none of them can be written to.
+    None, with a warning, if none of them is writable.
     """
     name = f"kernels-{_digest(_PACKAGE)}"
     given = os.environ.get("NUMBA_CACHE_DIR")
@@ -143,8 +143,8 @@ def cache_folder() -> str | None:
         if _is_writable(parent / name):
             return str(parent / name)
     warnings.warn(
-        "the compiled kernels of rocking cannot be kept, as no cache folder can be written to: every process compiles "
-        "them, about half a minute; set NUMBA_CACHE_DIR to a folder that can be written to",
+        "no writable cache folder for the compiled kernels of rocking: each process compiles them in half a minute; "
+        "set NUMBA_CACHE_DIR to a writable folder",
         RuntimeWarning,
         stacklevel=2,
     )
@@ -161,7 +161,7 @@ def _is_writable(folder: Path) -> bool:
 
 
 def _digest(package: Path) -> str:
-    """Digest of what machine code depends on: processor, Python, numba; files with kernels and what these import."""
+    """Digest of what compiled code depends on: processor, Python, numba, and the kernel files with their imports."""
     files = {path.relative_to(package): path.read_bytes() for path in package.rglob("*.py")}
     compiled = re.compile(rb"^@(kernel|jitable|entry)$|numba\.extending", re.M)
     waiting = [path for path, text in files.items() if compiled.search(text)]

@@ -1,7 +1,7 @@
-"""Several cells side by side: a value of `LANES` doubles, one per cell, on which the vector units work at once.
+"""A SIMD vector type for kernels: `LANES` doubles, one per cell.
 
-Kernels write `load(series, n) * x + y` and so on as if for one cell. numba has no such type of its own, and its
-automatic vectorisation does not see through the series of a Taylor step, so the type is declared here.
+Kernels write expressions such as `load(series, n) * x + y` as for one cell. numba has no such type, and automatic
+vectorisation does not recognise the series of a Taylor step.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
 LANES = 8
-"""Cells side by side: 512 bits, which processors with narrower units take in two or four parts."""
+"""Doubles of a vector: 512 bits. Processors with narrower units process it in two or four parts."""
 
 VECTOR_BYTES = 8 * LANES
-"""Size of a value and the alignment of rows in memory: a row that straddles two cache lines costs twice."""
+"""Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
 _LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _LLVM_BITS = ir.VectorType(ir.IntType(64), LANES)
 
 
 class _VectorType(types.Type):
-    """numba's name for the value."""
+    """The numba type of a vector."""
 
     def __init__(self) -> None:
         super().__init__("Lanes")
@@ -72,7 +72,7 @@ def _approx_exp2(builder: Any, x: Any) -> Any:
 
 
 def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
-    """What kernels call and `generate` compiles; a parameter None is an array, which it gets as its address."""
+    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address."""
 
     def typed(*given: Any) -> Any:
         kinds = [kind or one for kind, one in zip(parameters, given, strict=True)]
@@ -87,7 +87,7 @@ def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) ->
 
         return result(*kinds), lower
 
-    # numba wants to see how many parameters there are
+    # numba inspects the number of parameters
     forms: dict[int, Callable[..., Any]] = {
         1: lambda _, x: typed(x),
         2: lambda _, x, y: typed(x, y),
@@ -99,19 +99,19 @@ def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) ->
 load = _instruction(
     lambda builder, *place: builder.load(_row_address(builder, *place), align=8), _VECTOR_TYPE, None, types.intp
 )
-"""load(array, row): a row of an array (rows, LANES), or the only one of an array (LANES,) as row 0."""
+"""load(array, row): a row of an array (rows, LANES); row 0 of an array (LANES,)."""
 
 store = _instruction(
     lambda builder, array, row, x: builder.store(x, _row_address(builder, array, row), align=8),
     *(types.void, None, types.intp, _VECTOR_TYPE),
 )
-"""store(array, row, x): set that row."""
+"""store(array, row, x): set a row."""
 
 splat = _instruction(_splat, _VECTOR_TYPE, types.float64)
-"""everywhere(number): the same number in every lane."""
+"""splat(number): the number in every lane."""
 
 absolute = _instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
-"""|x|."""
+"""absolute(x), lane by lane."""
 
 maximum = _instruction(
     lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
@@ -119,7 +119,7 @@ maximum = _instruction(
     _VECTOR_TYPE,
     _VECTOR_TYPE,
 )
-"""The larger of two."""
+"""maximum(x, y), lane by lane."""
 
 minimum = _instruction(
     lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y),
@@ -127,17 +127,17 @@ minimum = _instruction(
     _VECTOR_TYPE,
     _VECTOR_TYPE,
 )
-"""The smaller of two."""
+"""minimum(x, y), lane by lane."""
 
 approx_log2 = _instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
-"""log2 of positive numbers, at most 0.09 too small: the bits of a double read as a whole number. -1023 for 0."""
+"""log2 of positive numbers from the bits of the doubles read as integers: at most 0.09 too small; -1023 for 0."""
 
 approx_exp2 = _instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
 def _arithmetic(operation: Any, instruction: str) -> None:
-    """Let `operation` take two values, or a value and a number."""
+    """Define `operation` for two vectors, or a vector and a number."""
 
     @infer_global(operation)
     class Typing(AbstractTemplate):

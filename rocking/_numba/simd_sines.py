@@ -1,8 +1,8 @@
-"""Sine and cosine of `LANES` angles at once.
+"""Sine and cosine of a SIMD vector of angles.
 
-The C library takes one angle at a time, and four of them would cost as much as the rest of a Taylor step together.
-Reduction to [-pi/4, pi/4] in two parts, then the polynomials of fdlibm (Sun Microsystems 1993), good to an ulp for
-angles up to about 1e8.
+The functions of the C library take one angle, and four calls cost as much as the rest of a Taylor step. The angle is
+reduced to [-pi/4, pi/4] in two parts (Cody and Waite), followed by the polynomials of fdlibm (Sun Microsystems 1993).
+The error is about one ulp for angles up to 1e8.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from typing import Any
 from rocking._numba.compilation import SimdVector, kernel
 
 ROUNDING_CONSTANT = 6755399441055744.0
-"""1.5 * 2**52: adding and subtracting it rounds to the nearest whole number."""
+"""1.5 * 2**52 [-]: adding and subtracting it rounds to the nearest integer."""
 
 HALF_PI, HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17
-"""pi/2 as a double, and what that leaves out."""
+"""pi/2 as the sum of two doubles."""
 
 
 @kernel
 def round_to_nearest(x: SimdVector) -> Any:
-    """The nearest whole number."""
+    """The nearest integer, lane by lane."""
     return (x + ROUNDING_CONSTANT) - ROUNDING_CONSTANT
 
 
 @kernel
 def sine_and_cosine(angle: SimdVector) -> Any:
-    """Both of them."""
+    """Sine and cosine of angles [rad]."""
     quarters = round_to_nearest(angle * (1.0 / HALF_PI))
     r = (angle - quarters * HALF_PI) - quarters * HALF_PI_LOW
     x = r * r
@@ -48,7 +48,7 @@ def sine_and_cosine(angle: SimdVector) -> Any:
     )  # fmt: skip
     whole = 1.0 - 0.5 * x
     cosine = whole + (((1.0 - whole) - 0.5 * x) + tail)
-    # quarters = 2 halves + odd: an odd quarter swaps the two, an odd half turns both
+    # quarters = 2 halves + odd: an odd quarter exchanges sine and cosine, an odd half changes both signs
     halves = round_to_nearest(quarters * 0.5 - 0.25)
     odd = quarters - 2.0 * halves
     turned = halves - 2.0 * round_to_nearest(halves * 0.5 - 0.25)

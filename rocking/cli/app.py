@@ -1,6 +1,6 @@
-"""The `rocking` command: questions in groups or in units, answers as text, JSON or CSV, and the service.
+"""The `rocking` command: parameters as groups or with units, output as text, JSON or CSV, and the service.
 
-Only signatures stand here. The work is imported inside the commands, so that `rocking --help` does not wait for the
+This module holds the signatures only. The commands import what they need, so that `rocking --help` does not load the
 solver, the data sets and the unit registry.
 """
 
@@ -41,8 +41,8 @@ PeakAcceleration = Annotated[str | None, typer.Option(help="a_g, such as '4 m/s^
 PulsePeriod = Annotated[str | None, typer.Option(help="T_p, such as 0.5s.", rich_help_panel=_UNITS)]
 FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
 FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
-Json = Annotated[bool, typer.Option("--json", help="Answer as JSON.")]
-Csv = Annotated[bool, typer.Option("--csv", help="Answer as CSV.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Csv = Annotated[bool, typer.Option("--csv", help="Print CSV.")]
 
 
 @app.command()
@@ -59,15 +59,15 @@ def response(
     json: Json = False,
     csv: Csv = False,
 ) -> None:
-    """Fate and peak rotation of one block, by the solver."""
+    """Outcome and peak rotation of one block, by the solver."""
     from rocking.cli import arguments, output
 
     with arguments.option_errors():
-        question = arguments.read_params(
+        params = arguments.read_params(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        output.response(question, output.output_format(json=json, csv=csv))
+        output.response(params, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -93,11 +93,11 @@ def history(
     from rocking.cli import arguments, output
 
     with arguments.option_errors():
-        question = arguments.read_params(
+        params = arguments.read_params(
             pulse, restitution, slenderness, frequency_ratio, alpha,
             half_width, half_height, peak_acceleration, pulse_period,
         )  # fmt: skip
-        output.history(question, duration, samples, contact, output.output_format(json=json, csv=csv))
+        output.history(params, duration, samples, contact, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -117,8 +117,8 @@ def spectrum(
 
     with arguments.option_errors():
         window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
-        question = arguments.read_params(pulse, str(restitution), slenderness, window[0], alpha)
-        output.spectrum(question, window, points, output.output_format(json=json, csv=csv))
+        params = arguments.read_params(pulse, str(restitution), slenderness, window[0], alpha)
+        output.spectrum(params, window, points, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -131,13 +131,13 @@ def boundary(
     json: Json = False,
     csv: Csv = False,
 ) -> None:
-    """The curves that separate standing from falling, traced."""
+    """Overturning boundary curves, traced with the solver."""
     from rocking.cli import arguments, output
 
     with arguments.option_errors():
         window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
-        question = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
-        output.boundary(question, window, output.output_format(json=json, csv=csv))
+        params = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
+        output.boundary(params, window, output.output_format(json=json, csv=csv))
 
 
 @app.command()
@@ -149,7 +149,7 @@ def serve(
         typer.Option(help="Folder that the workflow filled; ROCKING_RESULTS, or results.", show_default=False),
     ] = None,
 ) -> None:
-    """Answer over HTTP until interrupted; the routes are described under /docs."""
+    """Run the HTTP service until interrupted; the routes are described under /docs."""
     from importlib.metadata import entry_points
 
     (entry,) = entry_points(group="rocking.commands", name="serve")

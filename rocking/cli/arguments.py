@@ -1,4 +1,4 @@
-"""What was asked on the command line: groups as they are, or a block and a pulse with units."""
+"""Parameters of the command line: groups, or a block and a pulse with units."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rocking.model.block import Block
 
 @dataclass(frozen=True)
 class Params:
-    """One block under one pulse, in groups; `block` if it was given with units."""
+    """One block under one pulse, as groups; `block` if it was given with units."""
 
     pulse: str
     slenderness: float
@@ -29,7 +29,7 @@ class Params:
 
 @contextmanager
 def option_errors() -> Iterator[None]:
-    """Turn a wrong argument into the command line's own error, with the name of the option."""
+    """Convert an invalid argument into an error of the command line that names the option."""
     try:
         yield
     except InvalidArgumentError as error:
@@ -40,7 +40,7 @@ def option_errors() -> Iterator[None]:
 
 
 def _si_value(parameter: str, text: str, unit: str) -> float:
-    from rocking.cli.units import si_value  # questions in groups do without units and their library
+    from rocking.cli.units import si_value  # the unit library is not needed for groups
 
     return si_value(parameter, text, unit)
 
@@ -56,12 +56,12 @@ def read_params(
     peak_acceleration: str | None = None,
     pulse_period: str | None = None,
 ) -> Params:
-    """The question in groups.
+    """The parameters as groups.
 
     Raises
     ------
     InvalidArgumentError
-        If the two ways of asking are mixed, something is missing, or a value is not allowed.
+        If groups and units are mixed, a parameter is missing, or a value is not allowed.
     """
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "alpha": alpha}
     units = {

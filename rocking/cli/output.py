@@ -1,11 +1,9 @@
-"""Answers of the `rocking` command: computed by the solver, printed as text, JSON or CSV."""
+"""Output of the `rocking` command: responses of the solver, printed as text, JSON or CSV."""
 
 from __future__ import annotations
 
-import csv as csv_writer
 import json as json_writer
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
@@ -13,6 +11,7 @@ import numpy as np
 import typer
 
 from rocking.cli.arguments import Params
+from rocking.datasets.csv_text import csv_text
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
 from rocking.model.outcome import Outcome
@@ -22,56 +21,56 @@ Form = Literal["text", "json", "csv"]
 
 
 def output_format(*, json: bool, csv: bool) -> Form:
-    """The form that was asked for.
+    """The output format of the options.
 
     Raises
     ------
     InvalidArgumentError
-        If both were.
+        If both options are given.
     """
     if json and csv:
         raise InvalidArgumentError("csv", True, "one of --json and --csv")
     return "json" if json else "csv" if csv else "text"
 
 
-def response(question: Params, form: Form) -> None:
-    """Print outcome and peak of one block; of one that is not slender, whether the rocking model applies to it."""
-    found = _solve(question, question.frequency_ratio)
-    groups = _groups(question)
-    answer = groups | {name: column[0] for name, column in _columns(found).items()}
-    sentence = Outcome[answer["outcome"]].sentence
-    if question.alpha is not None:
+def response(params: Params, form: Form) -> None:
+    """Print outcome and peak of one block; with alpha also friction demand and validity of the rocking model."""
+    found = _solve(params, params.frequency_ratio)
+    groups = _groups(params)
+    result = groups | {name: column[0] for name, column in _columns(found).items()}
+    sentence = Outcome[result["outcome"]].sentence
+    if params.alpha is not None:
         from rocking.history.contact import contact_extremes
         from rocking.history.motion import build_motion
 
         contact = contact_extremes(build_motion(**groups))
         sentence = contact.sentence
-        answer["friction_demand"] = _number(contact.largest_friction_demand)
-        answer["lifts_off"] = contact.lifts_off
-        answer["rocking_model_applies"] = contact.rocking_applies
-    peak = answer["peak_rotation"]
-    if question.block is not None and peak is not None:
-        answer["peak_rotation_deg"] = math.degrees(peak * question.block.alpha)
+        result["friction_demand"] = _number(contact.largest_friction_demand)
+        result["lifts_off"] = contact.lifts_off
+        result["rocking_model_applies"] = contact.rocking_applies
+    peak = result["peak_rotation"]
+    if params.block is not None and peak is not None:
+        result["peak_rotation_deg"] = math.degrees(peak * params.block.alpha)
     if form == "json":
-        _print_json(answer)
+        _print_json(result)
     elif form == "csv":
-        _print_csv({name: [value] for name, value in answer.items()})
+        _print_csv({name: [value] for name, value in result.items()})
     else:
         typer.echo(sentence)
-        _print_text(answer)
+        _print_text(result)
 
 
-def history(question: Params, duration: float | None, samples: int, contact: bool, form: Form) -> None:
-    """Print the motion of one block, with `contact` also what the ground has to supply."""
+def history(params: Params, duration: float | None, samples: int, contact: bool, form: Form) -> None:
+    """Print the motion of one block, with `contact` also the reactions of the ground and the friction demand."""
     from rocking.history.contact import ATTRIBUTES, COLUMNS
     from rocking.history.time_history import time_history
 
     motion = time_history(
-        question.pulse,
-        slenderness=question.slenderness,
-        frequency_ratio=question.frequency_ratio,
-        restitution=question.restitution,
-        alpha=question.alpha,
+        params.pulse,
+        slenderness=params.slenderness,
+        frequency_ratio=params.frequency_ratio,
+        restitution=params.restitution,
+        alpha=params.alpha,
         duration=duration,
         samples=samples,
         contact=contact,
@@ -81,7 +80,7 @@ def history(question: Params, duration: float | None, samples: int, contact: boo
     if form == "csv":
         _print_csv(columns)
         return
-    about = _groups(question) | {
+    about = _groups(params) | {
         "outcome": str(motion.attrs["outcome"]),
         "overturned": bool(motion.attrs["overturned"]),
         "peak_rotation": _number(float(motion.attrs["peak_rotation"])),
@@ -97,12 +96,12 @@ def history(question: Params, duration: float | None, samples: int, contact: boo
         _print_table(columns)
 
 
-def spectrum(question: Params, window: tuple[float, float], points: int, form: Form) -> None:
+def spectrum(params: Params, window: tuple[float, float], points: int, form: Form) -> None:
     """Print the peak against the frequency ratio."""
     in_range("points", points, 2, 1_000_000)
     frequency_ratio = np.geomspace(*window, points)
-    columns = {"frequency_ratio": frequency_ratio.tolist()} | _columns(_solve(question, frequency_ratio))
-    about = {name: value for name, value in _groups(question).items() if name != "frequency_ratio"}
+    columns = {"frequency_ratio": frequency_ratio.tolist()} | _columns(_solve(params, frequency_ratio))
+    about = {name: value for name, value in _groups(params).items() if name != "frequency_ratio"}
     if form == "json":
         _print_json(about | columns)
     elif form == "csv":
@@ -112,12 +111,12 @@ def spectrum(question: Params, window: tuple[float, float], points: int, form: F
         _print_table({name: columns[name] for name in ("frequency_ratio", "peak_rotation", "outcome", "impacts")})
 
 
-def boundary(question: Params, window: tuple[float, float], form: Form) -> None:
-    """Print the curves that separate standing from falling."""
+def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
+    """Print the overturning boundary curves."""
     from rocking.boundary.tracing import overturning_boundary
 
     curves = overturning_boundary(
-        question.pulse, restitution=question.restitution, alpha=question.alpha, frequency_ratio=window
+        params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
     )
     sizes = curves["row_size"].values
     outcomes = [Outcome(int(code)).name for code in curves["outcome"].values]
@@ -129,7 +128,7 @@ def boundary(question: Params, window: tuple[float, float], form: Form) -> None:
         "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
     }
     if form == "json":
-        about = {"pulse": question.pulse, "restitution": question.restitution, "alpha": question.alpha}
+        about = {"pulse": params.pulse, "restitution": params.restitution, "alpha": params.alpha}
         _print_json(about | columns)
     elif form == "csv":
         _print_csv(columns)
@@ -137,23 +136,23 @@ def boundary(question: Params, window: tuple[float, float], form: Form) -> None:
         _print_table(columns)
 
 
-def _solve(question: Params, frequency_ratio: Any) -> BoundedResponse:
+def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
     return solve_with_bound(
-        question.pulse,
-        slenderness=question.slenderness,
+        params.pulse,
+        slenderness=params.slenderness,
         frequency_ratio=frequency_ratio,
-        restitution=question.restitution,
-        alpha=question.alpha,
+        restitution=params.restitution,
+        alpha=params.alpha,
     )
 
 
-def _groups(question: Params) -> dict[str, Any]:
+def _groups(params: Params) -> dict[str, Any]:
     return {
-        "pulse": question.pulse,
-        "slenderness": question.slenderness,
-        "frequency_ratio": question.frequency_ratio,
-        "restitution": question.restitution,
-        "alpha": question.alpha,
+        "pulse": params.pulse,
+        "slenderness": params.slenderness,
+        "frequency_ratio": params.frequency_ratio,
+        "restitution": params.restitution,
+        "alpha": params.alpha,
     }
 
 
@@ -174,20 +173,17 @@ def _number(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _print_json(answer: Mapping[str, Any]) -> None:
-    typer.echo(json_writer.dumps(answer, allow_nan=False))
+def _print_json(result: Mapping[str, Any]) -> None:
+    typer.echo(json_writer.dumps(result, allow_nan=False))
 
 
 def _print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
-    writer = csv_writer.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(columns)
-    cells = ([str(v).lower() if isinstance(v, bool) else v for v in column] for column in columns.values())
-    writer.writerows(zip(*cells, strict=True))
+    typer.echo(csv_text(columns), nl=False)
 
 
-def _print_text(answer: Mapping[str, Any]) -> None:
-    width = max(map(len, answer))
-    for name, value in answer.items():
+def _print_text(result: Mapping[str, Any]) -> None:
+    width = max(map(len, result))
+    for name, value in result.items():
         if value is not None:
             typer.echo(f"{name:<{width}}  {_text(value)}")
 

@@ -1,4 +1,4 @@
-"""Quantities with units, as people write them on the command line. Inside, everything is SI and radians."""
+"""Conversion of quantities with units, as given on the command line, to SI units and radians."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ def si_value(parameter: str, text: str, unit: str) -> float:
     Raises
     ------
     InvalidArgumentError
-        If there is no unit, an unknown one or one of another dimension, or the value is not finite.
+        If the unit is missing, unknown or of another dimension, or the value is not finite.
     """
     allowed = f"a number with its unit, such as {_EXAMPLES[unit]}"
     written = re.sub(r"\bs2\b", "s**2", text)
-    if unit == "m/s**2":  # of an acceleration, g is that of gravity, not the gram
+    if unit == "m/s**2":  # in an acceleration, g is standard gravity, not gram
         written = re.sub(r"(?<![A-Za-z_])g(?![A-Za-z_])", " standard_gravity", written)
     try:
         quantity: pint.Quantity[float] = _registry().Quantity(written)
-        if quantity.unitless:  # a bare number, which for an angle pint would take for radians
+        if quantity.unitless:  # a number without unit, which pint would accept as radians
             raise InvalidArgumentError(parameter, text, allowed)
         value = float(quantity.to(unit).magnitude)
     except InvalidArgumentError:

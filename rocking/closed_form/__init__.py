@@ -1,7 +1,8 @@
-"""Closed forms of sections 3 and 4 of the paper for the slender block under one full sine, and their relatives.
+"""Closed forms of sections 3 and 4 of the paper for the slender block under one full sine, and related conditions.
 
-Arguments are the paper's groups: amplitude a = a_g/(g alpha) = 1/slenderness, frequency_ratio omega = omega_g/p and
-restitution eta; times are tau = p t from uplift. Everything broadcasts and is nan where an event does not happen.
+Arguments are the dimensionless groups of the paper: amplitude a = a_g/(g alpha) = 1/slenderness, frequency_ratio
+omega = omega_g/p and restitution eta; times are tau = p t from uplift. All arguments broadcast. Results are nan where
+the event does not occur.
 """
 
 from rocking.closed_form.ad_hoc import EXPANSION_TIME as EXPANSION_TIME

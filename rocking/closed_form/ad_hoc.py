@@ -1,4 +1,4 @@
-"""The paper's approximate impact time for case 1.1, (3.23) to (3.30): a sine replaced by two exponentials."""
+"""Approximate impact time of case 1.1, (3.23) to (3.30): the sine is replaced by a constant and two exponentials."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from rocking.closed_form.transcendental import residual, rising_root
 from rocking.errors import in_range
 
 EXPANSION_TIME = 1.0
-"""tau_i1^0 = p t_i1^0 [-], the guess for the impact time about which (3.24) and (3.25) expand, (3.23)."""
+"""tau_i1^0 = p t_i1^0 [-], (3.23): the initial guess of the impact time, about which (3.24) and (3.25) expand."""
 
-_GRID = 1024  # amplitudes, uniform in log(a - 1), on which a frequency ratio is searched for the roots of (3.30)
-_FIRST_STEP = np.log(1e-6)  # of log(a - 1)
+_GRID = 1024  # number of amplitudes, uniform in log(a - 1), at which (3.30) is searched for changes of sign
+_LOG_START = np.log(1e-6)  # smallest log(a - 1) of that search
 
 
 def kappa_lambda(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
-    """Coefficients kappa and lambda of e^-tau and e^tau [-], (3.26), from matching (3.24) and (3.25).
+    """Coefficients kappa of e^-tau and lambda of e^tau [-], (3.26), which make (3.24) and (3.25) equal.
 
     Parameters
     ----------
@@ -67,12 +67,12 @@ def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: A
         tau since uplift [-].
     """
     kappa, lambda_ = kappa_lambda(amplitude, frequency_ratio)
-    falling, growing, step = kappa / np.e, lambda_ * np.e, np.asarray(time) - EXPANSION_TIME
-    return np.asarray((falling + growing) * (1 + step**2 / 2) + (growing - falling) * step)  # (3.25)
+    decaying, growing, step = kappa / np.e, lambda_ * np.e, np.asarray(time) - EXPANSION_TIME
+    return np.asarray((decaying + growing) * (1 + step**2 / 2) + (growing - decaying) * step)  # (3.25)
 
 
 def ad_hoc_sine(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """What stands for sin(omega tau + psi) [-] around tau = 1, (3.27) (figure S1).
+    """Approximation of sin(omega tau + psi) [-] around tau = 1, (3.27) (figure S1).
 
     Parameters
     ----------
@@ -89,8 +89,8 @@ def ad_hoc_sine(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLik
     return residual(kappa, lambda_, constant, time)  # (3.27)
 
 
-def _quadratic(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array, Array]:
-    """I1, I2, I3 of appendix A for (3.28)."""
+def _exponential_terms(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array, Array]:
+    """I1, I2 and I3 of (A 1) for (3.28) [-]."""
     a, omega = checked(amplitude, frequency_ratio)
     A0, B0, C0 = coefficients(a, omega)
     kappa, lambda_ = kappa_lambda(a, omega)
@@ -110,7 +110,7 @@ def ad_hoc_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arra
     time : array_like
         tau since uplift [-].
     """
-    return residual(*_quadratic(amplitude, frequency_ratio), time)  # (3.28)
+    return residual(*_exponential_terms(amplitude, frequency_ratio), time)  # (3.28)
 
 
 def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -126,14 +126,14 @@ def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arra
     Returns
     -------
     ndarray
-        [-], nan where (3.28) has no rising root. Of the two roots (3.29) keeps the one with the plus sign, through
-        which theta rises; see `transcendental.rising_root` for why that is the impact.
+        tau [-], nan where (3.28) has no root with positive slope. Of its two roots, (3.29) takes the one with the plus
+        sign, at which theta increases; `transcendental.rising_root` shows why this root is the impact.
     """
-    return rising_root(*_quadratic(amplitude, frequency_ratio))  # (3.29)
+    return rising_root(*_exponential_terms(amplitude, frequency_ratio))  # (3.29)
 
 
 def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """Left side minus right side of the semi-analytical condition (3.30).
+    """Left side minus right side of the semi-analytical overturning condition (3.30).
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
 
 
 def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> AmplitudeInterval:
-    """Amplitudes between which (3.30) has the block overturn after an impact inside the pulse.
+    """Amplitudes between which (3.30) predicts overturning after an impact within the pulse.
 
     Parameters
     ----------
@@ -170,26 +170,28 @@ def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLik
     Returns
     -------
     AmplitudeInterval
-        Of the broadcast shape. `lower` is the smallest solution of (3.30), the one that the paper compares with
-        (3.20) and (3.21). `upper` is its next solution below twice the amplitude of case 2, nan where there is none;
-        it stands for no event, as its impact time exceeds the end of the pulse. Nor does `lower` where the same
-        holds: compare `ad_hoc_impact_time` with `pulse_end`.
+        Of the broadcast shape. `lower` is the smallest solution of (3.30), which the paper compares with (3.20) and
+        (3.21). `upper` is the next solution below twice the amplitude of case 2, nan where there is none; it is not
+        physical, as its impact time lies beyond the end of the pulse. The same may hold for `lower`: check with
+        `within_pulse`.
     """
     omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     eta = in_range("restitution", restitution, 0.0, 1.0)
     omega, eta = np.broadcast_arrays(omega, eta)
     top = np.log(2 * case_2_amplitude(omega) - 1)
     steps = np.linspace(0.0, 1.0, _GRID).reshape(-1, *(1,) * omega.ndim)
-    grid = 1 + np.exp(_FIRST_STEP + (top - _FIRST_STEP) * steps)
+    grid = 1 + np.exp(_LOG_START + (top - _LOG_START) * steps)
     margin = ad_hoc_margin(grid, omega, eta)
-    rises = (margin[:-1] < 0) & (margin[1:] >= 0)  # nan compares false: the edges of (3.29) do not count
+    rises = (margin[:-1] < 0) & (
+        margin[1:] >= 0
+    )  # comparisons with nan are false: the limits of existence of (3.29) are not counted
     after = np.cumsum(rises, axis=0) > 0
     falls = after & (margin[:-1] >= 0) & (margin[1:] < 0)
     return AmplitudeInterval(*(_refined(crossing, grid, omega, eta) for crossing in (rises, falls)))
 
 
 def _refined(crossing: NDArray[np.bool_], grid: Array, omega: Array, eta: Array) -> Array:
-    """Root of (3.30) in the first grid step marked in `crossing` (axis 0), nan where none is."""
+    """Root of (3.30) in the first grid interval marked in `crossing` (axis 0), nan where no interval is marked."""
     first = np.argmax(crossing, axis=0)[np.newaxis]
     low, high = (np.take_along_axis(grid, first + k, axis=0)[0] for k in (0, 1))
     root = find_root(lambda a, w, e: ad_hoc_margin(np.maximum(a, 1.0), w, e), low, high, omega, eta)
@@ -197,6 +199,6 @@ def _refined(crossing: NDArray[np.bool_], grid: Array, omega: Array, eta: Array)
 
 
 def within_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> NDArray[np.bool_]:
-    """True where the approximate impact (3.29) comes before the end of the pulse, so that (3.30) speaks of an event."""
+    """True where the approximate impact time (3.29) is within the pulse, the condition for (3.30) to be physical."""
     with np.errstate(invalid="ignore"):
         return np.asarray(ad_hoc_impact_time(amplitude, frequency_ratio) <= pulse_end(amplitude, frequency_ratio))

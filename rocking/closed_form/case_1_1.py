@@ -1,8 +1,8 @@
-"""Case 1.1: overturning after one impact while the pulse acts, (3.19) to (3.22), without approximation.
+"""Case 1.1: overturning after one impact within the pulse, (3.19) to (3.22), without approximation.
 
-The transcendental equation (3.21) has no closed root tau_i1(a), but it is linear in s = sqrt(a^2 - 1) (see
-`first_arc`), so that its inverse a(tau_i1) is explicit. Inserting it turns (3.20) into one equation in tau_i1 alone:
-the curve is found exactly, with no root inside a root.
+The transcendental equation (3.21) has no closed-form root tau_i1(a), but it is linear in s = sqrt(a^2 - 1) (see
+`first_arc`), so its inverse a(tau_i1) is explicit. Inserting the inverse makes (3.20) one equation in tau_i1 alone. The
+curve is then found by a single root search, without nested iterations.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from rocking.errors import in_range
 
 
 def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """Time tau_i1 from uplift to the first impact if that falls inside the pulse, the root of (3.21).
+    """Time tau_i1 from uplift to the first impact if that impact is within the pulse, the root of (3.21).
 
     Parameters
     ----------
@@ -31,14 +31,15 @@ def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Ar
     Returns
     -------
     ndarray
-        tau_i1 [-], nan where the pulse ends first (above (3.31)); 0 for a = 1, where the block does not move away.
+        tau_i1 [-], nan where the pulse ends before the impact (above (3.31)); 0 for a = 1, where the block does not
+        lift off.
 
     Notes
     -----
-    While the phase is in (psi, pi - psi) the ground pushes the block away, theta'' - theta < 0, and it cannot be
-    back; after that theta'' - theta > 0 until the pulse ends, and a function that starts below zero can cross it
-    only once. The bracket [(pi - 2 psi)/omega, p T_ex] therefore holds the only root, and holds one exactly if
-    theta >= 0 at the end of the pulse.
+    While the phase is in (psi, pi - psi), theta'' - theta < 0: the ground acceleration moves the block away from
+    theta = 0, and no impact is possible. From then on theta'' - theta > 0 until the pulse ends, and a solution that
+    starts below zero crosses zero at most once. Any root is therefore unique and lies in [(pi - 2 psi)/omega, p T_ex];
+    there is one if and only if theta >= 0 at the end of the pulse.
     """
     a, omega = checked(amplitude, frequency_ratio)
     psi = uplift_phase(a)
@@ -52,7 +53,7 @@ def _rotation(tau: Array, omega: Array, s: Array) -> Array:
 
 
 def case_1_1_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """d(theta/alpha)/d tau [-] just before that impact, (3.22); nan where there is none.
+    """d(theta/alpha)/d tau [-] just before the impact within the pulse, (3.22); nan where there is none.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def overturning_condition(
     time : array_like
         tau_i since uplift [-], [0, p T_ex].
     velocity : array_like
-        d(theta/alpha)/d tau just before it [-].
+        d(theta/alpha)/d tau just before the impact [-].
 
     Returns
     -------
@@ -98,7 +99,7 @@ def overturning_condition(
 
 
 def case_1_1_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """How far a block is beyond overturning after an impact inside the pulse, (3.20) at the root of (3.21).
+    """Margin of overturning after an impact within the pulse, (3.20) at the root of (3.21).
 
     Parameters
     ----------
@@ -120,7 +121,7 @@ def case_1_1_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitutio
 
 
 def amplitude_of_impact_time(impact_time: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """The amplitude whose first impact comes at a given time, (3.21) solved for a.
+    """Amplitude at which the first impact occurs at a given time, (3.21) solved for a.
 
     Parameters
     ----------
@@ -141,11 +142,11 @@ def amplitude_of_impact_time(impact_time: ArrayLike, frequency_ratio: ArrayLike)
 
 
 def _condition(tau: Array, omega: Array, eta: Array) -> Array:
-    """(3.20) on (3.21): both written in the impact time alone, exponentials scaled by e^-tau."""
+    """(3.20) with a eliminated by (3.21), as a function of the impact time; exponentials are scaled by e^-tau."""
     decay, c, n = np.exp(-tau), np.cos(omega * tau), np.sin(omega * tau)
     Yc, Ys = arc_terms(tau, omega)
     s = Yc / Ys
-    # velocity (3.22) = (Y_c' Y_s - Y_c Y_s')/Y_s/(omega^2 + 1); its e^{2 tau} terms are cancelled by hand
+    # velocity (3.22) = (Y_c' Y_s - Y_c Y_s')/Y_s/(omega^2 + 1); its e^{2 tau} terms cancel and are left out
     numerator = (1 + omega**2) * (1 + decay**2 - 2 * decay * c) + (1 - omega**2) * (2 * decay - (1 + decay**2) * c)
     numerator = numerator + 2 * omega * n * np.expm1(-2 * tau)
     velocity = omega * numerator / Ys / (1 + omega**2)
@@ -155,7 +156,7 @@ def _condition(tau: Array, omega: Array, eta: Array) -> Array:
 
 
 def case_1_1_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> AmplitudeInterval:
-    """Amplitudes between which the block overturns after an impact inside the pulse, (3.20) with (3.21).
+    """Amplitudes between which the block overturns after an impact within the pulse, (3.20) with (3.21).
 
     Parameters
     ----------
@@ -167,9 +168,9 @@ def case_1_1_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
     Returns
     -------
     AmplitudeInterval
-        Of the broadcast shape. `lower` is the curve of figure 3. `upper` is the limit (3.31), where case 1.2 takes
-        over, except for low frequency ratios (omega < 0.25 for eta = 0.8), where the block is safe already before
-        that. Both nan where there is no such overturning: beyond `case_1_1_end`.
+        Of the broadcast shape. `lower` is the curve of figure 3. `upper` is the limit (3.31), where case 1.2 begins,
+        except for low frequency ratios (omega < 0.25 for eta = 0.8), where the block survives already below that
+        limit. Both are nan where there is no such overturning, beyond `case_1_1_end`.
     """
     omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     eta = in_range("restitution", restitution, 0.0, 1.0)
@@ -191,7 +192,7 @@ def _amplitude(tau: Array, omega: Array) -> Array:
 
 
 def case_1_1_end(restitution: ArrayLike) -> Array:
-    """Frequency ratio beyond which no block overturns after an impact inside the pulse.
+    """Frequency ratio beyond which no block overturns after an impact within the pulse.
 
     Parameters
     ----------
@@ -202,7 +203,8 @@ def case_1_1_end(restitution: ArrayLike) -> Array:
     -------
     ndarray
         omega [-]: 4.1 for eta = 0.80, 4.4 for 0.85, 4.8 for 0.90, 5.5 for 1. For eta above about 0.6 the lower
-        branch of (3.18) and (3.20) meet there on the limit (3.31); below, the curve (3.20) turns back.
+        branch of (3.18) and the curve (3.20) meet there on the limit (3.31); for smaller eta the curve (3.20) has a
+        turning point there.
     """
     eta = in_range("restitution", restitution, 0.0, 1.0, closed="right")
     return find_root(_best_condition, np.full_like(eta, 0.05), np.full_like(eta, 8.0), eta)

@@ -1,4 +1,4 @@
-"""Case 1.2: overturning after one impact that comes after the end of the pulse, (3.11) to (3.18)."""
+"""Case 1.2: overturning after one impact that occurs after the end of the pulse, (3.11) to (3.18)."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from rocking.closed_form.roots import find_maximum, find_root
 from rocking.closed_form.transcendental import residual, rising_root
 from rocking.errors import in_range
 
-_UNRESOLVED = 30.0  # p T_ex beyond which e^{-p T_ex} drowns in the rounding of a
-_LONG = 4.0  # p T_ex from which the product form of D0* keeps more digits than the energy, which then overflows
+_UNRESOLVED = 30.0  # p T_ex beyond which e^{-p T_ex} is below the rounding error of a
+_PRODUCT_FROM = 4.0  # p T_ex from which the product form of D0* is more accurate than the energy, which may overflow
 
 
 def case_1_2_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """2 theta/alpha [-] in free rocking before any impact, the left side of (3.12).
+    """2 theta/alpha [-] in free rocking before any impact, left side of (3.12).
 
     Parameters
     ----------
@@ -36,16 +36,16 @@ def case_1_2_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Ar
     frequency_ratio : array_like
         omega [-], (0, inf).
     time : array_like
-        tau since uplift [-]; theta only from the end of the pulse on.
+        tau since uplift [-]; the value is 2 theta/alpha only from the end of the pulse on.
     """
-    falling, growing = after_pulse_coefficients(amplitude, frequency_ratio)
+    decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     T = pulse_end(amplitude, frequency_ratio)
     with np.errstate(over="ignore"):
-        return residual(falling, growing * np.exp(T), -2.0, np.asarray(time) - T)  # (3.12)
+        return residual(decaying, growing * np.exp(T), -2.0, np.asarray(time) - T)  # (3.12)
 
 
 def case_1_2_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """Time tau_i2 from uplift to the first impact if that comes after the pulse, (3.13).
+    """Time tau_i2 from uplift to the first impact if that impact is after the pulse, (3.13).
 
     Parameters
     ----------
@@ -58,18 +58,18 @@ def case_1_2_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Ar
     -------
     ndarray
         tau_i2 [-]: ln[(1 + sqrt(1 - D0*))/(B0* + (omega/2) C0* e^{-p T_ex})]; nan where the block overturns first.
-        Physical where it is not below p T_ex, that is above (3.31).
+        Physical where it is at least p T_ex, that is above (3.31).
     """
-    falling, growing = after_pulse_coefficients(amplitude, frequency_ratio)
+    decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     T = pulse_end(amplitude, frequency_ratio)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        since_end = rising_root(falling, growing * np.exp(T), -2.0)  # (3.13), with tau_i2 - p T_ex as unknown
-        root = np.logaddexp(0.0, np.log(-falling * growing) + T) / 2  # log of sqrt(1 - D0*), e^T being too large
+        since_end = rising_root(decaying, growing * np.exp(T), -2.0)  # (3.13), with tau_i2 - p T_ex as unknown
+        root = np.logaddexp(0.0, np.log(-decaying * growing) + T) / 2  # log of sqrt(1 - D0*), for e^T out of range
         return np.asarray(np.where(T < 700, T + since_end, np.logaddexp(0.0, root) - np.log(growing)))  # (3.13)
 
 
 def free_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """d(theta/alpha)/d tau [-] in free rocking before any impact, (3.14), for any time after the pulse.
+    """d(theta/alpha)/d tau [-] in free rocking before any impact, (3.14), at any time after the pulse.
 
     Parameters
     ----------
@@ -80,11 +80,11 @@ def free_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayL
     time : array_like
         tau since uplift [-].
     """
-    falling, growing = after_pulse_coefficients(amplitude, frequency_ratio)
+    decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     T = pulse_end(amplitude, frequency_ratio)
     since_end = np.asarray(time) - T
     with np.errstate(over="ignore"):
-        return np.asarray((growing * np.exp(T) * np.exp(since_end) - falling * np.exp(-since_end)) / 2)  # (3.14)
+        return np.asarray((growing * np.exp(T) * np.exp(since_end) - decaying * np.exp(-since_end)) / 2)  # (3.14)
 
 
 def impact_velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -100,14 +100,17 @@ def impact_velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike) ->
     Returns
     -------
     ndarray
-        (d(theta/alpha)/d tau)^2 [-]; infinite where e^{p T_ex} is beyond a double. For short pulses D0* is close to
-        one and 1 - D0* is replaced by what it is, the energy in free rocking: v_ex^2 - y_ex (y_ex + 2).
+        (d(theta/alpha)/d tau)^2 [-]; infinite where e^{p T_ex} exceeds the double range. For short pulses D0* is close
+        to one; 1 - D0* is then computed as the energy of free rocking, v_ex^2 - y_ex (y_ex + 2), without
+        cancellation.
     """
     a, omega = checked(amplitude, frequency_ratio)
     y, v = state_at_pulse_end(a, omega)
     with np.errstate(over="ignore", invalid="ignore"):
         energy = v * v - y * (y + 2)
-        return np.asarray(np.where(pulse_end(a, omega) < _LONG, energy, 1 - d0_star(a, omega)))  # (3.15), squared
+        return np.asarray(
+            np.where(pulse_end(a, omega) < _PRODUCT_FROM, energy, 1 - d0_star(a, omega))
+        )  # (3.15), squared
 
 
 def case_1_2_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -125,7 +128,7 @@ def case_1_2_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
 
 
 def case_1_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """How far a block is beyond overturning after an impact that follows the pulse, (3.16) to (3.18).
+    """Margin of overturning after an impact that follows the pulse, (3.16) to (3.18).
 
     Parameters
     ----------
@@ -139,8 +142,8 @@ def case_1_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitutio
     Returns
     -------
     ndarray
-        eta v_i2 - 1 = B_i2 [-], zero on (3.18), positive where the block overturns; of meaning between
-        `limit_amplitude` and `case_2_amplitude` only.
+        eta v_i2 - 1 = B_i2 [-], zero on (3.18), positive where the block overturns; valid between `limit_amplitude`
+        and `case_2_amplitude` only.
     """
     eta = in_range("restitution", restitution, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
@@ -159,8 +162,7 @@ def condition_3_18(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
 
     Notes
     -----
-    The sentence below (3.31) assigns (3.18) to case 1.1 and (3.30) to case 1.2; by their derivation it is the other
-    way round.
+    The sentence below (3.31) assigns (3.18) to case 1.1 and (3.30) to case 1.2; their derivations show the opposite.
     """
     omega = np.asarray(frequency_ratio, dtype=np.float64)
     A0, B0, C0 = coefficients(amplitude, omega)
@@ -184,7 +186,8 @@ def case_1_2_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
     -------
     AmplitudeInterval
         Of the broadcast shape. `lower` is the lower branch of (3.18), or the limit (3.31) where that branch lies
-        below it and case 1.1 takes over; `upper` is the upper branch, below the curve of case 2 except for eta = 1.
+        below the limit, in case 1.1; `upper` is the upper branch, below the curve of case 2 except for eta = 1. Both
+        are nan where there is no such overturning.
     """
     omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     eta = in_range("restitution", restitution, 0.0, 1.0)
@@ -192,7 +195,7 @@ def case_1_2_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
     limit, overturned_at_limit = limit_amplitude(omega), eta * limit_velocity(omega) >= 1
     direct, end = case_2_phase(omega), uplift_phase(limit)
     top = find_maximum(_excess, direct, end, omega, eta)
-    resolved = pulse_end(limit, omega) < _UNRESOLVED  # else (3.10), (3.18) and (3.31) are one curve in a double
+    resolved = pulse_end(limit, omega) < _UNRESOLVED  # else (3.10), (3.18) and (3.31) coincide in double precision
     overturned = np.where(resolved, _excess(top, omega, eta) > 0, overturned_at_limit)
     lower = np.where(overturned_at_limit, limit, 1 / np.sin(find_root(_excess, top, end, omega, eta)))
     upper = find_root(_excess, direct, top, omega, eta)
@@ -201,9 +204,9 @@ def case_1_2_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
 
 
 def _excess(psi: Array, omega: Array, eta: Array) -> Array:
-    """(3.18) as -D0* - (1/eta^2 - 1), times e^{-p T_ex} eta^2 so that all of it stays finite."""
+    """(3.18) as -D0* - (1/eta^2 - 1), times e^{-p T_ex} eta^2 so that every term is finite."""
     decay = np.exp(-(2 * np.pi - psi) / omega)
     K = omega / (omega**2 + 1) / np.sin(psi)
     growing = omega * np.sin(psi) + 2 * np.sin(psi / 2) ** 2 + np.expm1(-(2 * np.pi - psi) / omega)
-    falling = 1 - (omega * np.sin(psi) + np.cos(psi)) * decay
-    return np.asarray((eta * K) ** 2 * growing * falling - (1 - eta**2) * decay)
+    decaying = 1 - (omega * np.sin(psi) + np.cos(psi)) * decay
+    return np.asarray((eta * K) ** 2 * growing * decaying - (1 - eta**2) * decay)

@@ -11,7 +11,7 @@ from rocking.errors import in_range
 
 
 def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """How far a block is beyond overturning without impact, (3.10).
+    """Margin of overturning without impact, (3.10).
 
     Parameters
     ----------
@@ -23,14 +23,14 @@ def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        sqrt(a^2 - 1) - a e^{-p T_ex} - omega [-]; zero on the curve, positive where the block overturns directly.
+        sqrt(a^2 - 1) - a e^{-p T_ex} - omega [-]; zero on the curve, positive where the block overturns without impact.
     """
     a, omega = checked(amplitude, frequency_ratio)
     return np.asarray(cot_psi(a) - a * np.exp(-pulse_end(a, omega)) - omega)  # (3.10), second line
 
 
 def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """2 B_ex0/alpha [-], the left side of the first line of (3.10): overturning directly where it is not positive.
+    """2 B_ex0/alpha [-], left side of the first line of (3.10): the block overturns without impact where it is <= 0.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arr
     Returns
     -------
     ndarray
-        B0* e^{p T_ex} + (omega/2) C0* [-], infinite where e^{p T_ex} is beyond a double. In free rocking B = 0 is
-        the unstable manifold, (3.8).
+        B0* e^{p T_ex} + (omega/2) C0* [-], infinite where e^{p T_ex} exceeds the double range. In free rocking
+        B = 0 leads to the unstable equilibrium, (3.8).
     """
     _, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     with np.errstate(over="ignore"):
@@ -51,7 +51,7 @@ def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arr
 
 
 def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
-    """Amplitude from which the block overturns without impact, the curve of (3.10).
+    """Smallest amplitude at which the block overturns without impact, the curve of (3.10).
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        a [-], > 1, of the shape of `frequency_ratio`. There is exactly one: (3.10) divided by a is monotone in psi.
+        a [-], > 1, of the shape of `frequency_ratio`. It is unique: (3.10) divided by a is monotone in psi.
     """
     omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     psi = case_2_phase(omega)
@@ -74,5 +74,5 @@ def case_2_phase(omega: Array) -> Array:
 
 
 def _manifold(psi: Array, omega: Array) -> Array:
-    """(3.10) times -sin(psi): omega sin psi - cos psi + e^{-p T_ex}, the ones taken out of cosine and exponential."""
+    """(3.10) times -sin(psi): omega sin psi - cos psi + e^{-p T_ex}, written with 1 - cos psi and expm1."""
     return np.asarray(omega * np.sin(psi) + 2 * np.sin(psi / 2) ** 2 + np.expm1(-(2 * np.pi - psi) / omega))

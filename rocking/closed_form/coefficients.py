@@ -1,8 +1,8 @@
 """Coefficients of the response to one full sine before any impact: (3.3), (3.7) and (3.9) of the paper.
 
-Times are measured from uplift, `tau = p t`. `e^{p T_ex}` exceeds the range of a double below a frequency ratio of
-about 0.009, so every formula that meets it is multiplied through by `e^{-p T_ex}`; D0* alone, which is of that size,
-is then infinite.
+Times are measured from uplift, `tau = p t`. Below a frequency ratio of about 0.009, `e^{p T_ex}` exceeds the double
+range. Formulas that contain it are therefore multiplied by `e^{-p T_ex}`; only D0*, which is of that magnitude, is
+infinite there.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ def checked(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Ar
 
 
 def cot_psi(a: Array) -> Array:
-    """cot(psi) = sqrt(a^2 - 1) [-], factored so that nothing cancels near a = 1."""
+    """cot(psi) = sqrt(a^2 - 1) [-], factored to avoid cancellation near a = 1."""
     return np.sqrt((a - 1.0) * (a + 1.0))
 
 
 def uplift_phase(amplitude: ArrayLike) -> Array:
-    """Phase psi of the sine at which the block uplifts, (3.3).
+    """Phase psi of the sine at uplift, (3.3).
 
     Parameters
     ----------
@@ -49,10 +49,12 @@ def uplift_phase(amplitude: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha where 1/a is meant; a is defined in (3.6).
+        psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
     """
     a = in_range("amplitude", amplitude, 1.0, np.inf)
-    return np.asarray(np.arctan2(1.0, cot_psi(a)))  # (3.3), exact near a = 1 where arcsin(1/a) loses half the digits
+    return np.asarray(
+        np.arctan2(1.0, cot_psi(a))
+    )  # (3.3), accurate near a = 1, where arcsin(1/a) loses half the digits
 
 
 def pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -70,7 +72,7 @@ def pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
 
 
 def integration_constants(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
-    """(A0/alpha, B0/alpha) [-] of a block that starts from rest, (3.7).
+    """A0/alpha and B0/alpha [-] for a start from rest, (3.7).
 
     Parameters
     ----------
@@ -100,9 +102,9 @@ def coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Coefficien
 
 
 def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
-    """Free-rocking coefficients of a block without impact so far, the two factors of D0* in (3.9).
+    """Coefficients of free rocking after the pulse and before any impact, the two factors of D0* in (3.9).
 
-    After the pulse `2 theta/alpha = -2 + [falling] e^{p T_ex} e^{-tau} + [growing] e^{tau}`, (3.5).
+    After the pulse `2 theta/alpha = -2 + [decaying] e^{p T_ex} e^{-tau} + [growing] e^{tau}`, (3.5).
 
     Parameters
     ----------
@@ -113,20 +115,21 @@ def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
 
     Returns
     -------
-    falling : ndarray
-        (A0* - (omega/2) C0* e^{p T_ex}) e^{-p T_ex} [-], scaled so that it stays finite.
+    decaying : ndarray
+        (A0* - (omega/2) C0* e^{p T_ex}) e^{-p T_ex} [-], scaled so that it is finite.
     growing : ndarray
-        B0* + (omega/2) C0* e^{-p T_ex} [-]; it changes sign where the block overturns directly, (3.10).
+        B0* + (omega/2) C0* e^{-p T_ex} [-]; its sign changes on the boundary of overturning without
+        impact, (3.10).
     """
     a, omega = checked(amplitude, frequency_ratio)
     s, K = cot_psi(a), omega / (omega * omega + 1)
     decay = np.exp(-pulse_end(a, omega))
-    falling, growing = K * ((omega + s) * decay - a), K * (omega - s + a * decay)  # (3.5), factors of D0* in (3.9)
-    return np.asarray(falling), np.asarray(growing)
+    decaying, growing = K * ((omega + s) * decay - a), K * (omega - s + a * decay)  # (3.5), factors of D0* in (3.9)
+    return np.asarray(decaying), np.asarray(growing)
 
 
 def d0_star(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """D0* by the product in the first line of (3.9); -inf where e^{p T_ex} is beyond a double.
+    """D0* by the product in the first line of (3.9); -inf where e^{p T_ex} exceeds the double range.
 
     Parameters
     ----------
@@ -138,17 +141,17 @@ def d0_star(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        D0* [-]; the block reaches its first impact with velocity sqrt(1 - D0*), (3.15).
+        D0* [-]; the velocity at the first impact is sqrt(1 - D0*), (3.15).
     """
-    falling, growing = after_pulse_coefficients(amplitude, frequency_ratio)
+    decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     with np.errstate(over="ignore"):
-        return np.asarray(falling * growing * np.exp(pulse_end(amplitude, frequency_ratio)))  # (3.9), first line
+        return np.asarray(decaying * growing * np.exp(pulse_end(amplitude, frequency_ratio)))  # (3.9), first line
 
 
 def d0_star_expanded(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """D0* by the second line of (3.9), corrected; nan or infinite where e^{p T_ex} is beyond a double.
+    """D0* by the second line of (3.9), corrected; nan or infinite where e^{p T_ex} exceeds the double range.
 
-    The paper prints the factor omega/(omega^2 + 1); the product in its first line gives the square of it.
+    The paper prints the factor omega/(omega^2 + 1); the product in the first line gives its square.
 
     Parameters
     ----------

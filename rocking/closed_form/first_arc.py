@@ -1,12 +1,13 @@
-"""Motion from uplift to the first impact under one full sine, (3.4) with (3.7), in forms that do not cancel.
+"""Motion from uplift to the first impact under one full sine, (3.4) with (3.7), in forms without cancellation.
 
 With (3.7) inserted, (3.4) is linear in s = sqrt(a^2 - 1):
 
     theta/alpha = [Y_c(tau) - s Y_s(tau)]/(omega^2 + 1),   Y_c = omega^2 (cosh tau - 1) - (1 - cos omega tau),
                                                            Y_s = omega sinh tau - sin omega tau,   Y_c' = omega Y_s.
 
-Y_c starts as tau^4 and Y_s as tau^3, where the four terms of (3.4) are of order one: close to a = 1 the first impact
-follows uplift at once and (3.4) as printed has no digits left, hence the series for short times.
+For small tau, Y_c is of order tau^4 and Y_s of order tau^3, while the four terms of (3.4) are of order one. Close to
+a = 1 the first impact follows shortly after uplift, where (3.4) as printed loses all digits. A power series is used
+there.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from numpy.typing import ArrayLike
 from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end, uplift_phase
 from rocking.errors import in_range
 
-_SERIES_UNTIL = 1.0  # largest max(tau, omega tau) of the series; ten terms then leave 1e-19
+_SERIES_UNTIL = 1.0  # max(tau, omega tau) up to which the series is used; the error of ten terms is then 1e-19
 _SERIES_TERMS = 10
 
 
@@ -65,7 +66,7 @@ def angular_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
 
 
 def arc_terms(tau: Array, omega: Array) -> tuple[Array, Array]:
-    """2 e^{-tau} Y_c and 2 e^{-tau} Y_s [-] of the module's docstring; `tau` >= 0 and `omega` > 0 broadcast."""
+    """2 e^{-tau} Y_c and 2 e^{-tau} Y_s [-] as in the module docstring; `tau` >= 0 and `omega` > 0 broadcast."""
     tau, omega = np.broadcast_arrays(tau, omega)
     decay = np.exp(-tau)
     Yc = omega * omega * np.expm1(-tau) ** 2 - 4 * decay * np.sin(omega * tau / 2) ** 2
@@ -78,7 +79,7 @@ def arc_terms(tau: Array, omega: Array) -> tuple[Array, Array]:
 
 
 def _short_time_series(tau: Array, omega: Array) -> tuple[Array, Array]:
-    """Power series of `arc_terms`: their first one and two terms vanish identically."""
+    """Power series of `arc_terms` without the leading terms, which cancel identically."""
     Yc, Ys = np.zeros_like(tau), np.zeros_like(tau)
     for k in range(1, _SERIES_TERMS):
         sign = (-1.0) ** k
@@ -88,7 +89,7 @@ def _short_time_series(tau: Array, omega: Array) -> tuple[Array, Array]:
 
 
 def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """theta/alpha [-] before any impact, (3.4) term by term as in (3.21): loses digits for short and for long times.
+    """theta/alpha [-] before any impact, (3.4) term by term as in (3.21): inaccurate at short and at long times.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
 
 
 def state_at_pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
-    """Rotation theta_ex0/alpha and velocity [-] at the end of a pulse without impact so far, (3.11).
+    """Rotation theta_ex0/alpha and velocity [-] at the end of the pulse if there was no impact before, (3.11).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The interval of amplitudes in which one mechanism overturns the block."""
+"""Interval of amplitudes in which one mechanism overturns the block."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rocking.closed_form.coefficients import Array
 
 
 class AmplitudeInterval(NamedTuple):
-    """The block overturns for lower < a < upper [-]; both nan where the mechanism does not overturn it."""
+    """The block overturns for lower < a < upper [-]; both are nan where the mechanism does not occur."""
 
     lower: Array
     upper: Array

@@ -1,4 +1,4 @@
-"""The limit (3.31) between cases 1.1 and 1.2: the first impact falls on the very end of the pulse."""
+"""The limit (3.31) between cases 1.1 and 1.2: the first impact coincides with the end of the pulse."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rocking.errors import in_range
 
 
 def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
-    """Which side of (3.31) a block is on.
+    """Margin of (3.31): sign and distance to the limit between cases 1.1 and 1.2.
 
     Parameters
     ----------
@@ -23,8 +23,8 @@ def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        (3.31), left side minus right side, times e^{-p T_ex} [-]: positive where the first impact would come after
-        the end of the pulse, or never; negative where it comes before.
+        (3.31), left side minus right side, times e^{-p T_ex} [-]: positive where the first impact is after the end of
+        the pulse or does not occur; negative where it is within the pulse.
     """
     a, omega = checked(amplitude, frequency_ratio)
     left = 1 + omega**2 + np.sqrt(1 + (a**2 + 1) * omega**2)
@@ -32,7 +32,7 @@ def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
 
 
 def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
-    """Amplitude at which the first impact falls on the end of the pulse, the curve of (3.31).
+    """Amplitude at which the first impact coincides with the end of the pulse, the curve of (3.31).
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact comes after the pulse (case 1.2, up
-        to `case_2_amplitude`), below it while the pulse acts (case 1.1). Below frequency ratios of about 0.2 the
-        curve and case 2 agree in all printed digits.
+        a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact is after the pulse (case 1.2, up to
+        `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and
+        that of case 2 agree in all printed digits.
     """
     omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
     psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
@@ -52,14 +52,14 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
 
 
 def _limit(psi: Array, omega: Array) -> Array:
-    """(3.31) times sin(psi) e^{-p T_ex}; omega^2 sin(psi) is collected, or it cancels for large omega."""
+    """(3.31) times sin(psi) e^{-p T_ex}; collected in omega^2 sin(psi) to avoid cancellation for large omega."""
     decay = np.exp(-(2 * np.pi - psi) / omega)
-    kept = decay * (np.sin(psi) + np.sqrt((1 + omega**2) * np.sin(psi) ** 2 + omega**2)) + omega * np.cos(psi)
-    return np.asarray(kept + omega**2 * np.sin(psi) * np.expm1(-(2 * np.pi - psi) / omega))
+    regular = decay * (np.sin(psi) + np.sqrt((1 + omega**2) * np.sin(psi) ** 2 + omega**2)) + omega * np.cos(psi)
+    return np.asarray(regular + omega**2 * np.sin(psi) * np.expm1(-(2 * np.pi - psi) / omega))
 
 
 def limit_velocity(frequency_ratio: ArrayLike) -> Array:
-    """d(theta/alpha)/d tau [-] of the impact that falls on the end of the pulse, on the curve of (3.31).
+    """d(theta/alpha)/d tau [-] just before the impact at the end of the pulse, on the curve of (3.31).
 
     Parameters
     ----------
@@ -69,8 +69,8 @@ def limit_velocity(frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        [-]; where eta times it exceeds 1 the curve runs through overturning and parts case 1.1 from case 1.2, where
-        it does not, the curve runs through the safe region.
+        [-]; where eta times this value exceeds 1 the curve separates overturning by case 1.1 from overturning by case
+        1.2; elsewhere it lies in the region where the block survives.
     """
     a = limit_amplitude(frequency_ratio)
     omega = np.asarray(frequency_ratio, dtype=np.float64)

@@ -1,8 +1,8 @@
-"""Overturning of the slender block by any pulse, given that no further impact comes while the pulse acts.
+"""Overturning of the slender block under any pulse, if no further impact occurs within the pulse.
 
-Between impacts the growing part of the motion, E = theta/alpha + velocity -+ 1, obeys E' = E - a f, and the block
-overturns after the pulse if E then points away from rest. That is one integral over the pulse, from uplift or from an
-impact on. It contains (3.10), (3.18) and (3.20), and is an independent check on solvers for every pulse.
+Between impacts the growing part of the motion, E = theta/alpha + velocity -+ 1, obeys E' = E - a f. The block overturns
+after the pulse if E then has the sign of the rotation. This condition is one integral over the pulse, from uplift or
+from an impact on. It contains (3.10), (3.18) and (3.20) and is an independent check of the solver for every pulse.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from scipy.optimize import brentq
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
 
-_NEGLIGIBLE = 50.0  # times beyond which e^-s < 2e-22 no longer counts
+_NEGLIGIBLE = 50.0  # time s beyond which e^-s < 2e-22 is neglected
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
-    """Phase at which |a f| first reaches 1.
+    """Phase of the pulse at which |a f| first reaches 1.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
     if abs(a * float(shape.shape(shape.start))) >= 1:
         return shape.start
     for low, high in shape.monotone_pieces:
-        if abs(a * float(shape.shape(high))) >= 1:  # |f| then grows through 1/a once, from below, on this piece
+        if abs(a * float(shape.shape(high))) >= 1:  # |f| reaches 1/a from below exactly once on this piece
             return float(brentq(lambda phi: a * abs(float(shape.shape(phi))) - 1, low, high, xtol=1e-15, rtol=8.9e-16))
     return math.nan
 
@@ -68,7 +68,9 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
             total += (c * cmath.exp(1j * (w * phi0 + d)) * (cmath.exp(rate * length) - 1) / rate).real
         return total
     length = min(length, _NEGLIGIBLE)
-    pieces = math.ceil(length * max(omega, 1.0))  # at most one unit of s and one radian each: 20 nodes are exact there
+    pieces = math.ceil(
+        length * max(omega, 1.0)
+    )  # at most one unit of s and one radian each: 20 nodes are exact to rounding
     edges = np.linspace(0.0, length, pieces + 1)
     s = edges[:-1, None] + (edges[1] - edges[0]) * (_NODES + 1) / 2
     values = shape.shape(phi0 + omega * s) * np.exp(-s)
@@ -76,7 +78,7 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
 
 
 def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequency_ratio: float) -> float:
-    """How far a block is beyond overturning without impact, for any pulse.
+    """Margin of overturning without impact, for any pulse.
 
     Parameters
     ----------
@@ -91,8 +93,8 @@ def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequenc
     -------
     float
         +- a * integral of f e^{-(s - tau_0)} ds - 1 [-] from uplift on, with the sign of f at uplift: positive where
-        the block overturns directly, provided that it is not back on the ground before the pulse ends. -1 if it
-        never uplifts. For the sine it vanishes on (3.10).
+        the block overturns without impact, provided that no impact occurs before the pulse ends. -1 if there is no
+        uplift. For the sine the margin vanishes on (3.10).
     """
     shape = as_pulse(pulse)
     phi0 = first_uplift_phase(shape, amplitude)
@@ -110,7 +112,7 @@ def margin_after_impact(
     impact_phase: float,
     impact_velocity: float,
 ) -> float:
-    """How far a block is beyond overturning after an impact that is the last while the pulse acts.
+    """Margin of overturning after the last impact within the pulse.
 
     Parameters
     ----------
@@ -123,7 +125,7 @@ def margin_after_impact(
     restitution : float
         eta [-], [0, 1].
     impact_phase : float
-        phi of the impact [rad]; from the end of the pulse on, its forcing is zero.
+        phi of the impact [rad]; the forcing is zero from the end of the pulse on.
     impact_velocity : float
         d(theta/alpha)/d tau just before the impact [-], with its sign.
 
@@ -131,7 +133,7 @@ def margin_after_impact(
     -------
     float
         eta |v| - (sign of v) a * integral of f e^{-(s - tau_1)} ds - 1 [-], positive where the block overturns. For the
-        sine it vanishes on (3.18) and on (3.20).
+        sine the margin vanishes on (3.18) and on (3.20).
     """
     shape = as_pulse(pulse)
     eta = float(in_range("restitution", restitution, 0.0, 1.0))

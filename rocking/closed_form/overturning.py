@@ -1,4 +1,4 @@
-"""All closed forms of section 3 together: the amplitudes at which one full sine overturns a block (figure 4)."""
+"""Overturning amplitudes of one full sine from all closed forms of section 3 (figure 4)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from rocking.closed_form.coefficients import Array
 
 
 class OverturningAmplitudes(NamedTuple):
-    """Amplitudes a [-] at which the fate changes; the block falls for falls_from < a < safe_again, and above direct."""
+    """Amplitudes a [-] at which the outcome changes.
+
+    The block overturns for falls_from < a < safe_again and for a > direct.
+    """
 
     falls_from: Array
     safe_again: Array
@@ -22,7 +25,7 @@ class OverturningAmplitudes(NamedTuple):
 
 
 def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> OverturningAmplitudes:
-    """Thresholds of overturning under one full sine by the closed forms of the paper.
+    """Overturning thresholds of one full sine by the closed forms of the paper.
 
     Parameters
     ----------
@@ -34,14 +37,15 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     Returns
     -------
     OverturningAmplitudes
-        Of the broadcast shape. `falls_from` and `safe_again` enclose overturning after one impact (cases 1.1 and
-        1.2), nan where there is none; from `direct` on the block overturns without impact (case 2).
+        Of the broadcast shape. `falls_from` and `safe_again` are the limits of overturning after one impact (cases 1.1
+        and 1.2), nan where there is none; from `direct` on the block overturns without impact (case 2).
 
     Notes
     -----
-    Not complete, whatever the paper says: near the tip of the safe region (1/a > 0.897, omega < 1.1) there are islands
-    where the block overturns after three, five or more impacts, always an odd number, all before the pulse ends. They
-    are not among these curves. Everywhere else 900 000 random blocks, eta from 0.3 to 1, had the fate told by them.
+    These curves are not complete, contrary to the paper. Near the tip of the safe region (1/a > 0.897, omega < 1.1)
+    there are islands in which the block overturns after three, five or more impacts (always an odd number), all within
+    the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000 random
+    blocks with eta from 0.3 to 1.
     """
     during = case_1_1_amplitudes(frequency_ratio, restitution)
     after = case_1_2_amplitudes(frequency_ratio, restitution)

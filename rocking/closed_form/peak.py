@@ -1,4 +1,4 @@
-"""Peak rotation of a block that survives, when its first impact comes after the pulse: (4.12) to (4.16)."""
+"""Peak rotation of a block that survives and whose first impact is after the pulse, (4.12) to (4.16)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking.errors import in_range
 
 
 def peak_of_velocity(velocity: ArrayLike) -> Array:
-    """Peak theta_m/alpha of free rocking that starts from theta = 0 with a given velocity, (4.12).
+    """Peak rotation theta_m/alpha of free rocking from theta = 0 with a given velocity, (4.12).
 
     Parameters
     ----------
@@ -22,13 +22,13 @@ def peak_of_velocity(velocity: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        [-], [0, 1]: the root of (4.12) with the minus sign, the plus sign being the unstable state beyond which the
-        block falls; nan above velocity 1, where the block overturns.
+        [-], [0, 1]: the root of (4.12) with the minus sign (the plus sign gives a point beyond the unstable
+        equilibrium); nan above velocity 1, where the block overturns.
 
     Notes
     -----
-    The first form of (4.12) is printed with mgR [1 - cos(alpha - theta_m)]; energy in free rocking gains
-    mgR [cos(alpha - theta_m) - cos alpha], and only that, linearised, yields the second form.
+    The first form of (4.12) is printed with mgR [1 - cos(alpha - theta_m)]. The potential energy gained in free rocking
+    is mgR [cos(alpha - theta_m) - cos alpha], and only its linearisation yields the second form.
     """
     squared = in_range("velocity", velocity, 0.0, np.inf, closed="left") ** 2
     return _peak(squared)
@@ -36,12 +36,12 @@ def peak_of_velocity(velocity: ArrayLike) -> Array:
 
 def _peak(squared: Array) -> Array:
     with np.errstate(invalid="ignore"):
-        # (4.12): 1 - sqrt(1 - x^2), without the cancellation
+        # (4.12): 1 - sqrt(1 - x^2), without cancellation
         return np.asarray(np.where(squared <= 1, squared / (1 + np.sqrt(1 - np.minimum(squared, 1))), np.nan))
 
 
 def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """Peak rotation theta_m/alpha after the first impact, (4.13): the closed-form rocking spectrum of the sine.
+    """Peak rotation theta_m/alpha after the first impact, (4.13): closed-form rocking spectrum of the sine.
 
     Parameters
     ----------
@@ -55,12 +55,12 @@ def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
     Returns
     -------
     ndarray
-        [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2, and where there is
-        no impact, as it overturns directly, above (3.10). Exact where the first impact comes after the pulse (above
-        (3.31)) and the rotation before it was smaller; approximate else.
+        [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2, and above (3.10),
+        where it overturns without impact. Exact where the first impact is after the pulse (above (3.31)) and the
+        rotation before it is smaller; approximate elsewhere.
     """
     eta = in_range("restitution", restitution, 0.0, 1.0)
-    return _peak(_energy(amplitude, frequency_ratio, eta))  # (4.13), first form
+    return _peak(_velocity_squared(amplitude, frequency_ratio, eta))  # (4.13), first form
 
 
 def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
@@ -97,22 +97,22 @@ def scale_function(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Returns
     -------
     ndarray
-        [-], >= 0; nan above (3.10), where the block overturns without an impact.
+        [-], >= 0; nan above (3.10), where the block overturns without impact.
 
     Notes
     -----
     The paper prints sqrt(1 - D0*) here and in (4.14) and (4.15). Since 1 - sqrt(1 - x^2) = x^2/2 + ... with
-    x = eta sqrt(1 - D0*), the square root does not belong there.
+    x = eta sqrt(1 - D0*), the leading term has no square root.
     """
     squared = impact_velocity_squared(amplitude, frequency_ratio)
-    falls_back = case_2_margin(amplitude, frequency_ratio) <= 0  # (3.10): else there is no impact
-    return np.asarray(np.where(falls_back & (squared >= 0), squared, np.nan))  # (4.16), f without the root
+    has_impact = case_2_margin(amplitude, frequency_ratio) <= 0  # (3.10)
+    return np.asarray(np.where(has_impact & (squared >= 0), squared, np.nan))  # (4.16), f without the square root
 
 
 def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """Leading term of the peak rotation theta_m/alpha [-] for small eta v_i2, (4.14) corrected, the law (4.16).
+    """Leading term of the peak rotation theta_m/alpha [-] for small eta v_i2, (4.14) corrected, scale law (4.16).
 
-    As `scale_function`, nan above (3.10).
+    nan above (3.10), as `scale_function`.
 
     Parameters
     ----------
@@ -124,7 +124,9 @@ def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: Ar
         eta [-], [0, 1].
     """
     eta = in_range("restitution", restitution, 0.0, 1.0)
-    return np.asarray(eta**2 / 2 * scale_function(amplitude, frequency_ratio))  # (4.14), (4.16), 1 - D0* not its root
+    return np.asarray(
+        eta**2 / 2 * scale_function(amplitude, frequency_ratio)
+    )  # (4.14), (4.16), with 1 - D0*, not its square root
 
 
 def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
@@ -142,7 +144,7 @@ def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restit
     return np.asarray(small_peak(amplitude, frequency_ratio, restitution) / np.asarray(amplitude))  # (4.15)
 
 
-def _energy(amplitude: ArrayLike, frequency_ratio: ArrayLike, eta: Array) -> Array:
-    """(eta v_i2)^2; nan where infinite times zero."""
+def _velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike, eta: Array) -> Array:
+    """(eta v_i2)^2 [-]; nan where the product is zero times infinity."""
     with np.errstate(invalid="ignore"):
         return np.asarray(eta**2 * scale_function(amplitude, frequency_ratio))

@@ -1,4 +1,4 @@
-"""Closed overturning conditions without impact for other simple pulses, as published."""
+"""Published closed-form conditions of overturning without impact for other simple pulses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rocking.errors import in_range
 
 
 def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
-    """Amplitude from which a rectangular pulse of length T_p/2 overturns the block (Housner 1963).
+    """Smallest amplitude at which a rectangular pulse of duration T_p/2 overturns the block (Housner 1963).
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
 
 
 def half_sine_amplitude(frequency_ratio: ArrayLike) -> Array:
-    """Amplitude from which half a sine overturns the block (Shi et al. 1996).
+    """Smallest amplitude at which half a sine overturns the block (Shi et al. 1996).
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def _half_sine(psi: Array, omega: Array) -> Array:
 
 
 def cosine_amplitude(frequency_ratio: ArrayLike) -> Array:
-    """Amplitude from which one full cosine overturns a block that it does not bring back to impact.
+    """Smallest amplitude at which one full cosine overturns the block, if no impact occurs within the pulse.
 
     Parameters
     ----------

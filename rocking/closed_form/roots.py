@@ -1,4 +1,4 @@
-"""Bracketed roots and maxima of many problems at once, nan where there is none."""
+"""Bracketed roots and maxima of many scalar functions at once; nan where there is none."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ Function = Callable[..., Array]
 
 
 def find_root(function: Function, low: Array, high: Array, *args: Array) -> Array:
-    """Root of `function(x, *args)` in [low, high] to the last digits (Chandrupatla), element by element.
+    """Root of `function(x, *args)` in [low, high] to rounding error (Chandrupatla), element by element.
 
     Parameters
     ----------
     function : callable
         Vectorised.
     low, high : ndarray
-        Brackets; all arrays broadcast. An infinite or nan end counts as no bracket.
+        Brackets; all arrays broadcast. An infinite or nan limit is treated as no bracket.
 
     Returns
     -------
     ndarray
-        nan where the function has one sign at both ends.
+        nan where the function has the same sign at both ends.
     """
     low, high, *args_ = np.broadcast_arrays(low, high, *args)
     if low.size == 0:
@@ -36,10 +36,10 @@ def find_root(function: Function, low: Array, high: Array, *args: Array) -> Arra
 
 
 def find_maximum(function: Function, low: Array, high: Array, *args: Array, points: int = 129) -> Array:
-    """Place of the largest value of `function(x, *args)` on [low, high], element by element.
+    """Argument of the largest value of `function(x, *args)` on [low, high], element by element.
 
-    A grid of `points` finds the hill, Chandrupatla's minimiser climbs it; where the hill is cut by an end of the
-    interval that end is returned.
+    A grid of `points` brackets the maximum and Chandrupatla's minimiser refines it. A maximum at an end of the interval
+    is returned as that end.
     """
     low, high, *args_ = np.broadcast_arrays(low, high, *args)
     if low.size == 0:
@@ -51,5 +51,5 @@ def find_maximum(function: Function, low: Array, high: Array, *args: Array, poin
         left, middle, right = (
             np.take_along_axis(grid, np.clip(best + step, 0, points - 1), axis=0)[0] for step in (-1, 0, 1)
         )
-        climbed = elementwise.find_minimum(lambda x, *a: -function(x, *a), (left, middle, right), args=tuple(args_))
-        return np.asarray(np.where(climbed.success, climbed.x, middle), dtype=np.float64)
+        refined = elementwise.find_minimum(lambda x, *a: -function(x, *a), (left, middle, right), args=tuple(args_))
+        return np.asarray(np.where(refined.success, refined.x, middle), dtype=np.float64)

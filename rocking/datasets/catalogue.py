@@ -1,43 +1,45 @@
-"""The files of a results folder: data sets by name, with size and sha256, noticed when they change."""
+"""The data set files of a results folder: name, size and sha256, and detection of changed files."""
 
 from __future__ import annotations
 
 import errno
-import hashlib
 import os
 import re
 import stat
 import threading
 import time
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Generic, NamedTuple, Self, TypeVar
 
 import xarray as xr
 
+from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import decode_dataset
 from rocking.errors import DatasetError
 
 CLOCK_TICK = 20_000_000
-"""Within this, two changes of a file may bear the same time [ns]: the clocks of file systems tick every 1 to 10 ms."""
+"""Changes of a file within this time may have the same time stamp [ns]: file system clocks advance by 1 to 10 ms."""
 
 MAX_READS = 5
-"""Attempts to read a file that changes meanwhile [-]."""
+"""Attempts to read a file that changes while it is read [-]."""
 
-_PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")  # of a name: no "..", nothing hidden
+_PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")  # one part of a name: neither ".." nor a hidden file
 
 
 class UnknownDatasetError(KeyError):
-    """There is no data set of this name."""
+    """No data set has this name."""
 
 
 class FileVersion(NamedTuple):
-    """What identifies the bytes of a file without reading them.
+    """Identifies the content of a file without reading it.
 
-    A file put in its place has another inode, and every write moves the time of change (ctime), which no program can
-    set as it can the time of modification. Not noticed are: writes after the clock of the machine was set back, writes
-    on file systems that keep no time of change, and writes through a memory map before the system records them.
+    A file that replaces another one has a different inode. Every write updates the time of change (ctime), which,
+    unlike the time of modification, programs cannot set. The following writes are not detected: those after the system
+    clock was set back, those on file systems without a time of change, and those through a memory map before the system
+    records them.
     """
 
     device: int
@@ -48,17 +50,17 @@ class FileVersion(NamedTuple):
 
     @classmethod
     def of(cls, status: os.stat_result) -> FileVersion:
-        """The version that a file, or a folder, has by its status; times in ns, size in bytes."""
+        """The version of a file or folder from its status; times in ns, size in bytes."""
         return cls(status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
 
     @property
     def is_settled(self) -> bool:
-        """Whether a later change is certain to bear another time."""
+        """True if any later change is certain to have a different time stamp."""
         return time.time_ns() - self.changed > CLOCK_TICK
 
 
 def version_of(path: Path) -> FileVersion | None:
-    """The version of the file, or folder, that lies there now; None if that cannot be told."""
+    """The current version of a file or folder; None if its status cannot be read."""
     try:
         return FileVersion.of(path.stat())
     except OSError:
@@ -67,7 +69,7 @@ def version_of(path: Path) -> FileVersion | None:
 
 @dataclass(frozen=True)
 class DatasetFile:
-    """One version of a data set file: its name (path below the folder, without suffix), size [bytes] and sha256."""
+    """One version of a data set file: name (path below the results folder without suffix), size [bytes] and sha256."""
 
     name: str
     size: int
@@ -75,24 +77,24 @@ class DatasetFile:
 
 
 class DataFile:
-    """An open data set file. What is read from it is of one version, whatever is put in its place meanwhile.
+    """An open data set file. All reads are of one version, even if the file is replaced in the meantime.
 
     Parameters
     ----------
     name : str
-        Of the data set.
+        Name of the data set.
     path : path
-        Of its file.
+        Path of its file.
 
     Attributes
     ----------
     version : FileVersion
-        Of the file when it was opened, or last read.
+        Version of the file when it was opened or last read.
 
     Raises
     ------
     OSError
-        If it cannot be opened, or is no regular file.
+        If it cannot be opened or is not a regular file.
     """
 
     def __init__(self, name: str, path: Path) -> None:
@@ -106,16 +108,16 @@ class DataFile:
             raise
 
     def fileno(self) -> int:
-        """The descriptor."""
+        """The file descriptor."""
         return self._file.fileno()
 
     def content(self) -> bytes:
-        """All bytes, as they were at one moment.
+        """All bytes of the file, of one version.
 
         Raises
         ------
         DatasetError
-            If they cannot be read, or the file changes again and again.
+            If the file cannot be read or changes during every attempt.
         """
         try:
             for _ in range(MAX_READS):
@@ -129,15 +131,15 @@ class DataFile:
         raise DatasetError(f"{self.name}: changes while it is read; ask again in a moment")
 
     def is_unchanged(self) -> bool:
-        """Whether the file is certain to hold what was read from it.
+        """True if the content is certain to be what was read before.
 
-        Its time of change also moves when its name goes to another file, or its permissions change: then only the bytes
-        tell.
+        The time of change is also updated when the file is replaced or its permissions change; only the bytes show
+        whether the content is the same then.
         """
         return FileVersion.of(os.fstat(self.fileno())) == self.version
 
     def close(self) -> None:
-        """Close the descriptor."""
+        """Close the file."""
         self._file.close()
 
     def __enter__(self) -> Self:
@@ -149,7 +151,7 @@ class DataFile:
         self.close()
 
     def _settled(self) -> FileVersion:
-        """The version of the file now, told apart from those to come."""
+        """The current version of the file, after a wait if a later version could not be distinguished from it."""
         status = os.fstat(self.fileno())
         if not stat.S_ISREG(status.st_mode):
             raise OSError(errno.EINVAL, "not a regular file")
@@ -158,6 +160,39 @@ class DataFile:
             return version
         time.sleep(CLOCK_TICK / 1e9)
         return FileVersion.of(os.fstat(self.fileno()))
+
+
+K = TypeVar("K", bound=Hashable)
+V = TypeVar("V")
+
+
+class VersionCache(Generic[K, V]):
+    """Values computed from files, each valid for one version of its file. Callers hold a lock where they need one."""
+
+    def __init__(self) -> None:
+        self._entries: dict[K, tuple[Path, FileVersion, V]] = {}
+
+    def __len__(self) -> int:
+        """Number of values that are kept."""
+        return len(self._entries)
+
+    def current(self, key: K) -> V | None:
+        """The value of a key if the file at its path has not changed since; None otherwise."""
+        entry = self._entries.get(key)
+        return entry[2] if entry is not None and entry[1] == version_of(entry[0]) else None
+
+    def store(self, key: K, path: Path, version: FileVersion, value: V) -> V:
+        """Keep a value that was computed from this version of a file; returns it."""
+        self._entries[key] = path, version, value
+        return value
+
+    def value(self, key: K, file: DataFile, compute: Callable[[DataFile], V]) -> V:
+        """The value of a key for an open file, computed once per version of the file."""
+        entry = self._entries.get(key)
+        if entry is not None and entry[1] == file.version:
+            return entry[2]
+        value = compute(file)  # which may read the file, and set its version to the one that was read
+        return self.store(key, file.path, file.version, value)
 
 
 class Catalogue:
@@ -172,22 +207,22 @@ class Catalogue:
     def __init__(self, results: Path | str) -> None:
         self.results = Path(results)
         self.lock = threading.RLock()
-        """To be held while a file is read: the netCDF library is not safe for threads."""
-        self._products: dict[str, tuple[FileVersion, DatasetFile]] = {}
+        """To be held while a file is read: the netCDF library is not thread-safe."""
+        self._products = VersionCache[str, DatasetFile]()
 
     def names(self) -> list[str]:
         """Names of all data sets, such as `spectra/sine/eta-0.85`, sorted."""
         return self.scan()[0]
 
     def scan(self) -> tuple[list[str], dict[str, str]]:
-        """Names of all data sets, sorted, and why which folders cannot be read; "results" stands for all of it."""
+        """Names of all data sets, sorted, and why folders cannot be read, by folder; "results" is the root."""
         names: list[str] = []
         unreadable: dict[str, str] = {}
         _scan(self.results, (), frozenset(), names, unreadable)
         return sorted(names), unreadable
 
     def open(self, name: str) -> DataFile:
-        """The file of a data set, to be closed by the caller.
+        """Open the file of a data set; the caller closes it.
 
         Raises
         ------
@@ -231,25 +266,26 @@ class Catalogue:
             As `DataFile.content`.
         """
         with self.lock:
-            known = self._products.get(file.name)
-            if known is None or known[0] != file.version:
-                digest = hashlib.sha256(file.content()).hexdigest()
-                known = self._products[file.name] = file.version, DatasetFile(file.name, file.version.size, digest)
-            return known[1]
+            return self._products.value(file.name, file, _dataset_file)
 
     def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
-        """A data set, read into memory and checked, and which version of it that is.
+        """A data set, read into memory and checked, and its version.
 
         Raises
         ------
         UnknownDatasetError
             If there is no data set of that name.
         DatasetError
-            If it is damaged, or cannot be read.
+            If it is damaged or cannot be read.
         """
         with self.open(name) as file, self.lock:
             content = file.content()
             return self.product_of(file), decode_dataset(content, name)
+
+
+def _dataset_file(file: DataFile) -> DatasetFile:
+    digest = sha256_of(file.content())
+    return DatasetFile(file.name, file.version.size, digest)
 
 
 def _scan(
@@ -259,7 +295,7 @@ def _scan(
     names: list[str],
     unreadable: dict[str, str],
 ) -> None:
-    """Collect the data sets below a folder; `above` identifies the folders around it, to which links may lead back."""
+    """Collect the data sets below a folder; `above` holds its parent folders, to which symbolic links may lead back."""
     try:
         status = folder.stat()
         identity = status.st_dev, status.st_ino
@@ -282,12 +318,12 @@ def _scan(
 def _may_be_folder(entry: os.DirEntry[str]) -> bool:
     try:
         return entry.is_dir()
-    except OSError:  # a loop of links, say; the reason comes with the attempt to read it
+    except OSError:  # such as a loop of symbolic links; reading the folder gives the reason
         return True
 
 
 def _open_without_waiting(path: str, flags: int) -> int:
-    """A pipe in place of a file is opened at once too, rather than when somebody writes to it."""
+    """Open without blocking: opening a named pipe would wait for a writer."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 

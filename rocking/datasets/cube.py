@@ -1,23 +1,21 @@
-"""Schema of the data sets: what a spectrum cube holds, and how any data set is written and read without surprises.
+"""Schema of the spectrum cubes, and functions that write and read data set files.
 
 A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio) and
 
 ====================  ===  =====================================================================================
 peak_rotation         f8   max |theta|/alpha over the whole response [-], nan where the block overturns
 outcome               i1   code of `rocking.model.response.Outcome`
-impacts               i4   impacts before the pulse ends, and the one after it upon which the block overturns
+impacts               i4   impacts before the pulse ends, and the one after it that is followed by overturning
 exceeded_alpha        i1   1 where |theta| passed alpha at some time
-peak_mode             i4   which lobe holds the peak; within one mode the peak is smooth
-stencil               i1   how to interpolate in the cell whose lower corner is the node, see `interpolation`
-interpolation_error   f4   largest error of that, measured at points of the cell and of those around it
-restitution_levels    i1   which files serve in that cell before the next restitution, see `SLICE_STENCILS`
-restitution_error     f4   largest error of that, measured in the same cells
-alpha_levels          i1   which angles serve in that cell before the next angle
-alpha_error           f4   largest error of that, measured in the same cells
+peak_mode             i4   arc on which the peak is reached; the peak is smooth within one mode
+stencil               i1   what is interpolated in the cell whose lower corner is the node
+interpolation_error   f4   largest error of that, measured at points of the cell and of the eight cells around it
+restitution_error     f4   largest error halfway to the next restitution, measured in the same cells
+alpha_error           f4   largest error halfway to the next angle, measured in the same cells
 ====================  ===  =====================================================================================
 
 with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
-ACDD-1.3, hold no clock time, so that equal content gives equal bytes, and carry a digest of their own values.
+ACDD-1.3. They contain no time of creation, so equal content gives equal bytes, and a digest of their values.
 """
 
 from __future__ import annotations
@@ -38,6 +36,7 @@ from xarray.backends import NetCDF4DataStore
 from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_number
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking.model.fields import CUBE_FIELDS
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
@@ -54,8 +53,6 @@ AXES: dict[str, dict[str, Any]] = {
 }
 """Attributes of the axes of a spectrum cube."""
 
-_LEVELS = "0 to 5: Lagrange over 4, 4, 4, 3, 3, 2, the first of them 1, 2, 0, 1, 0, 0 below the node's; -1: not at all"
-
 MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
 """Attributes of every dimensionless variable that a model computed."""
 
@@ -64,38 +61,28 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     "stencil": (
         "i1",
         {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
-         "comment": "0 to 8: four-point Lagrange in slenderness and log(frequency_ratio), the 16 nodes starting below "
-                    "the cell by (1,1), (1,0), (1,2), (0,1), (2,1), (0,0), (0,2), (2,0), (2,2) rows and columns; "
-                    "9 to 17: the same for (1 - peak_rotation)^2; 18: all overturn alike; -1: not at all"},
+         "comment": "four-point Lagrange in slenderness and log(frequency_ratio) over the 16 nodes around the cell",
+         "flag_values": np.array([NO_STENCIL, PEAK, SQUARED, OVERTURNS], dtype=np.int8),
+         "flag_meanings": "not_interpolated peak_rotation square_of_1_minus_peak_rotation all_overturn_alike"},
     ),
     "interpolation_error": (
         "f4",
         {"long_name": "largest measured error of interpolated peak_rotation around the cell above the node",
          "equation": "3.2",
-         "comment": "against the solver, in the cell and those around it, at two points of each and at five where "
-                    "they differ; 0 where all overturn alike, missing where no bound is known"},
-    ),
-    "restitution_levels": (
-        "i1",
-        {"long_name": "files that serve the cell above the node before the next restitution", "equation": "3.2",
-         "comment": _LEVELS},
+         "comment": "against the solver, in the cell and those around it, at two points of each and at five where the "
+                    "error exceeds 1e-6; 0 where all overturn in the same way, missing where no bound is known"},
     ),
     "restitution_error": (
         "f4",
         {"long_name": "largest measured error of peak_rotation interpolated before the next restitution",
          "equation": "3.2",
-         "comment": "over restitution_levels, in the cell above the node and in those around it, halfway at their "
-                    "centres and, where that differs, at two points more; missing where they differ in fate"},
-    ),
-    "alpha_levels": (
-        "i1",
-        {"long_name": "angles that serve the cell above the node before the next angle", "equation": "3.2",
-         "comment": f"in the square of alpha; {_LEVELS}"},
+         "comment": "four-point Lagrange over the nearest restitution_slices, measured halfway at the centres of the "
+                    "cell above the node and of those around it; missing where no bound is known"},
     ),
     "alpha_error": (
         "f4",
         {"long_name": "largest measured error of peak_rotation interpolated before the next alpha", "equation": "3.2",
-         "comment": "over alpha_levels, as restitution_error"},
+         "comment": "four-point Lagrange in the square of alpha, measured as restitution_error"},
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking.model.fields`."""
@@ -144,7 +131,7 @@ def build_spectrum_dataset(
     return describe(
         cube.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Rocking spectrum of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
-        summary="Peak rotation and fate of a free-standing rigid block over dimensionless slenderness and frequency "
+        summary="Peak rotation and outcome of a free-standing rigid block over dimensionless slenderness and frequency "
         "ratio, solved event by event, with the measured error of interpolating between the nodes.",
         history="rocking.spectra.cubes.spectrum",
         id=f"spectra/{pulse}/eta-{restitution:.2f}",
@@ -169,23 +156,23 @@ def scalar_coordinates(pulse: str, restitution: float) -> dict[str, xr.Variable]
 
 
 def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
-    """The data set with the global attributes that all our files share, and the given ones (title, summary, id, ...).
+    """The data set with the global attributes of all data sets and the given ones (title, summary, id, ...).
 
-    No clock time is among them: the same content gives the same bytes on any day.
+    They contain no time of creation: equal content gives equal bytes.
     """
     return dataset.assign_attrs({**_GLOBAL, **dataset.attrs, **attributes})
 
 
 def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
-    """Write a netCDF-4 file that appears whole or not at all, the same bytes for the same content.
+    """Write a netCDF-4 file atomically; equal content gives equal bytes.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        The file holds a digest of its values (`content_sha256`) and a checksum at its end (`append_checksum`), by which
-        `read_dataset` detects damage.
+        Written with a digest of its values (`content_sha256`); the file has another digest at its end
+        (`append_checksum`). `read_dataset` detects damage by them.
     path : path
-        Parent folders are made; an existing file is replaced.
+        Parent folders are created; an existing file is replaced.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -198,19 +185,19 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
         append_checksum(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
-        temporary.chmod(0o644)  # mkstemp makes it readable by its owner only
+        temporary.chmod(0o644)  # mkstemp makes the file readable by its owner only
         temporary.replace(path)  # atomic: os.replace
     finally:
         temporary.unlink(missing_ok=True)
 
 
 def read_dataset(path: Path | str) -> xr.Dataset:
-    """Read a file of `write_dataset` into memory and check that it is whole.
+    """Read a file written by `write_dataset` into memory and check its digests.
 
     Raises
     ------
     DatasetError
-        If the file is missing, cannot be read, is not one of ours, or does not hold what was written.
+        If the file is missing, cannot be read, was not written by this package, or is damaged.
     """
     return decode_dataset(read_content(path), path)
 
@@ -233,15 +220,15 @@ def read_content(path: Path | str) -> bytes:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of such a file; messages name `path`.
+    """The same from the bytes of a file; messages name `path`.
 
     Raises
     ------
     DatasetError
-        If they are not those of one of our files, or not what was written.
+        If the bytes were not written by this package or are damaged.
     """
     damage = find_damage(content)
-    if damage is not None:  # some broken files make the netCDF library run for ever
+    if damage is not None:  # the netCDF library does not return for some damaged files
         raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
     try:
         store = NetCDF4DataStore(netCDF4.Dataset("in memory", memory=content))  # type: ignore[no-untyped-call]
@@ -264,13 +251,13 @@ def read_spectrum(path: Path | str) -> xr.Dataset:
     Raises
     ------
     DatasetError
-        As `read_dataset`; also if a variable is missing, of another type or shape, or an axis does not ascend.
+        As `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
     """
     return decode_spectrum(read_content(path), path)
 
 
 def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of such a file; messages name `path`.
+    """The same from the bytes of a file; messages name `path`.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""Digests that say which code and which settings a result came from.
+"""Digests of the code and the settings from which a result was computed.
 
-A result depends on the modules that its script imports, directly or through others, and on the locked environment. The
-imports are read from the source text, so nothing is executed and a change in a module touches only what depends on it.
+A result depends on the modules that its script imports, directly or indirectly, and on the locked environment. The
+imports are read from the source text: nothing is executed, and a change of a module affects only results that depend on
+it.
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ from pathlib import Path
 from typing import Any
 
 PROJECT = Path(__file__).resolve().parents[2]
-"""Folder that holds the package and, in a checkout, `workflow/` and `environment.lock`."""
+"""Folder of the package and, in a checkout, of `workflow/` and `environment.lock`."""
 
 
 def source_files(*paths: Path, root: Path = PROJECT) -> list[Path]:
-    """All files under `root` that the given files import, directly or through others, themselves included; sorted.
+    """All files under `root` that the given files import, directly or indirectly, and these files; sorted.
 
-    `rocking/__init__.py` only forwards names lazily, so importing a module through it does not make the result depend
-    on every public name; asking it for a name that is no module does, and then the whole package counts.
+    `rocking/__init__.py` only loads names lazily. Importing a module through it does not add a dependency on every
+    public name; importing a name that is not a module does, and then all files of the package are included.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def code_digest(*paths: Path, root: Path = PROJECT) -> str:
 
 
 def settings_digest(settings: Mapping[str, Any]) -> str:
-    """sha256 (hex) of plain settings (numbers, strings, lists, mappings), whatever the order of their keys."""
+    """sha256 (hex) of settings (numbers, strings, lists, mappings), independent of the order of their keys."""
     return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()
 
 
@@ -84,7 +85,7 @@ def _imported_files(path: Path, root: Path) -> Iterable[Path]:
 
 
 def _module_files(name: str, root: Path, attribute_of: str | None = None) -> Iterable[Path]:
-    """Files behind a dotted name; where it is no module, those of the module that it is an attribute of."""
+    """Files of a dotted name; if it is not a module, those of the module that has it as an attribute."""
     place = root.joinpath(*name.split("."))
     module = place.with_suffix(".py") if place.name else place
     initial = place / "__init__.py"

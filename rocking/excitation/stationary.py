@@ -1,4 +1,4 @@
-"""Turns of a pulse: all phases at which f' changes its sign, by exclusion and bisection."""
+"""Stationary phases of a pulse: all phases at which f' changes sign, by interval exclusion and bisection."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from numpy.typing import NDArray
 from rocking.errors import InvalidArgumentError
 
 HALVINGS = 26
-"""Halvings of the window in the search: two zeros in one interval that is left are 1.5e-8 of the window apart."""
+"""Halvings of the window in the search. Two zeros in a remaining interval are at most 1.5e-8 of the window apart."""
 
 MAX_INTERVALS = 65536
-"""Most intervals that are searched at once."""
+"""Largest number of intervals searched at once."""
 
 BISECTIONS = 80
-"""Halvings of a bracket around one zero: to two neighbouring doubles."""
+"""Halvings of a bracket around one zero, down to two adjacent doubles."""
 
 Array = NDArray[np.float64]
 Slope = Callable[[Array], tuple[Array, Array]]
 """From phases (n,) the function and its derivative."""
 
 
-def sign_changes(slope: Slope, largest: float, bend: float, start: float, end: float) -> tuple[float, ...]:
-    """The phases strictly inside the window at which `slope` changes its sign, to the last bit.
+def sign_changes(slope: Slope, bound: float, second_bound: float, start: float, end: float) -> tuple[float, ...]:
+    """The phases strictly inside the window at which `slope` changes sign, to the last bit.
 
-    `largest` and `bend` bound the slope and its second derivative. On an interval of length l about m a function v has
-    no zero if |v(m)| > |v'(m)| l/2 + bend l^2/8, and at most one if |v'(m)| > bend l/2; other intervals are halved.
-    Two zeros in one that is left after `HALVINGS` change f by less than its rounding.
+    `bound` and `second_bound`, M, are bounds of the slope and of its second derivative. On an interval of length l
+    about m a function v has no zero if |v(m)| > |v'(m)| l/2 + M l^2/8, and at most one if |v'(m)| > M l/2; other
+    intervals are halved. Two zeros in an interval that remains after `HALVINGS` change f by less than rounding.
     """
-    if largest == 0.0:  # f is constant
+    if bound == 0.0:  # f is constant
         return ()
     length, share = end - start, 1.0
-    first, brackets = np.zeros(1), []  # shares of the window, exact: neighbours end at the same phase
+    first, brackets = np.zeros(1), []  # exact fractions of the window: adjacent intervals share their end
     for _ in range(HALVINGS):
         value, rate = slope(start + (first + 0.5 * share) * length)
         half = 0.5 * share * length
-        some = np.abs(value) <= np.abs(rate) * half + 0.5 * bend * half * half
-        single = np.abs(rate) > bend * half
+        some = np.abs(value) <= np.abs(rate) * half + 0.5 * second_bound * half * half
+        single = np.abs(rate) > second_bound * half
         brackets.append(np.stack([first, first + share])[:, some & single])
         share *= 0.5
         first = first[some & ~single]
@@ -56,5 +56,7 @@ def sign_changes(slope: Slope, largest: float, bend: float, start: float, end: f
         beyond = (slope(middle)[0] > 0.0) == rises
         left, right = np.where(beyond, left, middle), np.where(beyond, middle, right)
     found = np.where(np.abs(slope(left)[0]) < np.abs(slope(right)[0]), left, right)
-    inside = (found - start > 1e-12 * length) & (end - found > 1e-12 * length)  # else an end that rounding has moved
+    inside = (found - start > 1e-12 * length) & (
+        end - found > 1e-12 * length
+    )  # otherwise an end of the window displaced by rounding
     return tuple(found[inside].tolist())

@@ -1,4 +1,4 @@
-"""Similarity groups of the rocking block, (3.6), (4.10), (4.11), (5.3) and (6.1), both ways."""
+"""Conversion between SI units and the similarity groups of the rocking block, (3.6), (4.10), (4.11), (5.3), (6.1)."""
 
 from rocking.groups.control import Groups as Groups
 from rocking.groups.control import GroupSet as GroupSet

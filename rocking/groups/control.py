@@ -1,7 +1,7 @@
-"""Control groups: a block under a pulse in SI units to its groups and back, (3.6), (4.10), (4.11), (5.3), (6.1).
+"""Control groups of a block under a pulse, from SI units and back, (3.6), (4.10), (4.11), (5.3), (6.1).
 
-Two blocks whose groups agree have the same scaled response: exactly for slender blocks in (4.10) and (4.11), exactly
-for geometrically similar ones in (5.3), nearly in (6.1).
+Two blocks with equal groups have the same scaled response: exactly for slender blocks with (4.10) and (4.11), exactly
+for geometrically similar blocks with (5.3), approximately with (6.1).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class GroupSet(Enum):
-    """Which groups: the value is the equation of the paper."""
+    """Sets of groups; the value is the equation number in the paper."""
 
     SLENDER_BY_BLOCK = "4.10"
     """theta/alpha against omega_g/p, a_g/(g alpha): (3.6) and (4.10)."""
@@ -32,7 +32,7 @@ class GroupSet(Enum):
 
     @property
     def is_slender(self) -> bool:
-        """True where alpha stands for tan(alpha)."""
+        """True if the set uses alpha in place of tan(alpha)."""
         return self in (GroupSet.SLENDER_BY_BLOCK, GroupSet.SLENDER_BY_PULSE)
 
 
@@ -70,7 +70,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Groups:
-    """Control groups of a problem; restitution eta is a group already and is left to the caller.
+    """Control groups of a problem, except restitution eta, which is dimensionless already.
 
     Parameters
     ----------
@@ -104,9 +104,9 @@ def groups_of(problem: Problem, group_set: GroupSet) -> Groups:
     Parameters
     ----------
     problem : Problem
-        SI units.
+        Block and pulse in SI units.
     group_set : GroupSet
-        Which groups.
+        Set of groups.
     """
     alpha = np.asarray(problem.alpha, dtype=np.float64)
     omega = np.asarray(problem.pulse_frequency) / np.asarray(problem.frequency_parameter)  # (3.6)
@@ -123,14 +123,14 @@ def problem_of_block(
     frequency_parameter: ArrayLike,
     gravity: float = STANDARD_GRAVITY,
 ) -> Problem:
-    """The problem with these groups for a given block: finds the pulse.
+    """Problem with given groups and a given block; determines the pulse.
 
     Parameters
     ----------
     groups : Groups
         Control groups; with (5.3) `cos_alpha` must be that of the block.
     group_set : GroupSet
-        Which groups these are.
+        Set to which they belong.
     alpha : array_like
         Slenderness angle [rad], (0, pi/2).
     frequency_parameter : array_like
@@ -141,7 +141,7 @@ def problem_of_block(
     Raises
     ------
     InvalidArgumentError
-        If a block contradicts `groups.cos_alpha`.
+        If an argument is out of range or `alpha` contradicts `groups.cos_alpha`.
     """
     alpha = in_range("alpha", alpha, 0.0, np.pi / 2, closed="neither", unit="rad")
     p = in_range("frequency_parameter", frequency_parameter, 0.0, np.inf, closed="neither", unit="rad/s")
@@ -158,11 +158,11 @@ def problem_of_block(
 
 
 def _check_similar(cos_alpha: ArrayLike, alpha: Array) -> None:
-    """Refuse blocks that are not geometrically similar to the one the groups stand for."""
-    wanted, actual = np.broadcast_arrays(cos_alpha, np.cos(alpha))
-    wrong = ~np.isclose(actual, wanted, rtol=1e-9, atol=0.0)
+    """Raise `InvalidArgumentError` unless cos(alpha) equals the group `cos_alpha`."""
+    required, actual = np.broadcast_arrays(cos_alpha, np.cos(alpha))
+    wrong = ~np.isclose(actual, required, rtol=1e-9, atol=0.0)
     if wrong.any():
-        in_range("cos_alpha", actual[wrong][0], float(wanted[wrong][0]), float(wanted[wrong][0]))
+        in_range("cos_alpha", actual[wrong][0], float(required[wrong][0]), float(required[wrong][0]))
 
 
 def problem_of_pulse(
@@ -173,14 +173,14 @@ def problem_of_pulse(
     pulse_frequency: ArrayLike,
     gravity: float = STANDARD_GRAVITY,
 ) -> Problem:
-    """The problem with these groups for a given pulse: finds the block.
+    """Problem with given groups and a given pulse; determines the block.
 
     Parameters
     ----------
     groups : Groups
-        Control groups; in (5.3) the slenderness, not `cos_alpha`, sets alpha, and the two must agree.
+        Control groups; in (5.3) alpha follows from the slenderness and must agree with `cos_alpha`.
     group_set : GroupSet
-        Which groups these are.
+        Set to which they belong.
     peak_acceleration : array_like
         a_g [m/s2], (0, inf).
     pulse_frequency : array_like
@@ -191,7 +191,7 @@ def problem_of_pulse(
     Raises
     ------
     InvalidArgumentError
-        If no block has these groups: alpha beyond pi/2, or contradicting `groups.cos_alpha`.
+        If no block has these groups: alpha is pi/2 or more, or contradicts `groups.cos_alpha`.
     """
     slope = np.asarray(groups.slenderness) * np.asarray(peak_acceleration) / gravity
     alpha = np.asarray(slope if group_set.is_slender else np.arctan(slope))

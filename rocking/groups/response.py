@@ -1,4 +1,4 @@
-"""Responses in SI units to their groups and back, (3.6), (4.1), (4.10), (4.11), (5.3) and (6.1)."""
+"""Scaling of responses, from SI units and back, (3.6), (4.1), (4.10), (4.11), (5.3) and (6.1)."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from rocking.groups.control import Array, GroupSet, Problem
 
 
 def rotation_scale(problem: Problem, group_set: GroupSet) -> Array:
-    """The angle by which a rotation is divided [rad].
+    """Angle by which rotations are divided [rad].
 
     Parameters
     ----------
     problem : Problem
-        SI units.
+        Block and pulse in SI units.
     group_set : GroupSet
-        Which groups.
+        Set of groups.
 
     Returns
     -------
@@ -36,12 +36,12 @@ def rotation_scale(problem: Problem, group_set: GroupSet) -> Array:
 
 
 def scaled_rotation(rotation: ArrayLike, problem: Problem, group_set: GroupSet) -> Array:
-    """Rotation theta [rad] in the groups of the set [-]; `rotation` broadcasts with the problem."""
+    """Scaled rotation [-] of a rotation theta [rad]; `rotation` broadcasts with the problem."""
     return np.asarray(np.asarray(rotation) / rotation_scale(problem, group_set))
 
 
 def rotation_of_scaled(scaled: ArrayLike, problem: Problem, group_set: GroupSet) -> Array:
-    """Rotation theta [rad] from its group [-]; the inverse of `scaled_rotation`."""
+    """Rotation theta [rad] of a scaled rotation [-]; inverse of `scaled_rotation`."""
     return np.asarray(np.asarray(scaled) * rotation_scale(problem, group_set))
 
 
@@ -51,19 +51,19 @@ def scaled_time(time: ArrayLike, problem: Problem) -> Array:
 
 
 def time_of_scaled(scaled: ArrayLike, problem: Problem) -> Array:
-    """Time t [s] of tau [-]; the inverse of `scaled_time`."""
+    """Time t [s] of tau [-]; inverse of `scaled_time`."""
     return np.asarray(np.asarray(scaled) / np.asarray(problem.frequency_parameter))
 
 
 def scaled_angular_velocity(velocity: ArrayLike, problem: Problem, group_set: GroupSet) -> Array:
-    """Angular velocity [rad/s] in the groups of the set [-]: theta'/(p alpha) in (3.4), g theta'/(p a_g) in (4.1)."""
+    """Scaled angular velocity [-] of one in rad/s: theta'/(p alpha) in (3.4), g theta'/(p a_g) in (4.1)."""
     return np.asarray(
         np.asarray(velocity) / (rotation_scale(problem, group_set) * np.asarray(problem.frequency_parameter))
     )
 
 
 def angular_velocity_of_scaled(scaled: ArrayLike, problem: Problem, group_set: GroupSet) -> Array:
-    """Angular velocity [rad/s] from its group [-]; the inverse of `scaled_angular_velocity`."""
+    """Angular velocity [rad/s] of a scaled one [-]; inverse of `scaled_angular_velocity`."""
     return np.asarray(
         np.asarray(scaled) * (rotation_scale(problem, group_set) * np.asarray(problem.frequency_parameter))
     )

@@ -1,6 +1,6 @@
-"""The scale law for restitution, theta_m proportional to eta^2, (4.16): measured, not asserted.
+"""Measured deviation from the scale law for restitution, theta_m proportional to eta^2, (4.16).
 
-Pure arithmetic on peaks that a solver or a closed form has found along an axis of restitutions.
+The functions work on peaks that the solver or a closed form computed along an axis of restitutions.
 """
 
 from __future__ import annotations
@@ -14,71 +14,71 @@ Array = NDArray[np.float64]
 
 
 def scale_law_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, reference: float, axis: int = 0) -> Array:
-    """How far peak/eta^2 is from its value at a reference restitution, relative: the error of (4.16).
+    """Relative deviation of peak/eta^2 from its value at a reference restitution, the error of (4.16).
 
     Parameters
     ----------
     peak_rotation : array_like
-        Peaks in any normalisation [-], nan where overturned; one axis runs over `restitution`.
+        Peak rotations with any scaling [-], nan where overturned; one axis corresponds to `restitution`.
     restitution : array_like, shape (n,)
         eta [-], (0, 1].
     reference : float
-        The eta from which the law is to predict the others; one of `restitution` [-].
+        The eta from which the law predicts the other peaks [-]; one of `restitution`.
     axis : int
-        Axis of `peak_rotation` that runs over restitution.
+        Axis of `peak_rotation` that corresponds to restitution.
 
     Returns
     -------
     ndarray
         (reference peak) (eta/reference)^2 / peak - 1 [-], of the shape of `peak_rotation`: positive where the law
-        promises too much; nan where either block overturned or never moved.
+        overestimates the peak; nan where either block overturned or did not uplift.
 
     Raises
     ------
     InvalidArgumentError
-        If `reference` is not among the restitutions or the shapes do not match.
+        If `reference` is not one of the restitutions or the shapes do not match.
     """
     peak, eta = _aligned(peak_rotation, restitution, axis)
     at = np.flatnonzero(np.isclose(eta, reference, rtol=0.0, atol=1e-9))
     if at.size == 0:
         raise InvalidArgumentError("reference", reference, f"one of the restitutions {eta.tolist()}")
-    scaled = peak / eta**2  # f(a, omega)/2 of (4.16), were the law exact
+    scaled = peak / eta**2  # f(a, omega)/2 of (4.16) if the law is exact
     with np.errstate(divide="ignore", invalid="ignore"):
         deviation = np.where(scaled > 0, scaled[..., at[:1]] / scaled - 1, np.nan)
     return np.asarray(np.moveaxis(deviation, -1, axis))
 
 
 def largest_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, reference: float, axis: int = 0) -> Array:
-    """Largest absolute `scale_law_deviation` over restitution [-], nan where no pair of peaks could be compared.
+    """Largest absolute `scale_law_deviation` over restitution [-], nan where no two peaks can be compared.
 
     Parameters
     ----------
     peak_rotation : array_like
-        Peaks in any normalisation [-], nan where overturned; one axis runs over `restitution`.
+        Peak rotations with any scaling [-], nan where overturned; one axis corresponds to `restitution`.
     restitution : array_like, shape (n,)
         eta [-], (0, 1].
     reference : float
         The eta from which the law predicts [-].
     axis : int
-        Axis of `peak_rotation` that runs over restitution; it is gone from the answer.
+        Axis of `peak_rotation` that corresponds to restitution; the result does not have it.
     """
     deviation = np.abs(scale_law_deviation(peak_rotation, restitution, reference=reference, axis=axis))
-    # the reference compares only with itself; at least one other peak makes a measurement
+    # the deviation of the reference itself is zero: at least one other peak is needed
     others = np.sum(np.isfinite(deviation), axis=axis) > 1
     return np.asarray(np.where(others, np.max(np.nan_to_num(deviation, nan=0.0), axis=axis), np.nan))
 
 
 def restitution_exponent(peak_rotation: ArrayLike, restitution: ArrayLike, *, axis: int = 0) -> Array:
-    """Exponent n of peak = constant eta^n by least squares in logarithms [-]; the law (4.16) says 2.
+    """Exponent n of peak = constant eta^n [-] by least squares in logarithms; 2 by the law (4.16).
 
     Parameters
     ----------
     peak_rotation : array_like
-        Peaks in any normalisation [-], nan where overturned; one axis runs over `restitution`.
+        Peak rotations with any scaling [-], nan where overturned; one axis corresponds to `restitution`.
     restitution : array_like, shape (n,)
         eta [-], (0, 1].
     axis : int
-        Axis of `peak_rotation` that runs over restitution; it is gone from the answer.
+        Axis of `peak_rotation` that corresponds to restitution; the result does not have it.
 
     Returns
     -------

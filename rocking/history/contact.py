@@ -1,8 +1,9 @@
-"""What a whole motion asks of the contact: the largest friction demand, the smallest reaction, and where doubt begins.
+"""Contact forces during a whole motion: largest friction demand, smallest normal reaction, validity of pure rocking.
 
-Between events the reactions are smooth; they jump at impacts, at the end of the pulse and where a pulse begins with a
-jump. So the motion is sampled finely where the block moves and on both sides of every event, and the extremes are
-refined around their best samples. An impact itself is an impulse and is told apart (`contact.impulse_ratio`).
+Between events the reactions are smooth; they are discontinuous at impacts, at the end of the pulse and where a pulse
+starts with a jump. The motion is sampled finely where the block moves and on both sides of every event, and the
+extremes are refined around the extreme samples. An impact is an impulse and is treated separately
+(`rocking.model.reactions.impulse_ratio`).
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ EVENT_OFFSET = 1e-12
 """Relative distance in time of the samples on either side of an event."""
 
 PRACTICAL_FRICTION = 0.7
-"""Friction that a dry contact can be trusted with [-]: of rough concrete on concrete in EN 1992-1-1, 6.2.5."""
+"""Coefficient of friction that a dry contact reliably provides [-]: rough concrete on concrete, EN 1992-1-1, 6.2.5."""
 
 MAX_FRICTION = 1.0
-"""Friction demand beyond which the rocking model is taken not to apply [-]: common dry contacts stay below."""
+"""Friction demand beyond which the rocking model is considered invalid [-]; common dry contacts provide less."""
 
 COLUMNS = {
     "horizontal_reaction": "horizontal reaction H/(m g) of the ground at the pivot",
@@ -37,7 +38,7 @@ COLUMNS = {
     "friction_demand": "friction demand |H|/N",
     "friction_demand_over_slope": "friction demand |H|/(N tan alpha)",
 }
-"""Variables that the contact adds to a time history, with their meaning."""
+"""Variables that `add_contact` adds to a time history, with their meanings."""
 
 ATTRIBUTES = (
     "largest_friction_demand",
@@ -45,27 +46,27 @@ ATTRIBUTES = (
     "smallest_normal_reaction",
     "impulse_ratio",
 )
-"""Numbers about the whole motion that it adds, beside `lifts_off` and `warnings`."""
+"""Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
 
 @dataclass(frozen=True)
 class ContactExtremes:
-    """Extremes through a motion, impacts excluded; of a block that overturns, until it passes alpha for good.
+    """Extremes during a motion, impacts excluded; of a block that overturns, until it exceeds alpha permanently.
 
     Attributes
     ----------
     largest_friction_demand : float [-]
-        Largest |H|/N; infinite where it lifts off, 0 in the slender limit.
+        Largest |H|/N; infinite if the block lifts off, 0 in the slender limit.
     largest_friction_demand_over_slope : float [-]
-        The same over tan(alpha), 1 or more for every block that rocks.
+        The same over tan(alpha), at least 1 for every block that rocks.
     friction_time : float [-]
-        tau of it.
+        tau at which it occurs.
     smallest_normal_reaction : float [-]
         Smallest N/(m g).
     normal_time : float [-]
-        tau of it.
+        tau at which it occurs.
     impulse_ratio : float [-]
-        Horizontal over vertical impulse at its impacts; 0 if there are none.
+        Horizontal over vertical impulse at the impacts; 0 if there are none.
     chatters : bool
         Whether impacts accumulate to rest while the pulse acts.
     outcome : Outcome
@@ -83,22 +84,22 @@ class ContactExtremes:
 
     @property
     def lifts_off(self) -> bool:
-        """Whether pure rocking would need a ground that pulls: the block leaves it instead."""
+        """Whether pure rocking would require a tensile reaction, so that the block leaves the ground."""
         return self.smallest_normal_reaction <= 0.0
 
     @property
     def rocking_applies(self) -> bool:
         """Whether the block rocks without sliding or lifting off, or does not uplift at all.
 
-        False where it lifts off, or where rocking needs a coefficient of friction beyond `MAX_FRICTION`.
-        A block that does not uplift under friction that holds it does not uplift under less either.
+        False if the block lifts off, or if rocking requires a coefficient of friction beyond `MAX_FRICTION`.
+        A block that does not uplift without sliding does not uplift with less friction either.
         """
         held = not self.lifts_off and self.largest_friction_demand <= MAX_FRICTION
         return held or self.outcome == Outcome.NO_UPLIFT
 
     @property
     def sentence(self) -> str:
-        """The outcome in words, without a subject; where the rocking model does not apply, that comes first."""
+        """The outcome in words, without a subject; first whether the rocking model does not apply."""
         outcome, demand = self.outcome.sentence, self.largest_friction_demand
         if self.outcome == Outcome.NO_UPLIFT and demand > MAX_FRICTION:
             return f"{outcome}, but slides unless the coefficient of friction is at least {demand:.3g}"
@@ -116,7 +117,7 @@ class ContactExtremes:
 
     @property
     def warnings(self) -> list[str]:
-        """Sentences that say where pure rocking is in doubt; friction is not judged in the slender limit."""
+        """Warnings where pure rocking is doubtful; friction is not assessed in the slender limit."""
         said = []
         kept = "rest" if self.outcome == Outcome.NO_UPLIFT else "pure rocking"
         if self.lifts_off:
@@ -142,8 +143,8 @@ class ContactExtremes:
         return said
 
 
-def add_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Dataset:
-    """Add the contact to a time history of this motion.
+def add_contact(history: xr.Dataset, motion: Motion, impact_times: Floats) -> xr.Dataset:
+    """Add the contact forces to a time history of this motion.
 
     Returns
     -------
@@ -152,10 +153,10 @@ def add_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Dat
         friction_demand(tau): |H|/N, infinite where N <= 0; friction_demand_over_slope(tau): |H|/(N tan(alpha)), finite
         in the slender limit, where the first and the third are 0; all [-], at an impact after it. Attributes:
         largest_friction_demand, largest_friction_demand_over_slope, smallest_normal_reaction, lifts_off,
-        impulse_ratio, warnings, of `ContactExtremes`: through the motion shown, also between its samples.
+        impulse_ratio, warnings, of `ContactExtremes`: over the whole motion, also between its samples.
     """
     tau, rotation, velocity = (history[name].values for name in ("tau", "rotation", "angular_velocity"))
-    found = reactions_of(motion, landings, tau, rotation, velocity)
+    found = reactions_of(motion, impact_times, tau, rotation, velocity)
     most = contact_extremes(motion)
     slope = math.tan(motion.alpha)
     demand = found.friction_demand
@@ -171,7 +172,7 @@ def add_contact(history: xr.Dataset, motion: Motion, landings: Floats) -> xr.Dat
     )
 
 
-def reactions_of(motion: Motion, landings: Floats, tau: Floats, rotation: Floats, velocity: Floats) -> Reactions:
+def reactions_of(motion: Motion, impact_times: Floats, tau: Floats, rotation: Floats, velocity: Floats) -> Reactions:
     """The reactions at samples of the motion, all arrays (samples,); at an impact those after it.
 
     Parameters
@@ -183,26 +184,26 @@ def reactions_of(motion: Motion, landings: Floats, tau: Floats, rotation: Floats
         Ascending times and `Motion.sample` there.
     """
     ground = motion.ground_acceleration(tau)
-    # between two impacts the block stands on one corner: the sign of a single sample beside one may be rounding
-    stretch = np.searchsorted(landings, tau, side="right")
+    # between two impacts one corner is in contact; the sign of a sample next to an impact may be a rounding error
+    stretch = np.searchsorted(impact_times, tau, side="right")
     leaning = np.sign(np.bincount(stretch, weights=rotation))[stretch]
     side = np.where(leaning != 0.0, leaning, np.sign(velocity))
     still = (rotation == 0.0) & (velocity == 0.0)
-    lifting = np.where(np.abs(ground) > 1.0, -np.sign(ground), 0.0)  # a pulse that begins with a jump
+    lifting = np.where(np.abs(ground) > 1.0, -np.sign(ground), 0.0)  # a pulse that starts with a jump
     return reactions(rotation, velocity, ground, np.where(still, lifting, side), motion.alpha)
 
 
 def contact_extremes(motion: Motion) -> ContactExtremes:
-    """Extremes of the contact through the motion, up to its horizon."""
-    answer, landings = motion.events()
-    tau, rotation = _fine_samples(motion, answer, landings)
-    count = motion.sample_count(tau, rotation, answer)
+    """Extremes of the contact forces during the motion, up to its horizon."""
+    record, impact_times = motion.events()
+    tau, rotation = _fine_samples(motion, record, impact_times)
+    count = motion.sample_count(tau, rotation, record)
     tau, rotation = tau[:count], rotation[:count]
-    if overturned(answer):
+    if overturned(record):
         tau = _until_last_crossing_of_alpha(motion, tau, rotation)
 
     def measured(at: Floats) -> Reactions:
-        return reactions_of(motion, landings, at, *motion.sample(at))
+        return reactions_of(motion, impact_times, at, *motion.sample(at))
 
     normal_time, lowest = _refined_maximum(lambda at: -measured(at).normal, tau)
     time, demand = normal_time, math.inf
@@ -215,17 +216,20 @@ def contact_extremes(motion: Motion) -> ContactExtremes:
         friction_time=time,
         smallest_normal_reaction=-lowest,
         normal_time=normal_time,
-        impulse_ratio=impulse_ratio(motion.restitution, motion.alpha) if landings.size else 0.0,
-        chatters=bool(answer["chatter"]),
-        outcome=Outcome(int(answer["outcome"])),
+        impulse_ratio=impulse_ratio(motion.restitution, motion.alpha) if impact_times.size else 0.0,
+        chatters=bool(record["chatter"]),
+        outcome=Outcome(int(record["outcome"])),
     )
 
 
-def _fine_samples(motion: Motion, answer: Record, landings: Floats) -> tuple[Floats, Floats]:
-    """Times and rotations: both sides of every event, and small steps wherever the block moves, until it has fallen."""
-    end, cuts = motion.pulse_end, answer["interval_phase"][: int(answer["interval_count"]) + 1]  # where it can uplift
+def _fine_samples(motion: Motion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:
+    """Times and rotations: both sides of every event, and small steps where the block moves, until it overturns."""
+    end, cuts = (
+        motion.pulse_end,
+        record["interval_phase"][: int(record["interval_count"]) + 1],
+    )  # phases of possible uplift
     phases = np.concatenate([cuts, [motion.pulse.start, *motion.pulse.stationary]])
-    events = np.concatenate([landings, (phases - motion.pulse.start) / motion.frequency_ratio, [end]])
+    events = np.concatenate([impact_times, (phases - motion.pulse.start) / motion.frequency_ratio, [end]])
     tau = np.concatenate(
         [np.linspace(0.0, motion.horizon, 400), events, events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET)]
     )
@@ -233,7 +237,7 @@ def _fine_samples(motion: Motion, answer: Record, landings: Floats) -> tuple[Flo
     while True:
         rotation, velocity = motion.sample(tau)
         beyond = np.flatnonzero(np.abs(rotation) > motion.max_rotation)
-        if overturned(answer) and beyond.size:
+        if overturned(record) and beyond.size:
             last = int(beyond[0]) + 1
             tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
         moves = (rotation != 0.0) | (velocity != 0.0)
@@ -247,7 +251,7 @@ def _fine_samples(motion: Motion, answer: Record, landings: Floats) -> tuple[Flo
 
 
 def _until_last_crossing_of_alpha(motion: Motion, tau: Floats, rotation: Floats) -> Floats:
-    """The times up to where |theta| passes alpha for the last time: from there the block only falls."""
+    """The times up to the last crossing of |theta| = alpha, after which the block overturns monotonically."""
     below = int(np.flatnonzero(np.abs(rotation) <= 1.0)[-1])
     if below == tau.size - 1:
         return tau
@@ -260,7 +264,7 @@ def _until_last_crossing_of_alpha(motion: Motion, tau: Floats, rotation: Floats)
 
 
 def _refined_maximum(measure: Callable[[Floats], Floats], tau: Floats) -> tuple[float, float]:
-    """Time and value of the largest of a function, refined around its largest sample."""
+    """Time and value of the maximum of a function, refined around its largest sample."""
     for _ in range(4):
         values = measure(tau)
         k = int(values.argmax())

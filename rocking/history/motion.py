@@ -1,4 +1,4 @@
-"""The motion of one block as a function of time: sampled wherever it is asked for, by the solver's own flights."""
+"""The motion of one block as a function of time, sampled at given times by the flights of the solver."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from rocking.solver.state import SINGLE_SINUSOID_STATE, has_one_sinusoid, pulse_
 Floats = NDArray[np.float64]
 
 FREE_DURATION = 8.0
-"""Free rocking followed by default after the pulse [tau]."""
+"""Default duration of free rocking after the pulse [tau]."""
 
 MAX_FREE_IMPACTS = 10_000
-"""Most impacts of free rocking that are followed."""
+"""Largest number of impacts of free rocking."""
 
 MAX_ROTATION = 4.0
-"""|theta|/alpha from which an overturning block is no longer followed [-]; it lies on the ground at pi/2."""
+"""|theta|/alpha up to which an overturning block is followed [-]; it lies on the ground at |theta| = pi/2."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Motion:
     horizon : float
         tau at which to stop [-].
     stop : StopFlag, optional
-        Once another thread sets it, the methods raise `StoppedError`.
+        Cancels the work: the methods raise `StoppedError` soon after another thread sets the flag.
     """
 
     pulse: AbstractPulse
@@ -63,55 +63,59 @@ class Motion:
         return min(MAX_ROTATION, 0.5 * np.pi / self.alpha) if self.alpha > 0.0 else MAX_ROTATION
 
     def events(self) -> tuple[Record, Floats]:
-        """The solver's record with the answer, and the times of the impacts [tau]."""
+        """The record of the solver with the response, and the times of the impacts [tau]."""
         nothing = np.empty(0)
         forced, free = np.empty(IMPACT_LIMIT), np.empty(MAX_FREE_IMPACTS)
-        answer, written = self._sample_forced(nothing, nothing, nothing, forced)
-        then = self._sample_free(answer, nothing, nothing, nothing, free)
-        landings = np.concatenate([forced[:written], free[:then]])
-        return answer, landings[landings <= self.horizon]
+        record, written = self._sample_forced(nothing, nothing, nothing, forced)
+        then = self._sample_free(record, nothing, nothing, nothing, free)
+        impact_times = np.concatenate([forced[:written], free[:then]])
+        return record, impact_times[impact_times <= self.horizon]
 
     def sample(self, tau: Floats) -> tuple[Floats, Floats]:
-        """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero once it has fallen."""
+        """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero after overturning."""
         rotation, velocity, nothing = np.zeros(tau.size), np.zeros(tau.size), np.empty(0)
-        answer, _ = self._sample_forced(tau, rotation, velocity, nothing)
-        self._sample_free(answer, tau, rotation, velocity, np.empty(MAX_FREE_IMPACTS))
+        record, _ = self._sample_forced(tau, rotation, velocity, nothing)
+        self._sample_free(record, tau, rotation, velocity, np.empty(MAX_FREE_IMPACTS))
         return rotation, velocity
 
-    def sample_count(self, tau: Floats, rotation: Floats, answer: Record) -> int:
+    def sample_count(self, tau: Floats, rotation: Floats, record: Record) -> int:
         """Number of samples `rotation` at `tau` up to the first beyond `max_rotation`; all unless it overturns."""
-        if not overturned(answer):
+        if not overturned(record):
             return tau.size
         beyond = np.flatnonzero(np.abs(rotation) > self.max_rotation)
         if beyond.size:
             return int(beyond[0]) + 1
-        shown = (rotation != 0.0) | (tau <= answer["uplift_time"])
+        shown = (rotation != 0.0) | (tau <= record["uplift_time"])
         return int(np.flatnonzero(shown).max(initial=0)) + 1
 
     def ground_acceleration(self, tau: Floats) -> Floats:
         """Acceleration of the ground over g tan(alpha), a f [-] (3.2)."""
         return self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau) / self.slenderness
 
-    def _sample_forced(self, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> tuple[Record, int]:
+    def _sample_forced(
+        self, tau: Floats, rotation: Floats, velocity: Floats, impact_times: Floats
+    ) -> tuple[Record, int]:
         groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
-        rest = self.max_rotation, tau, rotation, velocity, landings, flag_array(self.stop)
+        rest = self.max_rotation, tau, rotation, velocity, impact_times, flag_array(self.stop)
         if has_one_sinusoid(self.pulse) and self.alpha == 0.0:
-            answer = pulse_state(self.pulse, SINGLE_SINUSOID_STATE).copy()
-            written = sample_arcs(*groups, answer, *rest)
+            record = pulse_state(self.pulse, SINGLE_SINUSOID_STATE).copy()
+            written = sample_arcs(*groups, record, *rest)
         else:
-            answer = pulse_state(self.pulse).copy()
-            written = solve_and_sample(*groups, answer, step_state(answer), *rest)
+            record = pulse_state(self.pulse).copy()
+            written = solve_and_sample(*groups, record, step_state(record), *rest)
         check_stop(self.stop)
-        return answer, int(written)
+        return record, int(written)
 
-    def _sample_free(self, answer: Record, tau: Floats, rotation: Floats, velocity: Floats, landings: Floats) -> int:
-        state = (*(float(answer[name]) for name in ("end_rotation", "end_velocity", "end_sign")), self.alpha)
+    def _sample_free(
+        self, record: Record, tau: Floats, rotation: Floats, velocity: Floats, impact_times: Floats
+    ) -> int:
+        state = (*(float(record[name]) for name in ("end_rotation", "end_velocity", "end_sign")), self.alpha)
         steps = step_state(pulse_state(self.pulse))
-        end = self.horizon * (1 + 1e-12)  # a step fills the samples before its end: the last one has to lie inside
+        end = self.horizon * (1 + 1e-12)  # a step fills the samples before its end, so the last sample must lie inside
         samples = tau, rotation, velocity
         times = self.pulse_end, end
         written = sample_free_rocking(
-            *state, steps, self.restitution, *times, self.max_rotation, *samples, landings, flag_array(self.stop)
+            *state, steps, self.restitution, *times, self.max_rotation, *samples, impact_times, flag_array(self.stop)
         )
         check_stop(self.stop)
         return int(written)
@@ -127,7 +131,7 @@ def build_motion(
     duration: float | None = None,
     stop: StopFlag | None = None,
 ) -> Motion:
-    """The motion that answers a question; arguments and errors as for `history.time_history`."""
+    """The motion for given groups; arguments and errors as for `rocking.time_history`."""
     if duration is not None:
         in_range("duration", duration, 0.0, np.inf, closed="neither")
     made = as_pulse(pulse)
@@ -136,6 +140,6 @@ def build_motion(
     return Motion(made, s, omega, eta, angle, horizon, stop)
 
 
-def overturned(answer: Record) -> bool:
-    """Whether the block of this record falls in the end."""
-    return bool(answer["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
+def overturned(record: Record) -> bool:
+    """Whether the block of this record overturns in the end."""
+    return bool(record["outcome"] >= Outcome.OVERTURNED_DIRECTLY)

@@ -1,4 +1,4 @@
-"""Time histories from the solver's own flights: each is sampled where it lies, then free rocking impact by impact."""
+"""Time histories from the flights of the solver: samples of each flight, then of free rocking, impact by impact."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rocking.solver.taylor.flight import impact_in_step, start_steps
 from rocking.solver.taylor.step import init_block, take_step
 
 REST_VELOCITY = 1e-7
-"""Velocity after an impact [-] below which free rocking is shown as rest: a rotation of 5e-15 alpha."""
+"""Velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha."""
 
 
 @kernel
@@ -27,10 +27,10 @@ def sample_step(
     rotation: FloatArray,
     velocity: FloatArray,
 ) -> int:
-    """Evaluate the Taylor step that began at time `start` at the samples before `end`; the samples passed."""
+    """Evaluate the Taylor step that starts at time `start` at the samples before `end`; returns the samples passed."""
     order = steps.order
     while filled < len(tau) and tau[filled] < end:
-        h = max(tau[filled] - start, 0.0)  # sums of steps round differently
+        h = max(tau[filled] - start, 0.0)  # sums of steps are rounded differently
         rotation[filled] = sign * evaluate_series(steps.z, 0, order, h)
         velocity[filled] = sign * evaluate_series(steps.rate, 0, order - 1, h)
         filled += 1
@@ -43,17 +43,17 @@ def sample_steps(
     steps: Record,
     start: float,
     end: float,
-    farthest: float,
+    max_rotation: float,
     tau: FloatArray,
     filled: int,
     rotation: FloatArray,
     velocity: FloatArray,
 ) -> tuple[int, float, float]:
-    """Step through the last flight of `advance` once more, at most to z = `farthest`; the samples passed, last z, w."""
+    """Repeat the last flight of `advance`, at most to z = `max_rotation`; returns the samples passed, last z, w."""
     init_block(steps, 0, flight.alpha, flight.omega)
     start_steps(flight, steps, 0)
     elapsed, z, w = 0.0, 0.0, flight.w0
-    while elapsed < flight.length and z < farthest:
+    while elapsed < flight.length and z < max_rotation:
         steps.limit[0] = flight.length - elapsed
         take_step(steps)
         h = steps.h[0]
@@ -79,7 +79,7 @@ def sample_steps(
 def sample_arc(
     flight: Record, start: float, end: float, tau: FloatArray, filled: int, rotation: FloatArray, velocity: FloatArray
 ) -> tuple[int, float, float]:
-    """Evaluate the arc of the last flight of `advance`; the samples passed, last z, w."""
+    """Evaluate the arc of the last flight of `advance`; returns the samples passed, last z, w."""
     while filled < len(tau) and tau[filled] < end:
         h = max(tau[filled] - start, 0.0)
         set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
@@ -99,11 +99,11 @@ def sample_pulse(
     alpha: float,
     flight: Record,
     steps: Record | None,
-    farthest: float,
+    max_rotation: float,
     tau: FloatArray,
     rotation: FloatArray,
     velocity: FloatArray,
-    landings: FloatArray,
+    impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
     """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
@@ -114,25 +114,25 @@ def sample_pulse(
         flight.length = math.nan
         going = advance_by_arc(flight, eta) if steps is None else advance(flight, steps, eta)
         if math.isnan(flight.length):
-            break  # at rest for good
+            break  # at rest until the end
         start = (flight.phase - flight.end_phase[0]) / omega
         end = start + flight.length
         if going:
-            end = (flight.next_phase - flight.end_phase[0]) / omega  # where the next flight says that it starts
-            if written < len(landings):
-                landings[written] = end
+            end = (flight.next_phase - flight.end_phase[0]) / omega  # as the start of the next flight
+            if written < len(impact_times):
+                impact_times[written] = end
                 written += 1
-        elif end < pulse_end:  # known to overturn before the pulse ends: its last flight goes on
+        elif end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
             flight.length, end = pulse_end - start, pulse_end
         while filled < len(tau) and tau[filled] < start:
             filled += 1  # at rest
-        # `advance` has prepared the next flight: its angles must not stand in for this one's
+        # `advance` has set the angles of the next flight: restore those of this one
         set_angles(flight, flight.phase, flight.cosine0, flight.sine0)
         if steps is None or flight.by_arcs == 1:
             filled, z, w = sample_arc(flight, start, end, tau, filled, rotation, velocity)
         else:
-            reach = math.inf if going else farthest
-            filled, z, w = sample_steps(flight, steps, start, end, reach, tau, filled, rotation, velocity)
+            limit = math.inf if going else max_rotation
+            filled, z, w = sample_steps(flight, steps, start, end, limit, tau, filled, rotation, velocity)
         if going:
             set_angles(flight, flight.next_phase, flight.cosine0, flight.sine0)
         else:
@@ -148,14 +148,14 @@ def solve_and_sample(
     alpha: float,
     flight: Record,
     steps: Record,
-    farthest: float,
+    max_rotation: float,
     tau: FloatArray,
     rotation: FloatArray,
     velocity: FloatArray,
-    landings: FloatArray,
+    impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """One block from rest to its final fate, sampled at the times `tau` during the pulse.
+    """One block from rest to its final outcome, sampled at the times `tau` during the pulse.
 
     Fills `rotation` theta/alpha and `velocity` theta'/(p alpha).
 
@@ -164,23 +164,23 @@ def solve_and_sample(
     slenderness, omega, eta, alpha : float
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
     flight, steps
-        The pulse, scratch and answer, as `state.pulse_state` and `state.step_state`.
+        Solver state, records of `pulse_state` and `step_state`; `flight` holds the response on return.
     farthest : float
-        |theta|/alpha at which the history of a block that is known to overturn may stop [-].
+        |theta|/alpha at which the history of a block that overturns may stop [-].
     tau : float array (samples,)
         Times from the pulse's start [-], ascending; `rotation` and `velocity` (samples,) are zero on entry.
     landings : float array
-        Filled with the times of the impacts as far as it reaches.
+        Filled with the times of the impacts, as many as fit.
     stop : uint8 array (1,)
-        Once another thread sets it to 1, this returns within a flight, with samples missing.
+        Once another thread sets it to 1, the function returns within a flight; samples are missing.
 
     Returns
     -------
     int
-        Impacts written down.
+        Number of impacts written.
     """
     return sample_pulse(
-        slenderness, omega, eta, alpha, flight, steps, farthest, tau, rotation, velocity, landings, stop
+        slenderness, omega, eta, alpha, flight, steps, max_rotation, tau, rotation, velocity, impact_times, stop
     )
 
 
@@ -191,18 +191,20 @@ def sample_arcs(
     eta: float,
     alpha: float,
     flight: Record,
-    farthest: float,
+    max_rotation: float,
     tau: FloatArray,
     rotation: FloatArray,
     velocity: FloatArray,
-    landings: FloatArray,
+    impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
     """`solve_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE_SINUSOID_STATE`.
 
-    Compiled as `solve_by_arcs`, it has the same bits.
+    Compiled as `solve_by_arcs`, it gives the same bits.
     """
-    return sample_pulse(slenderness, omega, eta, alpha, flight, None, farthest, tau, rotation, velocity, landings, stop)
+    return sample_pulse(
+        slenderness, omega, eta, alpha, flight, None, max_rotation, tau, rotation, velocity, impact_times, stop
+    )
 
 
 @entry
@@ -215,11 +217,11 @@ def sample_free_rocking(
     eta: float,
     start: float,
     horizon: float,
-    farthest: float,
+    max_rotation: float,
     tau: FloatArray,
     rotation: FloatArray,
     velocity: FloatArray,
-    landings: FloatArray,
+    impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
     """Continue from the state that the solver left at the end of the pulse.
@@ -231,7 +233,7 @@ def sample_free_rocking(
     alpha : float
         Slenderness angle [rad], 0: slender.
     steps
-        Scratch, as `state.step_state`.
+        Solver state of `step_state`.
     eta : float
         Restitution [-].
     start, horizon : float
@@ -241,14 +243,14 @@ def sample_free_rocking(
     tau, rotation, velocity : float arrays (samples,)
         Filled for times from `start` on.
     landings : float array
-        Filled with the times of the impacts as far as it reaches.
+        Filled with the times of the impacts, as many as fit.
     stop : uint8 array (1,)
-        Once another thread sets it to 1, this returns within a flight, with samples missing.
+        Once another thread sets it to 1, the function returns within a flight; samples are missing.
 
     Returns
     -------
     int
-        Impacts written down.
+        Number of impacts written.
     """
     init_block(steps, 0, alpha, 1.0)
     steps.strength[0], steps.starts_at_uplift[0], steps.phase[0] = 0.0, 0.0, 0.0
@@ -257,24 +259,24 @@ def sample_free_rocking(
         filled += 1
     time = start
     steps.z0[0], steps.w0[0] = z, w
-    grounded = False
-    while sign != 0.0 and time < horizon and steps.z0[0] < farthest and not is_stopped(stop):
+    starts_at_ground = False
+    while sign != 0.0 and time < horizon and steps.z0[0] < max_rotation and not is_stopped(stop):
         steps.limit[0] = horizon - time
         take_step(steps)
-        impact = impact_in_step(steps, 0, False, grounded)
+        impact = impact_in_step(steps, 0, False, starts_at_ground)
         h = steps.h[0] if impact < 0.0 else impact
         filled = sample_step(steps, sign, time, time + h, tau, filled, rotation, velocity)
         time += h
-        grounded = impact >= 0.0
-        if not grounded:
+        starts_at_ground = impact >= 0.0
+        if not starts_at_ground:
             steps.z0[0], steps.w0[0] = steps.z1[0], steps.w1[0]
             continue
-        if written < len(landings):
-            landings[written] = time
+        if written < len(impact_times):
+            impact_times[written] = time
             written += 1
         steps.z0[0] = 0.0
         steps.w0[0] = -eta * evaluate_series(steps.rate, 0, steps.order - 1, h)  # (2.3)
         sign = -sign
-        if steps.w0[0] <= REST_VELOCITY or written == len(landings):
+        if steps.w0[0] <= REST_VELOCITY or written == len(impact_times):
             break
     return written

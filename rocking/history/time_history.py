@@ -1,4 +1,4 @@
-"""Time histories: one block from the start of the pulse through free rocking, as a labelled data set."""
+"""Time histories of one block, from the start of the pulse through free rocking, as labelled data sets."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ def time_history(
     contact: bool = False,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Rotation and angular velocity of one block against time, exact at every sample.
+    """Rotation and angular velocity of one block against time, exact to rounding at every sample.
 
     Parameters
     ----------
     pulse, slenderness, frequency_ratio, restitution, alpha
         As for `peak_response`; scalars.
     duration : float, optional
-        Length [tau], > 0. By default the pulse and 8 units after it; where the block overturns, until
+        Duration [tau], > 0. By default the pulse and 8 units after it; if the block overturns, until
         |theta|/alpha = 4 or |theta| = pi/2.
     samples : int
-        Uniform samples, 2 to 1,000,000; uplift, impacts and the end of the pulse are added to them.
+        Number of uniform samples, 2 to 1,000,000; uplift, impacts and the end of the pulse are added.
     contact : bool
-        Whether to add the reactions of the ground and the friction that they need (docs/contact.md).
+        Whether to add the reactions of the ground and the friction demand (docs/contact.md).
     stop : StopFlag, optional
-        Once another thread sets it, this ends soon with `StoppedError`.
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
     Returns
     -------
     xarray.Dataset
         tau(tau): time p t from the start of the pulse [-]; rotation(tau): theta/alpha [-]; angular_velocity(tau):
         theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(tau): a f [-];
-        impact_time(impact) [-]. Attributes: the question, outcome, overturned, peak_rotation, impacts. With
-        `contact`, what `history_contact.add_contact` adds.
+        impact_time(impact) [-]. Attributes: the arguments, outcome, overturned, peak_rotation, impacts. With
+        `contact`, the variables and attributes of `rocking.history.contact.add_contact`.
 
     Raises
     ------
@@ -59,12 +59,12 @@ def time_history(
     in_range("samples", samples, 2, 1_000_000)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
     motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
-    answer, landings = motion.events()  # they are among the samples
-    events = [0.0, motion.pulse_end, float(np.nan_to_num(answer["uplift_time"]))]
-    tau = np.concatenate([np.linspace(0.0, motion.horizon, int(samples)), landings, events])
+    record, impact_times = motion.events()  # times of the impacts are among the samples
+    events = [0.0, motion.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
+    tau = np.concatenate([np.linspace(0.0, motion.horizon, int(samples)), impact_times, events])
     tau = np.unique(tau[tau <= motion.horizon])
     rotation, velocity = motion.sample(tau)
-    last = motion.sample_count(tau, rotation, answer)
+    last = motion.sample_count(tau, rotation, record)
     tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
     history = xr.Dataset(
         {
@@ -75,7 +75,7 @@ def time_history(
                 motion.ground_acceleration(tau),
                 {"long_name": "ground acceleration a f = u/(g tan alpha) (3.2)", "units": "1"},
             ),
-            "impact_time": ("impact", landings, {"long_name": "time of impact p t", "units": "1"}),
+            "impact_time": ("impact", impact_times, {"long_name": "time of impact p t", "units": "1"}),
         },
         coords={"tau": ("tau", tau, {"long_name": "time p t from the start of the pulse (3.6)", "units": "1"})},
         attrs={
@@ -84,11 +84,11 @@ def time_history(
             "frequency_ratio": motion.frequency_ratio,
             "restitution": motion.restitution,
             "alpha": motion.alpha,
-            "outcome": Outcome(int(answer["outcome"])).name,
-            "overturned": int(overturned(answer)),
-            "peak_rotation": float(answer["peak_rotation"]),
-            "impacts": int(answer["impacts"]),
+            "outcome": Outcome(int(record["outcome"])).name,
+            "overturned": int(overturned(record)),
+            "peak_rotation": float(record["peak_rotation"]),
+            "impacts": int(record["impacts"]),
             "pulse_end": motion.pulse_end,
         },
     )
-    return add_contact(history, motion, landings) if contact else history
+    return add_contact(history, motion, impact_times) if contact else history

@@ -1,4 +1,4 @@
-"""All cubes of a results folder as one source of answers; each is opened when first asked.
+"""All spectrum cubes of a results folder; each is read when first needed.
 
 A missing, damaged or unreadable cube never gives a wrong result: the solver computes it instead, and
 `CubeCollection.problems` reports the file. Files that change are read again.
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._numba.cancellation import StopFlag
-from rocking.datasets.catalogue import Catalogue, DataFile, FileVersion, UnknownDatasetError, version_of
+from rocking.datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
 from rocking.datasets.cube import decode_dataset
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import get_pulse
@@ -21,9 +21,6 @@ from rocking.lookup.cube import Cube
 from rocking.lookup.cube_slice import CubeSlice, decode_slice
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse
-
-LoadedCube = tuple[Path, FileVersion, CubeSlice | DatasetError]
-"""The file of a cube, the version of it that was read, and the cube or what is wrong with it."""
 
 
 class CubeCollection:
@@ -42,90 +39,79 @@ class CubeCollection:
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
-        self._cubes: dict[tuple[str, float], LoadedCube] = {}
-        self._levels: dict[str, tuple[Path, FileVersion, list[float]]] = {}
-        self._checked: dict[str, tuple[FileVersion, str | None]] = {}
+        self._slices = VersionCache[tuple[str, float], CubeSlice | DatasetError]()
+        self._restitutions = VersionCache[str, list[float]]()
+        self._problems = VersionCache[str, str | None]()
 
-    def levels(self, pulse: str) -> list[float]:
-        """Restitutions for which a cube of the pulse lies there, ascending."""
+    def restitutions(self, pulse: str) -> list[float]:
+        """Restitutions for which the folder has a cube of the pulse, ascending."""
         key = pulse.removeprefix("-")
-        known = self._levels.get(key)
-        folder = known[0] if known else self.catalogue.results / "spectra" / key
+        known = self._restitutions.current(key)
+        if known is not None:
+            return known
+        folder = self.catalogue.results / "spectra" / key
         version = version_of(folder)
         if version is None:
             return []
-        if known is not None and known[1] == version:
-            return known[2]
         found = sorted(_restitution_of(path.stem) for path in folder.glob("eta-?.??.nc"))
         if version.is_settled:
-            self._levels[key] = folder, version, found
+            self._restitutions.store(key, folder, version, found)
         return found
 
-    def level(self, pulse: str, restitution: float) -> CubeSlice | None:
+    def slice_at(self, pulse: str, restitution: float) -> CubeSlice | None:
         """The cube of a pulse and a restitution, None if there is none.
 
-        A mirrored pulse has the same peaks and fates, and is answered by the same cube.
+        A mirrored pulse has the same peaks and outcomes, hence the same cube.
 
         Raises
         ------
         DatasetError
-            If the file is damaged, cannot be read, or holds something else than its name says.
+            If the file is damaged, cannot be read, or does not contain the cube that its name states.
         """
         key = pulse.removeprefix("-"), restitution
-        known = self._current(key)
+        known = self._slices.current(key)
         if known is None:
             try:
-                known = self._read(key)
+                # under the lock: another thread may read the same file, which is then read once
+                with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
+                    known = self._slices.value(key, file, lambda file: _open(file, *key))
             except UnknownDatasetError:
                 return None
-        if isinstance(known[2], DatasetError):
-            raise known[2]
-        return known[2]
-
-    def _current(self, key: tuple[str, float]) -> LoadedCube | None:
-        """The cube of a pulse and a restitution, if it is open and its file is the same still."""
-        known = self._cubes.get(key)
-        return known if known is not None and known[1] == version_of(known[0]) else None
-
-    def _read(self, key: tuple[str, float]) -> LoadedCube:
-        """The cube of a pulse and a restitution, from its file unless another thread has just read it."""
-        with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
-            known = self._cubes.get(key)
-            if known is None or known[1] != file.version:
-                cube = _open(file, *key)
-                known = self._cubes[key] = file.path, file.version, cube
-            return known
+        if isinstance(known, DatasetError):
+            raise known
+        return known
 
     def cube(self, pulse: str, method: str = "auto") -> Cube:
-        """The cubes of a pulse as one; each is opened when first asked.
+        """The cubes of a pulse; each is read when first needed.
 
-        A damaged one raises `DatasetError` then with `method="cube"`, else it counts as missing; `problems` tells.
+        A damaged cube then raises `DatasetError` with `method="cube"`; otherwise it is treated as missing and reported
+        by `problems`.
         """
-        restitutions = np.array(self.levels(pulse))
+        restitutions = np.array(self.restitutions(pulse))
 
-        @cache  # one answer comes from one version of each file
-        def level(k: int) -> CubeSlice | None:
+        @cache  # one response uses one version of each file
+        def slice_at(k: int) -> CubeSlice | None:
             try:
-                return self.level(pulse, float(restitutions[k]))
+                return self.slice_at(pulse, float(restitutions[k]))
             except DatasetError:
                 if method == "cube":
                     raise
                 return None
 
-        return Cube(pulse, restitutions, level)
+        return Cube(pulse, restitutions, slice_at)
 
     def is_open(self, pulse: str, restitution: float) -> bool:
-        """Whether a question needs no file to be read first."""
-        levels = self.levels(pulse)
-        if not levels or not levels[0] <= restitution <= levels[-1]:
+        """True if no file has to be read for a response with this restitution."""
+        restitutions = self.restitutions(pulse)
+        if not restitutions or not restitutions[0] <= restitution <= restitutions[-1]:
             return True
-        used = Cube(pulse, np.array(levels), lambda _: None).used(np.array([restitution]))
-        return all(self._current((pulse.removeprefix("-"), levels[k])) for k in used)
+        used = Cube(pulse, np.array(restitutions), lambda _: None).used(np.array([restitution]))
+        return all(self._slices.current((pulse.removeprefix("-"), restitutions[k])) for k in used)
 
     def problems(self) -> dict[str, str]:
-        """Read and check every data set, once per version of the file; what is wrong with it, by name.
+        """Read and check every data set once per version of its file; descriptions of the problems by name.
 
-        The name "spectra" stands for the case that there are no cubes at all; folders that cannot be read have theirs.
+        The name "spectra" is used if there are no cubes at all. Folders that cannot be read are listed by their names.
         """
         names, found = self.catalogue.scan()
         if not any(name.startswith("spectra/") for name in names):
@@ -133,7 +119,7 @@ class CubeCollection:
         for name in names:
             try:
                 problem = self.problem(name)
-            except UnknownDatasetError:  # it went away meanwhile
+            except UnknownDatasetError:  # deleted in the meantime
                 continue
             if problem is not None:
                 found[name] = problem
@@ -151,7 +137,7 @@ class CubeCollection:
         method: str = "auto",
         stop: StopFlag | None = None,
     ) -> tuple[BoundedResponse, tuple[str, ...]]:
-        """Answers as `Cube.response`, over all cubes of a pulse, and the sha256 of each cube that gave some of them.
+        """Responses as `Cube.response`, from all cubes of a pulse, and the sha256 of each cube that was used.
 
         Parameters
         ----------
@@ -164,22 +150,22 @@ class CubeCollection:
         tolerance : float
             Largest error of an interpolated peak_rotation [-], >= 0.
         method : {"auto", "cube", "solver"}
-            As `Cube.response`; "auto" also asks the solver where a cube is missing or damaged.
+            As `Cube.response`; "auto" also uses the solver where a cube is missing or damaged.
         stop : StopFlag, optional
-            Once another thread sets it, this ends soon with `StoppedError`.
+            The computation ends with `StoppedError` soon after another thread sets it.
 
         Raises
         ------
         InvalidArgumentError
             If a value is out of range.
         OutsideCubeError
-            With `method="cube"`, for a point that no cube answers.
+            With `method="cube"`, for a point where the cubes give no response.
         DatasetError
             With `method="cube"`, for a damaged cube.
         """
         get_pulse(pulse)
         cube = self.cube(pulse, method)
-        answer = cube.response(
+        result = cube.response(
             slenderness=slenderness,
             frequency_ratio=frequency_ratio,
             restitution=restitution,
@@ -189,13 +175,13 @@ class CubeCollection:
             stop=stop,
         )
         eta = np.asarray(restitution, dtype=np.float64)
-        rocked = (answer.source == "cube") & (answer.outcome != Outcome.NO_UPLIFT)
-        served = np.broadcast_to(eta, rocked.shape)[rocked] if eta.ndim else eta.reshape(1)
-        used = [cube.level(k) for k in cube.used(served)] if rocked.any() else []
-        return answer, tuple(level.sha256 for level in used if level is not None)
+        rocked = (result.source == "cube") & (result.outcome != Outcome.NO_UPLIFT)
+        interpolated = np.broadcast_to(eta, rocked.shape)[rocked] if eta.ndim else eta.reshape(1)
+        used = [cube.slice_at(k) for k in cube.used(interpolated)] if rocked.any() else []
+        return result, tuple(one.sha256 for one in used if one is not None)
 
     def problem(self, name: str) -> str | None:
-        """What is wrong with a data set; None if nothing is.
+        """Description of the problem of a data set; None if it is intact.
 
         Raises
         ------
@@ -209,13 +195,9 @@ class CubeCollection:
             return str(error)
 
     def problem_of(self, file: DataFile) -> str | None:
-        """The same for an open data set, read and checked once per version of its file."""
+        """The same for an open data set, which is read and checked once per version of its file."""
         with self.catalogue.lock:
-            known = self._checked.get(file.name)
-            if known is None or known[0] != file.version:
-                problem = _check(file)
-                known = self._checked[file.name] = file.version, problem
-            return known[1]
+            return self._problems.value(file.name, file, _check)
 
 
 def _cube_name(pulse: str, restitution: float) -> str:
@@ -223,7 +205,7 @@ def _cube_name(pulse: str, restitution: float) -> str:
 
 
 def _restitution_of(stem: str) -> float:
-    """Restitution in the name of a file; nan, which equals no restitution, if it is none."""
+    """Restitution in the name of a file; nan, which equals no restitution, if the name has none."""
     try:
         return float(stem.removeprefix("eta-"))
     except ValueError:
@@ -241,7 +223,7 @@ def _open(file: DataFile, pulse: str, restitution: float) -> CubeSlice | Dataset
 
 
 def _check(file: DataFile) -> str | None:
-    """Read a data set; what is wrong with it, None if nothing is."""
+    """Read a data set; description of its problem, None if it is intact."""
     kind, *rest = file.name.split("/")
     if kind == "spectra" and len(rest) == 2:
         found = _open(file, rest[0], _restitution_of(rest[1]))

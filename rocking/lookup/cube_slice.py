@@ -1,8 +1,7 @@
-"""One spectrum cube in memory, ready to be interpolated; from a file or from the address of one."""
+"""One spectrum cube in memory, for interpolation; read from a file or an address."""
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 import urllib.request
 from dataclasses import dataclass
@@ -14,40 +13,38 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import contiguous_array
+from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.interpolation.kernel import SliceArrays
 from rocking.interpolation.stencils import Mesh
-
-ERRORS = ("interpolation_error", "restitution_error", "alpha_error")
-"""Measured errors of interpolation."""
-
-FIELDS = ("peak_rotation", "outcome", "impacts", "stencil", "restitution_levels", "alpha_levels", *ERRORS)
-"""Variables of a cube that interpolation needs."""
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class CubeSlice:
-    """The cube of one restitution; the fields (angles, n, m) as in `cube`.
+    """The cube of one restitution; fields (angles, n, m) as in `rocking.datasets.cube`.
 
     Attributes
     ----------
     pulse : str
         Name of the pulse.
-    restitution, next_restitution : float
-        eta [-] of this cube and of the next one made with it; nan if there is none.
+    restitution : float
+        eta of this cube [-].
+    restitutions : float array
+        eta of all cubes computed with this one [-], ascending.
     alpha, slenderness, frequency_ratio : float arrays
         The axes [rad], [-], [-].
     mesh : Mesh
-        Of the latter two.
+        The mesh of slenderness and frequency_ratio.
     sha256 : str
-        Of the file: the version of the data.
+        Digest of the file, the version of the data.
     """
 
     pulse: str
     restitution: float
-    next_restitution: float
+    restitutions: Array
     alpha: Array
     slenderness: Array
     frequency_ratio: Array
@@ -57,14 +54,12 @@ class CubeSlice:
     outcome: NDArray[np.int8]
     impacts: NDArray[np.int32]
     stencil: NDArray[np.int8]
-    restitution_levels: NDArray[np.int8]
-    alpha_levels: NDArray[np.int8]
     interpolation_error: NDArray[np.float32]
     restitution_error: NDArray[np.float32]
     alpha_error: NDArray[np.float32]
 
     def fits(self, other: CubeSlice) -> bool:
-        """Whether the two stand on the same axes."""
+        """True if the axes of both are equal."""
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)
 
 
@@ -80,22 +75,22 @@ def open_slice(path: Path | str) -> CubeSlice:
 
 
 def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
-    """The same from the bytes of such a file; messages name `path`.
+    """The same from the bytes of a file; messages name `path`.
 
     Raises
     ------
     DatasetError
-        If they are damaged, or not those of a spectrum cube.
+        If the bytes are damaged or not those of a spectrum cube.
     """
     cube = decode_spectrum(content, path)
     try:
-        return slice_of(cube, hashlib.sha256(content).hexdigest())
+        return slice_of(cube, sha256_of(content))
     except InvalidArgumentError as error:
         raise DatasetError(f"{path}: {error}; build it again") from error
 
 
 def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
-    """A spectrum cube in memory; `sha256` of its file, if there is one.
+    """A spectrum cube in memory; `sha256` is the digest of its file, if it has one.
 
     Raises
     ------
@@ -103,11 +98,11 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
         If an axis has fewer than four nodes.
     """
     axes: dict[str, Any] = {name: cube[name].values for name in AXES}
-    fields: dict[str, Any] = {name: contiguous_array(cube[name].values) for name in FIELDS}
+    fields: dict[str, Any] = {name: contiguous_array(cube[name].values) for name in SliceArrays._fields}
     return CubeSlice(
         pulse=str(cube["pulse"].attrs["pulse_name"]),
         restitution=float(cube["restitution"]),
-        next_restitution=float(cube.attrs.get("next_restitution", np.nan)),
+        restitutions=np.atleast_1d(cube.attrs.get("restitution_slices", float(cube["restitution"]))),
         mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
         sha256=sha256,
         **axes,
@@ -121,7 +116,7 @@ def fetch_slice(address: str) -> CubeSlice:
     Raises
     ------
     DatasetError
-        As `open_slice`; also if the address does not answer.
+        As `open_slice`; also if the address cannot be fetched.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.nc"

@@ -18,22 +18,22 @@ def open_cube(source: Path | str) -> Cube:
     ----------
     source : path or str
         A file such as `results/spectra/sine/eta-0.85.nc`, its http or https address, or a folder such as
-        `results/spectra/sine`, whose files are then interpolated in restitution too.
+        `results/spectra/sine`; the files of a folder are interpolated in restitution as well.
 
     Raises
     ------
     DatasetError
-        If a file is missing, damaged, or not a spectrum cube, or if the files of a folder do not belong together.
+        If a file is missing, damaged, or not a spectrum cube, or if the files of a folder differ in pulse or axes.
     """
     if str(source).startswith(("http://", "https://")):
-        levels = [fetch_slice(str(source))]
+        slices = [fetch_slice(str(source))]
     elif Path(source).is_dir():
-        levels = [open_slice(path) for path in sorted(Path(source).glob("eta-?.??.nc"))]
-        if not levels:
+        slices = [open_slice(path) for path in sorted(Path(source).glob("eta-?.??.nc"))]
+        if not slices:
             raise DatasetError(f"{source}: holds no spectrum cubes; `make reproduce` builds them")
     else:
-        levels = [open_slice(source)]
-    for level in levels:
-        if level.pulse != levels[0].pulse or not level.fits(levels[0]):
+        slices = [open_slice(source)]
+    for one in slices:
+        if one.pulse != slices[0].pulse or not one.fits(slices[0]):
             raise DatasetError(f"{source}: cubes of different pulses or grids; build them again")
-    return Cube(levels[0].pulse, np.array([level.restitution for level in levels]), levels.__getitem__)
+    return Cube(slices[0].pulse, np.array([one.restitution for one in slices]), slices.__getitem__)

@@ -1,4 +1,4 @@
-"""Questions to cubes: checked, broadcast and flattened."""
+"""Points of the control space: checked, broadcast and flattened arguments."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Points:
-    """Questions, all arrays (points,); alpha in rad, 0 the slender limit."""
+    """Arguments of a response, all float arrays (points,); alpha in rad, 0 for the slender limit."""
 
     slenderness: Array
     frequency_ratio: Array
@@ -27,7 +27,7 @@ class Points:
     def of(
         cls, slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
     ) -> tuple[Points, tuple[int, ...]]:
-        """Checked, broadcast and flattened; and the broadcast shape.
+        """The checked, broadcast and flattened arguments, and the broadcast shape.
 
         Raises
         ------

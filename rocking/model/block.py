@@ -1,4 +1,4 @@
-"""The rigid rectangular block: geometry in, the parameters of its equation of motion out (section 2 of the paper)."""
+"""The rigid rectangular block: parameters of the equation of motion from its geometry (section 2 of the paper)."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Block:
     def housner_restitution(self) -> float:
         """Coefficient of restitution eta = 1 - (3/2) sin^2(alpha) [-], (2.4) (Housner 1963).
 
-        Negative for alpha above 54.7 degrees; `inelastic_restitution` is what happens there.
+        Negative for alpha above 54.7 degrees, where `inelastic_restitution` applies.
         """
         sin_alpha = self.half_width / self.half_diagonal
         return 1.0 - 1.5 * sin_alpha * sin_alpha  # (2.4)
@@ -79,8 +79,8 @@ class Block:
     def inelastic_restitution(self) -> float:
         """Coefficient of restitution of an impact without bouncing [-], [0, 1): the larger of (2.4) and 0.
 
-        (2.4) lets the whole impulse act at the new pivot and the old one rise. Where it is negative, above
-        alpha = 54.7 degrees, the old pivot would have to move into the ground; the ground pushes there too, and with
-        impulses at both corners the block stops.
+        (2.4) assumes that the whole impulse acts at the new pivot and that the old pivot rises. Above
+        alpha = 54.7 degrees it is negative: the old pivot would move into the ground. The ground then exerts an impulse
+        there too, and with impulses at both corners the block stops.
         """
         return max(self.housner_restitution, 0.0)  # departs from (2.4) where that is negative

@@ -1,4 +1,4 @@
-"""How far a block left to itself is from another fate, in energy."""
+"""Energy margin of a block in free rocking with respect to overturning."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
-    """By how much the energy at the end of the pulse, or after the next impact, passes that of the barrier [-].
+    """Excess of the energy at the end of the pulse, or after the next impact, over that of the barrier [-].
 
     Parameters
     ----------
@@ -23,9 +23,9 @@ def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     Returns
     -------
     float array
-        Positive where it overturns: the larger of (w - X)/X(0), see `free_rocking`, and of the energy with which it
-        leaves the next impact, relative to the barrier, less 1, (3.16). Continuous through 0 where it begins to
-        overturn.
+        Positive where the block overturns: the larger of (w - X)/X(0), see `rocking.solver.kernels.free_rocking`, and
+        of the energy after the next impact, relative to that of the barrier, minus 1, (3.16). It is continuous and
+        zero at the transition.
     """
     half = np.where(alpha > 0.0, 0.5 * alpha, 1.0)
     barrier = np.where(alpha > 0.0, np.sin(half) / half, 1.0)

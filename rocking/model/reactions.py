@@ -1,7 +1,7 @@
-"""Forces between block and ground while it rocks about a corner: what pure rocking asks of friction (docs/contact.md).
+"""Forces between block and ground during rocking, and the friction that pure rocking requires (docs/contact.md).
 
-The paper takes for granted that the corner neither slides nor leaves the ground. Newton's law for the centre of mass,
-with the angular acceleration from (2.2), says what the ground has to supply for that, and so where it is in doubt.
+The paper assumes that the corner neither slides nor leaves the ground. Newton's law for the centre of mass, with the
+angular acceleration from (2.2), gives the reaction that this requires.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rocking.errors import in_range
 Floats = NDArray[np.float64]
 
 INERTIA_RATIO = 0.75
-"""R p^2/g = 3/4: of a rectangle that rocks about its corner, below (2.2)."""
+"""R p^2/g = 3/4 for a rectangle that rotates about its corner, below (2.2)."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Reactions:
     horizontal : float array [-]
         H/(m g tan(alpha)), positive as the ground acceleration; at rest it is that acceleration, a f.
     normal : float array [-]
-        N/(m g), positive upwards; at rest 1. Where it is zero or negative the ground would have to pull.
+        N/(m g), positive upwards; at rest 1. Where it is not positive, rocking would require a tensile force.
     """
 
     horizontal: Floats
@@ -37,7 +37,7 @@ class Reactions:
 
     @property
     def friction_demand(self) -> Floats:
-        """|H|/(N tan(alpha)) [-]: the coefficient of friction that keeps the corner in place, over tan(alpha).
+        """|H|/(N tan(alpha)) [-]: the coefficient of friction that prevents sliding of the corner, over tan(alpha).
 
         Infinite where N <= 0.
         """
@@ -57,7 +57,7 @@ def reactions(
     ground_acceleration : float array
         a f = u/(g tan(alpha)) [-].
     side : float array
-        The corner it stands on: +1 the right one (theta > 0), -1 the left one; 0 at rest on both.
+        Corner in contact: +1 the right one (theta > 0), -1 the left one; 0 at rest on both.
     alpha : float
         Slenderness angle [rad], [0, pi/2). At 0 the limit: the horizontal reaction stays finite over tan(alpha), and
         N = m g.
@@ -93,8 +93,8 @@ def impulse_ratio(restitution: float, alpha: float) -> float:
     Returns
     -------
     float
-        Friction has to supply it for (2.3) to hold without sliding: infinite in the slender limit unless eta = 1; with
-        the eta of (2.4) it is 3 sin(alpha) cos(alpha)/(4 - 3 sin^2(alpha)), less than tan(alpha).
+        Coefficient of friction required at an impact for (2.3) to hold without sliding: infinite in the slender limit
+        unless eta = 1. With the eta of (2.4) it is 3 sin(alpha) cos(alpha)/(4 - 3 sin^2(alpha)), less than tan(alpha).
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A response with an error bound and a source, and how the solver's own bound is found."""
+"""Responses with an error bound, and the error bound of the solver."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rocking.solver.kernels.event_loop import IMPACT_LIMIT
 from rocking.solver.peak_response import peak_response
 
 SOLVER_ERROR = 1e-12
-"""Relative error of a well-conditioned answer of the solver, against multi-precision integration [-]."""
+"""Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -87,11 +87,11 @@ def solve_with_bound(
     alpha: ArrayLike | None,
     stop: StopFlag | None = None,
 ) -> BoundedResponse:
-    """Ask the solver, and ask it again beside the question to learn how well the question determines the answer.
+    """Solve twice, with the groups as given and slightly smaller, and bound the error of the peak by the difference.
 
-    The bound is `SOLVER_ERROR` of the peak, plus three times the change of the peak when the three groups change by a
-    share `SOLVER_ERROR` together: rounding errors act like such changes, and beside a fate boundary they are amplified.
-    It is infinite where a block was not followed to the end, as it had struck `rock.IMPACT_LIMIT` times.
+    The bound is `SOLVER_ERROR` times the peak, plus three times the change of the peak when slenderness, frequency
+    ratio and restitution decrease together by the fraction `SOLVER_ERROR`. Rounding errors act like such a change and
+    are amplified near an outcome boundary. The bound is infinite where a block reached `IMPACT_LIMIT` impacts.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def solve_with_bound(
     alpha : array_like or None
         Slenderness angle [rad]; None or 0 for the slender limit.
     stop : StopFlag, optional
-        Once another thread sets it, this ends soon with `StoppedError`.
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
     Raises
     ------

@@ -81,8 +81,8 @@ def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
             k = MAX_POLYNOMIAL - 1 - i
             slope = slope * phi + f
             f = f * phi + flight.polynomial[k]
-        bell = math.exp(-phi * phi / flight.spread)
-        return f * bell, (slope - 2.0 * phi / flight.spread * f) * bell
+        gaussian = math.exp(-phi * phi / flight.spread)
+        return f * gaussian, (slope - 2.0 * phi / flight.spread * f) * gaussian
     for k in range(term_count(flight)):
         angle = flight.multiple[k] * phi + flight.shift[k]
         f += flight.amplitude[k] * math.cos(angle)
@@ -106,29 +106,29 @@ def expand_sinusoids(steps: Record) -> None:
     for k in range(steps.terms):
         sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
         rate = omega * steps.multiple[k]
-        scale, bend = strength * steps.amplitude[k], rate * rate
+        scale, rate_squared = strength * steps.amplitude[k], rate * rate
         even, odd = scale * cosine, scale * rate * sine * -1.0
         for n in range(0, steps.order + 1, 2):
             store(f, n, even if k == 0 else load(f, n) + even)
-            even = even * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+            even = even * rate_squared * (-1.0 / ((n + 1.0) * (n + 2.0)))
         for n in range(1, steps.order + 1, 2):
             store(f, n, odd if k == 0 else load(f, n) + odd)
-            odd = odd * bend * (-1.0 / ((n + 1.0) * (n + 2.0)))
+            odd = odd * rate_squared * (-1.0 / ((n + 1.0) * (n + 2.0)))
 
 
 @kernel
 def expand_wavelet(steps: Record) -> None:
-    """The same for f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
+    """The same for a wavelet f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
     f, gauss, p, order = steps.f, steps.gauss, steps.polynomial, steps.order
     for lane in range(LANES):
         gauss[0, lane] = math.exp(-steps.phase[lane] * steps.phase[lane] / steps.spread)
     phase, omega = load(steps.phase, 0), load(steps.omega, 0)
     # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
-    fall = -2.0 / steps.spread
+    decay = -2.0 / steps.spread
     before, here = splat(0.0), load(gauss, 0)
     for n in range(order + 1):
         store(gauss, n, here)
-        before, here = here, (phase * here + before) * (fall / (n + 1.0))
+        before, here = here, (phase * here + before) * (decay / (n + 1.0))
     constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
     linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
     square = p[2] + 3.0 * p[3] * phase

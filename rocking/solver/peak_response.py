@@ -1,4 +1,4 @@
-"""The front door: `peak_response` checks the question, broadcasts it, picks the solver and uses all cores."""
+"""`peak_response`: checks and broadcasts the arguments, selects the kernel, and uses all cores."""
 
 from __future__ import annotations
 
@@ -34,24 +34,24 @@ from rocking.solver.state import (
 )
 
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
-"""Cells handed to one thread at a time: at least a millisecond of work, as long as a thread takes to start."""
+"""Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
 
 FREQUENCY_RATIO_RANGE = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
 """Frequency ratios accepted [-]."""
 
 TRUNCATION_FRACTION = 1e-4
-"""Share of the tolerance that the truncated terms of one Taylor step may have [-]: steps and impacts magnify it."""
+"""Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
 
 NEAR_BOUNDARY_MARGIN = 1e-3
-"""Margin of the fate [-] below which a block is solved as accurately as doubles allow, whatever the tolerance."""
+"""Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
 
 
 AVAILABLE_CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-"""Cores that this process may use [-]."""
+"""Cores available to this process [-]."""
 
 
 class SolverState(threading.local):
-    """Memory of the kernels for the pulses last asked for, each thread its own: to make it costs more than a block."""
+    """Records for the most recent pulses, separate in each thread. To make one costs more than to solve a block."""
 
     def __init__(self) -> None:
         self.of = lru_cache(maxsize=16)(_new_state)
@@ -81,29 +81,30 @@ def peak_response(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response:
-    """Peak rotation and final fate of blocks under a pulse, exact to rounding; the arguments broadcast by position.
+    """Peak rotation and final outcome of blocks under a pulse, exact to rounding. The arguments broadcast by position.
 
-    Cells that differ in restitution alone and follow one another, as along a last axis, share their first flight.
+    Consecutive cells that differ in restitution only, as along the last axis, share the first flight.
 
     Parameters
     ----------
     pulse : str or AbstractPulse
-        A name of `PULSE_NAMES`, with a leading minus for the opposite sign, or a pulse.
+        A name of `PULSE_NAMES`, with a leading minus for the opposite sign, or a pulse object.
     slenderness : array_like
-        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], from 1e-12; from 1 on the block never uplifts.
+        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], [1e-12, inf); no uplift from 1 on.
     frequency_ratio : array_like
         omega = omega_g/p [-], [1e-9, 1e9].
     restitution : array_like
         Coefficient of restitution eta [-], [0, 1].
     alpha : array_like, optional
-        Slenderness angle [rad], [1e-12, 1.57] for (2.2); None and 0 are the slender limit (3.1).
+        Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
     tolerance : float, optional
-        Relative error of the peak that may be left for speed [-], [1e-13, 1e-3]; by default rounding only. Slender
-        blocks under sinusoids are exact in any case. Where the last bit of the question decides, nothing can be kept.
+        Relative error of the peak allowed for speed [-], [1e-13, 1e-3]; by default rounding error only. Slender blocks
+        under sinusoids are exact in any case. No tolerance can be kept where the rounding of the arguments decides on
+        the outcome.
     threads : int, optional
-        Threads for large arrays, >= 1; all cores by default.
+        Number of threads for large arrays, >= 1; by default all cores.
     stop : StopFlag, optional
-        Once another thread sets it, this ends soon with `StoppedError`.
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
     Returns
     -------
@@ -113,8 +114,8 @@ def peak_response(
     Raises
     ------
     InvalidArgumentError
-        Naming the argument that is no pulse, out of range, not finite, not a real number or masked; arguments whose
-        shapes do not broadcast; labelled ones (xarray, pandas) whose dimensions or indexes differ.
+        For an unknown pulse; an argument that is out of range, not finite, not a real number or masked; shapes that do
+        not broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
     StoppedError
         If `stop` was set.
     """
@@ -126,15 +127,15 @@ def peak_response(
     groups = broadcast(given, checked)
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in groups]
-    allowed = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
+    accepted = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
     by_arcs = made.series.has_exact_arcs and not cells[3].any()  # exact: no terms to truncate
-    precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * allowed)
-    answers = _solve_cells(made, cells, precision, threads, stop)
+    precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
+    records = _solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
-        margin = outcome_margin(answers["end_rotation"], answers["end_velocity"], cells[2], cells[3])
-        near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * allowed)
-        answers[near] = _solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
-    found: dict[str, NDArray[Any]] = {field.name: answers[field.name].reshape(shape) for field in RECORD_FIELDS}
+        margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], cells[3])
+        near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted)
+        records[near] = _solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
     peak = found[PEAK_ROTATION.name]
     return Response(
         **found,
@@ -152,27 +153,27 @@ def _solve_cells(
     threads: int | None,
     stop: StopFlag | None,
 ) -> NDArray[np.void]:
-    """The answers (size,) to questions of four arrays (size,), shared out among threads."""
+    """Response records (size,) of cells given by four arrays (size,), distributed over threads."""
     size = cells[0].size
-    answers = np.empty(size, RESPONSE_RECORD)
+    records = np.empty(size, RESPONSE_RECORD)
     single, rigid = has_one_sinusoid(pulse), bool(cells[3].any())
     if single and rigid and not cells[3].all():
         for kind in (cells[3] > 0.0, cells[3] == 0.0):
-            answers[kind] = _solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
-        return answers
+            records[kind] = _solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
+        return records
     by_arcs = single and not rigid
     cores = int(threads) if threads else AVAILABLE_CORES
-    share = min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK)
+    chunk_size = min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK)
 
     def fill(start: int, flag: NDArray[np.uint8]) -> None:
-        part = slice(start, start + share)
-        questions = [cell[part] for cell in cells]
+        part = slice(start, start + chunk_size)
+        chunk = [cell[part] for cell in cells]
         if by_arcs:
-            solve_by_arcs(*questions, solver_state.single(pulse), flag, answers[part])
+            solve_by_arcs(*chunk, solver_state.single(pulse), flag, records[part])
         else:
-            solve_batch(*questions, *solver_state.of(pulse, precision), flag, answers[part])
+            solve_batch(*chunk, *solver_state.of(pulse, precision), flag, records[part])
 
-    starts = range(0, size, share)
+    starts = range(0, size, chunk_size)
     workers = min(cores, len(starts))
     if workers <= 1:
         for start in starts:
@@ -182,8 +183,8 @@ def _solve_cells(
         with (stop or StopFlag()).child() as own, ThreadPoolExecutor(workers) as pool:
             try:
                 list(pool.map(fill, starts, repeat(own.array)))
-            except BaseException:  # an interrupt from the keyboard among them: the pool waits for its threads
+            except BaseException:  # includes KeyboardInterrupt: the pool waits for its threads
                 own.set()
                 raise
         check_stop(stop)
-    return answers
+    return records

@@ -1,7 +1,7 @@
-"""The records on which the kernels work: a pulse with the state of a cell in hand, and the Taylor steps of several.
+"""State of the solver: a record for an excitation and a cell, a record for the Taylor steps of `LANES` cells.
 
-Plain memory of fixed layout, one for all pulses: kernels read and write it without reference counting, and are compiled
-once. Records are prepared per pulse; each thread works on copies.
+The layout is fixed and the same for all excitations. Kernels access the memory without reference counting and are
+compiled once. The records are prepared for each pulse; each thread works on copies.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ MAX_ORDER = 22
 """Largest degree of the Taylor steps."""
 
 FULL_PRECISION = 1e-17
-"""Smallest share of the motion during a Taylor step that its last terms may have: far below rounding [-]."""
+"""Smallest ratio of the last terms of a Taylor step to the motion during the step, far below rounding [-]."""
 
 IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
-"""What ends a flight, if it has; it has fallen when nothing can bring it back, known before the pulse ends."""
+"""What has ended a flight. OVERTURNS: no later ground acceleration of the pulse can prevent overturning."""
 
 
 def _flight_layout(most_terms: int) -> np.dtype[np.void]:
@@ -37,8 +37,8 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
         [
             # the excitation
             *excitation_fields(most_terms),
-            ("pieces", np.int64),  # monotone pieces of f
-            ("end_phase", np.float64, ends),  # their ends, with f and the angles' cosines and sines there
+            ("pieces", np.int64),  # number of monotone pieces of f
+            ("end_phase", np.float64, ends),  # their ends, with f and the cosines and sines of the angles there
             ("end_shape", np.float64, ends),
             ("end_cosine", np.float64, (*ends, most_terms)),
             ("end_sine", np.float64, (*ends, most_terms)),
@@ -46,26 +46,26 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
                 "half_period_phase",
                 np.float64,
                 ends,
-            ),  # single sinusoid: phase at which the piece's half-turn of it starts,
-            ("half_period_cosine", np.float64, ends),  # and its cosine there, +1 or -1
+            ),  # single sinusoid: phase at which the half period that holds the piece starts,
+            ("half_period_cosine", np.float64, ends),  # and the cosine there, +1 or -1
             # the cell
             ("a", np.float64),  # 1/slenderness
             ("omega", np.float64),  # frequency ratio
             ("rate", np.float64, per_term),  # Omega = omega w
             ("max_rate", np.float64),  # largest of 1 and the rates
             ("alpha", np.float64),  # slenderness angle [rad], 0: slender limit
-            ("interval_phase", np.float64, cuts),  # see `cuts`
-            ("interval_level", np.float64, cuts),  # of the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
+            ("interval_phase", np.float64, cuts),  # ends of the intervals, see `split_into_intervals`
+            ("interval_level", np.float64, cuts),  # in the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
             ("interval_slope", np.float64, cuts),  # sign of f' there
             ("interval_cosine", np.float64, (*cuts, most_terms)),
             ("interval_sine", np.float64, (*cuts, most_terms)),
-            # where `rock` stands
+            # progress of the event loop
             ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
-            ("cell", np.int64),  # its place among the questions, -1: none
-            ("last_cell", np.int64),  # the last of the questions about it that differ in eta alone
-            ("interval_count", np.int64),  # intervals between cuts
-            ("interval", np.int64),  # the one that holds the start of the next flight
-            ("at_rest", np.int64),  # whether that starts with an uplift
+            ("cell", np.int64),  # index of the cell, -1: none
+            ("last_cell", np.int64),  # last of the consecutive cells that differ in eta only
+            ("interval_count", np.int64),  # number of intervals
+            ("interval", np.int64),  # interval that holds the start of the next flight
+            ("at_rest", np.int64),  # whether the next flight starts with an uplift
             ("uplifts", np.int64),  # uplifts from rest so far
             ("impacts_before_uplift", np.int64),  # impacts before the last of them
             ("next_phase", np.float64),  # its start
@@ -78,25 +78,29 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
             ("w0", np.float64),  # velocity there
             ("length", np.float64),  # its duration [tau]
             ("starts_at_uplift", np.int64),  # whether it starts with an uplift through |a f| = 1, where q is exactly 0
-            ("q0", np.float64),  # pull there
-            ("particular", np.float64, per_term),  # coefficients of its arc, see `slender_arcs.anchor`
+            ("q0", np.float64),  # restoring acceleration there
+            ("particular", np.float64, per_term),  # coefficients of its arc, see `init_arc`
             ("x0", np.float64),
             ("y0", np.float64),
             ("offset_z", np.float64),
             ("offset_w", np.float64),
             ("cosine0", np.float64, per_term),  # of the angles there
             ("sine0", np.float64, per_term),
-            ("cosine1", np.float64, per_term),  # at the point last turned to
+            ("cosine1", np.float64, per_term),  # at the phase of the last `set_angles`
             ("sine1", np.float64, per_term),
-            ("coef", np.float64, (SERIES_LENGTH,)),  # Taylor coefficients of z about the point last expanded at
+            (
+                "coef",
+                np.float64,
+                (SERIES_LENGTH,),
+            ),  # Taylor coefficients of z about the point of the last `expand_series`
             # its Taylor steps
-            ("segment_end", np.int64),  # cut at which they must end next
-            ("destabilised", np.int64),  # whether the ground pushes all the way there
-            ("restoring_phase", np.float64),  # else, where it begins to pull
+            ("segment_end", np.int64),  # index of the interval end at which the steps must end next
+            ("destabilised", np.int64),  # whether the block is destabilised up to there
+            ("restoring_phase", np.float64),  # otherwise, phase from which the acceleration is restoring
             ("elapsed", np.float64),  # time since the flight's start
             ("largest_z", np.float64),  # largest z so far
-            # how the first flight ended, which does not depend on eta
-            ("first_flight_known", np.int64),  # whether it has
+            # end of the first flight, which does not depend on eta
+            ("first_flight_known", np.int64),  # whether it is known
             ("first_flight_end", np.int64),
             ("first_flight_w", np.float64),
             ("first_flight_z", np.float64),
@@ -105,7 +109,7 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
             ("first_flight_phase", np.float64),
             ("first_flight_sign", np.float64),
             ("first_flight_interval", np.int64),
-            # the answer, as in `response.Response`
+            # the response, see `rocking.model.fields`
             ("outcome", np.int64),
             ("peak_rotation", np.float64),
             ("peak_mode", np.int64),
@@ -123,10 +127,10 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
 
 
 FLIGHT_STATE = _flight_layout(MAX_SINUSOIDS)
-"""Fields of the record of a pulse and a cell."""
+"""Layout of the record of an excitation and a cell."""
 
 SINGLE_SINUSOID_STATE = _flight_layout(1)
-"""The same for a pulse of one sinusoid: loops over the sinusoids are gone when it is compiled."""
+"""The same for a single sinusoid: the compiler removes the loops over the sinusoids."""
 
 
 def _steps_layout() -> np.dtype[np.void]:
@@ -139,38 +143,38 @@ def _steps_layout() -> np.dtype[np.void]:
             ("gauss", np.float64, series),  # of the wavelet's Gaussian,
             ("s", np.float64, series),  # of sin(alpha (1 - z))/sin(alpha)
             ("c", np.float64, series),  # and of cos(alpha (1 - z))/cos(alpha)
-            # where the step begins
+            # start of the step
             ("phase", np.float64, lanes),
             ("z0", np.float64, lanes),
             ("w0", np.float64, lanes),
-            ("starts_at_uplift", np.float64, lanes),  # 1 where it begins with an uplift through |a f| = 1, else 0
-            ("limit", np.float64, lanes),  # longest step [tau]
+            ("starts_at_uplift", np.float64, lanes),  # 1 if it starts with an uplift through |a f| = 1, else 0
+            ("limit", np.float64, lanes),  # largest step size [tau]
             # the block and the strength of the pulse
             ("strength", np.float64, lanes),  # sgn(theta) a
             ("omega", np.float64, lanes),
             ("slender", np.float64, lanes),  # 1 for the slender limit, else 0
-            ("alpha", np.float64, lanes),  # any number in the slender limit
+            ("alpha", np.float64, lanes),  # arbitrary in the slender limit
             ("sine_alpha", np.float64, lanes),
             ("cosine_alpha", np.float64, lanes),
             ("restoring_factor", np.float64, lanes),  # sin(alpha)/alpha
             ("s_rate", np.float64, lanes),  # -alpha/tan(alpha)
             ("c_rate", np.float64, lanes),  # alpha tan(alpha)
             # the step
-            ("h", np.float64, lanes),  # its length [tau]
+            ("h", np.float64, lanes),  # step size [tau]
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
             # the excitation, as in `FLIGHT_STATE`
             *excitation_fields(MAX_SINUSOIDS),
-            # what is asked
+            # accuracy
             ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
-            ("log_precision", np.float64),  # log2 of the share of the motion that the last terms may have
+            ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
         ]
     )
 
 
 STEP_STATE = _steps_layout()
-"""Fields of the record of `LANES` Taylor steps side by side; rows of lanes stay aligned, so numbers come last."""
+"""Layout of the record of `LANES` Taylor steps. Scalars come last, so that the rows of lanes are aligned."""
 
 RESPONSE_RECORD = record_dtype(RECORD_FIELDS)
 """Record of the response of a cell."""
@@ -220,7 +224,7 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
         steps[name] = flight[name]
     steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)
-    # idle lanes hold a block at rest, so that they meet no infinities
+    # unused lanes hold a block at rest, which produces no infinities
     for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "restoring_factor", "omega"):
         steps[name] = 1.0
     return steps

@@ -1,11 +1,11 @@
-"""Fills spectrum cubes: the grid through the solver, then the errors of interpolating it, measured between nodes.
+"""Fills spectrum cubes: solves all nodes, then measures the errors of interpolation between them against the solver.
 
-Several coefficients of restitution are solved together, as the first flight of a block does not depend on them.
+Several coefficients of restitution are solved together, as the motion before the first impact does not depend on them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,59 +14,49 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking._numba.compilation import contiguous_array
 from rocking.datasets.cube import build_spectrum_dataset
 from rocking.errors import in_range
-from rocking.interpolation.selection import choose_stencils
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
+from rocking.model.outcome_code import SURVIVES, outcome_codes
 from rocking.model.response import Response
 from rocking.solver.peak_response import peak_response
-from rocking.spectra.between_levels import LevelInterval, ProbePoint
-from rocking.spectra.layer import CELL_CENTRE, DIRECT, Cells, GridLayer, largest_in_neighbourhood, outcome_codes
+from rocking.spectra.layer import (
+    CELL_CENTRE,
+    DIRECT,
+    UNKNOWN,
+    Cells,
+    GridLayer,
+    largest_in_neighbourhood,
+)
+from rocking.spectra.level_interval import LevelInterval
 
 Array = NDArray[np.float64]
 
 PROBES = (CELL_CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
-"""Rows and columns within a cell where interpolation is compared with the solver [-]. No two share a row or a column,
-so that no crease along one passes between them, and errors of rows and of columns cannot cancel at all of them."""
-
-HALFWAY = (CELL_CENTRE, 0.5)
-"""Place in every cell, and share of the gap between two levels, where interpolation between them is compared."""
-
-EXTRA_PROBES = (((0.65, 0.15), 0.25), ((0.35, 0.85), 0.75))
-"""The same where it is not tame."""
+"""Fractions of a cell along rows and columns at which interpolation is compared with the solver [-]. No two share a row
+or a column: no crease along one passes between them, and errors of rows and columns cannot cancel at all of them."""
 
 FIRST_PROBES = 2
-"""Probes in every cell: the error of a smooth function has one shape along rows and one along columns."""
+"""Probe points used in every cell: the error of a smooth function has one shape along rows and one along columns."""
 
 REFINE_TOL = 1e-6
-"""Error at the first probes above which the others and other stencils or levels are tried, there and next to it [-]."""
-
-LEVEL_TOL = 1e-5
-"""The same between levels, where errors are larger and other levels help most beside creases [-]."""
+"""Error at the first probes, in a cell or one next to it, above which the other probes are used as well [-]."""
 
 MAX_ERROR = 5e-5
-"""Error at the first probes up to which a cell is interpolated at all [-]: what is coarser is for the solver."""
-
-SELECTION_FACTOR = 2.0
-"""Factor on the errors of levels that were chosen by them [-]: the best of six at three points flatters itself."""
-
-NEIGHBOUR_WEIGHT = {"interpolation_error": 0.3, "restitution_error": 1.0, "alpha_error": 1.0}
-"""How much the errors of the cells around count [-]: a crease in one of them that reaches into a cell parts one of its
-corners, which are nodes of its stencil, from the others, and shows at its own probes; between levels it may not."""
+"""Largest measured error of a cell that is interpolated [-]."""
 
 PROBE_TOLERANCE = 1e-8
-"""Relative error left in the peaks with which interpolation is compared: far below the errors that matter [-]."""
+"""Relative error of the peaks with which interpolation is compared [-]: small compared with errors that matter."""
 
 MAX_SPACING = {"restitution": 0.1, "alpha": np.radians(25.0)}
-"""Levels farther apart are not interpolated between: one look in the middle would not tell enough [-, rad]."""
+"""Largest interval between slices that is interpolated [-, rad]: one probe in the middle does not suffice for more."""
 
 BATCH_SIZE = 12
-"""Restitutions solved together: most of what sharing the first flight saves, at four times the memory of one."""
+"""Restitutions solved together: most of the saving of a shared first flight, for four times the memory of one."""
 
 
 def spectrum(pulse: str, *, restitution: float, **grid: Any) -> xr.Dataset:
-    """The spectrum cube of one pulse and one coefficient of restitution; the other arguments as for `spectra`."""
+    """The spectrum cube of one pulse and one coefficient of restitution; other arguments as for `spectra`."""
     return next(spectra(pulse, restitution=[restitution], **grid))
 
 
@@ -96,11 +86,11 @@ def spectra(
     alpha : array_like, shape (k,)
         Slenderness angles [rad], ascending; 0 for the slender limit.
     barred : bool array, shape (l, k, n - 1, m - 1), optional
-        Cells that are not to be interpolated, as boundaries of overturning cross them (`boundary_cells`).
+        Cells that are not interpolated because overturning boundaries cross them (`rocking.boundary.cells`).
     threads : int, optional
         Threads of the solver; by default all cores.
     stop : StopFlag, optional
-        Once another thread sets it, this ends soon with `StoppedError`.
+        The computation ends with `StoppedError` soon after another thread sets it.
 
     Raises
     ------
@@ -115,7 +105,6 @@ def spectra(
     layers: list[list[GridLayer]] = [[] for _ in etas]
     shape = (etas.size, angles.size, rows.size - 1, columns.size - 1)
     errors = {name: np.full(shape, np.nan) for name in ("interpolation_error", "restitution_error", "alpha_error")}
-    levels = {name: np.full(shape, NO_STENCIL, np.int8) for name in ("restitution_levels", "alpha_levels")}
     for a, angle in enumerate(angles):
         for first in range(0, etas.size, BATCH_SIZE):
             some = etas[first : first + BATCH_SIZE]
@@ -128,45 +117,28 @@ def spectra(
     kinds = [[layer.kinds() for layer in row] for row in layers]
     for a, angle in enumerate(angles):
         along = [row[a] for row in layers], [row[a] for row in kinds]
-        gaps = [LevelInterval.of(*along, etas, 1, int(k)) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
-        found = grid.errors_between(gaps, _between_restitutions(gaps, angle), known=DIRECT)
-        for gap, error in zip(gaps, found, strict=True):
-            errors["restitution_error"][gap.lower, a], levels["restitution_levels"][gap.lower, a] = error, gap.choice
+        intervals = [LevelInterval.of(*along, etas, 1, k) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
+        middles = np.array([interval.middle() for interval in intervals])
+        for interval, error in zip(intervals, grid.errors_between(intervals, middles, angle, DIRECT), strict=True):
+            errors["restitution_error"][interval.lower, a] = error
     for a in _interval_starts(angles, MAX_SPACING["alpha"]):
-        # the equation of motion knows the sign of alpha only in its square
-        gaps = [LevelInterval.of(*row, angles, 2, int(a)) for row in zip(layers, kinds, strict=True)]
-        found = grid.errors_between(gaps, _between_angles(gaps, etas))
-        for k, (gap, error) in enumerate(zip(gaps, found, strict=True)):
-            errors["alpha_error"][k, a], levels["alpha_levels"][k, a] = error, gap.choice
+        # the equation of motion depends on alpha through its square only
+        intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
+        errors["alpha_error"][:, a] = grid.errors_between(intervals, etas, intervals[0].middle())
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
     for k, eta in enumerate(etas):
-        measured = {name: error[k] for name, error in errors.items()}
-        chosen = {name: choice[k] for name, choice in levels.items()}
-        above = etas[k + 1] if k + 1 < etas.size else np.nan
-        cube = _cube(pulse, float(eta), axes, layers[k], measured, chosen)
-        yield cube.assign_attrs(next_restitution=float(above))
+        cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
+        yield cube.assign_attrs(restitution_slices=etas)
 
 
-def _interval_starts(levels: Array, apart: float) -> list[int]:
-    """The levels with the next one not farther than `apart` above."""
-    return [int(k) for k in np.flatnonzero(np.diff(levels) <= apart * (1.0 + 1e-9))]
-
-
-GroupsAt = Callable[[float], tuple[Array, float]]
-"""From a share of some gaps to the restitution there of each [-], and the angle [rad]."""
-
-
-def _between_restitutions(gaps: Sequence[LevelInterval], angle: float) -> GroupsAt:
-    return lambda share: (np.array([gap.at(share) for gap in gaps]), angle)
-
-
-def _between_angles(gaps: Sequence[LevelInterval], etas: Array) -> GroupsAt:
-    return lambda share: (etas, gaps[0].at(share))
+def _interval_starts(slices: Array, spacing: float) -> list[int]:
+    """The slices whose distance from the next one is at most `spacing`."""
+    return [int(k) for k in np.flatnonzero(np.diff(slices) <= spacing * (1.0 + 1e-9))]
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """The pulse and the plane of control on which it is solved."""
+    """The pulse, and the plane of slenderness and frequency ratio on which it is solved."""
 
     pulse: str
     mesh: Mesh
@@ -178,52 +150,11 @@ class _Grid:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
         return self._solve(self.mesh.rows[:, None], self.columns, etas, angle)
 
-    def errors_between(self, gaps: Sequence[LevelInterval], asked: GroupsAt, known: int | None = None) -> list[Array]:
-        """Largest errors at the probes of each cell, for each of some gaps.
-
-        nan where the layers of a gap differ; 0 without asking the solver where their kind is `known` to hold between.
-        Where the error is large the gaps are given the levels that have the least.
-        """
-        wanted = [(gap.kind != 0) & (gap.kind != known) for gap in gaps]
-        errors = [np.where(gap.kind == known, 0.0, np.nan) for gap in gaps]
-        cells = np.nonzero(np.any(wanted, axis=0)) if gaps else ()
-        if not gaps or not cells[0].size:
-            return errors
-        within, share = HALFWAY
-        x, y = self.mesh.within(cells, within)
-        found = self._solve(x, np.exp(y), *asked(share), PROBE_TOLERANCE)
-        fates = outcome_codes(found.outcome, found.impacts)
-        for k, gap in enumerate(gaps):
-            mine = wanted[k][cells]
-            own = cells[0][mine], cells[1][mine]
-            alike = np.where(gap.kind[own] > 0, 1, gap.kind[own]) == fates[mine, k]
-            gap.choice[own[0][~alike], own[1][~alike]] = NO_STENCIL
-            errors[k][own[0][alike], own[1][alike]] = 0.0
-            stand = alike & (gap.kind[own] > 0)
-            own = own[0][stand], own[1][stand]
-            halfway = HALFWAY, found.peak_rotation[mine, k][stand]
-            errors[k][own] = gap.errors(own, halfway)
-            wild = ~(largest_in_neighbourhood(errors[k])[own] <= LEVEL_TOL)
-            own, halfway = (own[0][wild], own[1][wild]), (HALFWAY, halfway[1][wild])
-            errors[k][own] = gap.choose(own, [halfway])
-            promising = errors[k][own] <= MAX_ERROR
-            gap.choice[own[0][~promising], own[1][~promising]] = NO_STENCIL
-            own, halfway = (own[0][promising], own[1][promising]), (HALFWAY, halfway[1][promising])
-            more = [(place, self._peaks_at(place, own, k, asked)) for place in EXTRA_PROBES]
-            errors[k][own] = SELECTION_FACTOR * gap.choose(own, [halfway, *more])
-        return errors
-
-    def _peaks_at(self, place: ProbePoint, cells: Cells, k: int, asked: GroupsAt) -> Array:
-        """The solver's peaks at a place of some cells of the k-th gap."""
-        within, share = place
-        x, y = self.mesh.within(cells, within)
-        etas, angle = asked(share)
-        return self._solve(x, np.exp(y), etas[k : k + 1], angle, PROBE_TOLERANCE).peak_rotation[:, 0]
-
     def errors_in_cells(self, layers: Sequence[GridLayer], etas: Array, angle: float) -> Array:
-        """Largest error at the probes of each cell, for each restitution; 0 where it overturns alike, or nan.
+        """Largest error [-] at the probes of each cell: shape (restitutions, n - 1, m - 1).
 
-        Where it is large the layers are given the stencil that has the least.
+        0 where all blocks overturn in the same way, infinite where one overturns at a probe, nan where there is no
+        stencil. Cells with more than `MAX_ERROR` lose their stencil.
         """
         errors = np.array([np.where(layer.stencil == OVERTURNS, 0.0, np.nan) for layer in layers])
         smooth = np.array([layer.smooth for layer in layers])
@@ -232,41 +163,55 @@ class _Grid:
         for k, layer in enumerate(layers):
             mine = smooth[k][cells]
             own = cells[0][mine], cells[1][mine]
-            found = [layer.peak_at(own, place) - peaks[p, mine, k] for p, place in enumerate(PROBES[:FIRST_PROBES])]
-            errors[k][own] = np.abs(found).max(axis=0)
-        errors[smooth & np.isnan(errors)] = np.inf  # a block overturns inside the cell
-        wild = smooth & ~(largest_in_neighbourhood(errors) <= REFINE_TOL)
+            errors[k][own] = _largest_error(layer, own, PROBES[:FIRST_PROBES], peaks[:, mine, k])
+        refined = smooth & ~(largest_in_neighbourhood(errors) <= REFINE_TOL) & (errors <= MAX_ERROR)
         for k, layer in enumerate(layers):
-            mine = wild[k][cells]
-            own = cells[0][mine], cells[1][mine]
-            self._choose(layer, own, peaks[:, mine, k], errors[k])
-            promising = errors[k][own] <= MAX_ERROR
-            layer.stencil[own[0][~promising], own[1][~promising]] = NO_STENCIL
-            good = own[0][promising], own[1][promising]
-            # one restitution at a time: these blocks strike often, and hardly two layers have them in the same cells
-            more = self._probe(PROBES[FIRST_PROBES:], good, etas[k : k + 1], angle)[..., 0]
-            self._choose(layer, good, np.concatenate([peaks[:, mine, k][:, promising], more]), errors[k])
+            # one restitution at a time: hardly two layers have such blocks, which impact often, in the same cells
+            rough = np.nonzero(refined[k])
+            more = self._probe(PROBES[FIRST_PROBES:], rough, etas[k : k + 1], angle)[..., 0]
+            errors[k][rough] = np.maximum(errors[k][rough], _largest_error(layer, rough, PROBES[FIRST_PROBES:], more))
+            layer.stencil[smooth[k] & (errors[k] > MAX_ERROR)] = NO_STENCIL
         return errors
 
-    def _choose(self, layer: GridLayer, cells: Cells, peaks: Array, errors: Array) -> None:
-        """Give some cells the stencil that comes closest to the peaks (probes, cells) at the first probes."""
-        places = PROBES[: len(peaks)]
-        x, y = (np.array(axis) for axis in zip(*(self.mesh.within(cells, place) for place in places), strict=True))
-        codes, least = layer.stencil[cells], np.empty(cells[0].size)
-        choose_stencils(
-            layer.peak_rotation,
-            *map(contiguous_array, cells),
-            x,
-            y,
-            np.ascontiguousarray(peaks),
-            self.mesh,
-            codes,
-            least,
-        )
-        layer.stencil[cells], errors[cells] = codes, least
+    def errors_between(
+        self, intervals: Sequence[LevelInterval], etas: Array, angle: float, known: int | None = None
+    ) -> list[Array]:
+        """Error [-] in the middle of each interval, at the centre of each cell.
+
+        Parameters
+        ----------
+        intervals : sequence of LevelInterval
+            Intervals over the same plane.
+        etas : float array (intervals,)
+            Restitution [-] in the middle of each, or on which it lies.
+        angle : float
+            Slenderness angle [rad] of all of them.
+        known : int, optional
+            Kind of cells in which all blocks between overturn in the same way, without asking the solver.
+
+        Returns
+        -------
+        list of float arrays (n - 1, m - 1)
+            0 where all blocks overturn in the same way, nan where the layers or the block in the middle differ in kind.
+        """
+        wanted = [(interval.kind != UNKNOWN) & (interval.kind != known) for interval in intervals]
+        errors = [np.where(interval.kind == known, 0.0, np.nan) for interval in intervals]
+        cells = np.nonzero(np.any(wanted, axis=0)) if intervals else ()
+        if not intervals or not cells[0].size:
+            return errors
+        x, y = self.mesh.within(cells, CELL_CENTRE)
+        found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
+        codes = outcome_codes(found.outcome, found.impacts)
+        for k, interval in enumerate(intervals):
+            same = wanted[k][cells] & (interval.kind[cells] == codes[:, k])
+            errors[k][cells[0][same], cells[1][same]] = 0.0
+            survive = same & (codes[:, k] == SURVIVES)
+            own = cells[0][survive], cells[1][survive]
+            errors[k][own] = interval.errors(own, CELL_CENTRE, found.peak_rotation[survive, k])
+        return errors
 
     def _probe(self, places: Sequence[tuple[float, float]], cells: Cells, etas: Array, angle: float) -> Array:
-        """The solver's peaks at places within cells, for each restitution: shape (places, cells, restitutions)."""
+        """Peaks of the solver [-] at points of cells, for each restitution: shape (places, cells, restitutions)."""
         peaks = np.empty((len(places), cells[0].size, etas.size))
         for k, place in enumerate(places):
             x, y = self.mesh.within(cells, place)
@@ -288,28 +233,32 @@ class _Grid:
         )
 
 
+def _largest_error(layer: GridLayer, cells: Cells, places: Sequence[tuple[float, float]], peaks: Array) -> Array:
+    """Largest error [-] of interpolation at points of cells against peaks (places, cells); infinite if one is nan."""
+    errors = np.abs([layer.peak_at(cells, place) - peak for place, peak in zip(places, peaks, strict=True)])
+    return np.asarray(np.nan_to_num(errors.max(axis=0), nan=np.inf))
+
+
 def _cube(
     pulse: str,
     eta: float,
     axes: Mapping[str, Array],
     layers: Sequence[GridLayer],
     errors: Mapping[str, Array],
-    levels: Mapping[str, NDArray[np.int8]],
 ) -> xr.Dataset:
-    """Assemble the layers of one restitution; cells stand at their lower corner."""
+    """Assemble the layers of one restitution; the values of a cell are stored at its lower node."""
     names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha", "peak_mode")
     variables = {name: np.stack([getattr(layer, name) for layer in layers]) for name in names}
 
     def at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
         return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
 
-    codes = {"stencil": np.stack([layer.stencil for layer in layers]), **levels}
-    for (name, code), (measured, error) in zip(codes.items(), errors.items(), strict=True):
-        variables[name] = at_corner(code, NO_STENCIL)
-        largest = largest_in_neighbourhood(error, NEIGHBOUR_WEIGHT[measured])
-        largest[(code == NO_STENCIL) | np.isinf(largest)] = np.nan
+    variables["stencil"] = at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
+    for name, error in errors.items():
+        largest = largest_in_neighbourhood(error)
+        largest[~((error <= MAX_ERROR) & np.isfinite(largest))] = np.nan
         single = largest.astype(np.float32)
-        # up to the next single: what is stored is still a bound
+        # rounded up to single precision: what is stored is still a bound
         above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
-        variables[measured] = at_corner(above, np.nan)
+        variables[name] = at_corner(above, np.nan)
     return build_spectrum_dataset(variables, pulse=pulse, restitution=eta, axes=axes)

@@ -1,7 +1,7 @@
-"""One layer of a cube, all blocks of one restitution and one slenderness angle, and how well it interpolates.
+"""One layer of a cube: all blocks of one restitution and one slenderness angle, and how its cells are interpolated.
 
-Where a safe block's peak is reached in free rocking it goes like 1 - sqrt(E) with a smooth E = (1 - peak)^2, which
-vanishes on the boundary of overturning: there E is interpolated, elsewhere the peak itself.
+Where the peak of a block that survives is reached in free rocking, it behaves like 1 - sqrt(E) with a smooth
+E = (1 - peak)^2 that vanishes on the overturning boundary. E is interpolated there, the peak itself elsewhere.
 """
 
 from __future__ import annotations
@@ -12,8 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import contiguous_array
-from rocking.interpolation.selection import interpolate_cells
-from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, Mesh, first_valid_stencils
+from rocking.interpolation.stencils import (
+    NO_STENCIL,
+    OVERTURNS,
+    PEAK,
+    SQUARED,
+    Mesh,
+    interpolate_cells,
+    interpolated_cells,
+)
+from rocking.model.outcome_code import SURVIVES, outcome_codes
 from rocking.model.response import Outcome, Response
 
 Array = NDArray[np.float64]
@@ -22,16 +30,19 @@ Cells = tuple[NDArray[np.intp], ...]
 
 CELL_CENTRE = (0.5, 0.5)
 
-DIRECT = -int(Outcome.OVERTURNED_DIRECTLY)
-"""Kind of a cell in which all overturn without an impact: they do so for every restitution."""
+UNKNOWN = -1
+"""Kind of a cell that is not interpolated."""
+
+DIRECT = int(Outcome.OVERTURNED_DIRECTLY)
+"""Kind of a cell in which all blocks overturn without impact: they do so for every restitution."""
 
 FEW_IMPACTS = 1
-"""Impacts up to which the ways of overturning fill regions with boundaries that are traced one by one."""
+"""Number of impacts up to which the regions of one way of overturning have boundaries that are traced one by one."""
 
 
 @dataclass(frozen=True)
 class GridLayer:
-    """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `cube`."""
+    """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `rocking.datasets.cube`."""
 
     mesh: Mesh
     peak_rotation: Array
@@ -43,11 +54,11 @@ class GridLayer:
 
     @classmethod
     def of(cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None) -> GridLayer:
-        """The k-th restitution of solved nodes (n, m, restitutions); `barred` cells (n - 1, m - 1) are not used."""
+        """The k-th restitution of solved nodes (n, m, restitutions); cells `barred` (n - 1, m - 1) have no stencil."""
         outcome, impacts, mode = nodes.outcome[..., k], nodes.impacts[..., k], nodes.peak_mode[..., k]
         safe = outcome == Outcome.SAFE
-        squared = first_valid_stencils(safe & (mode % 2 == 1))
-        codes = np.where(squared >= 0, squared + SQUARED, first_valid_stencils(safe))
+        codes = np.where(interpolated_cells(safe), PEAK, NO_STENCIL)
+        codes = np.where(interpolated_cells(safe & (mode % 2 == 1)), SQUARED, codes)
         codes = np.where(_same_overturning(outcome_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
@@ -56,11 +67,11 @@ class GridLayer:
 
     @property
     def smooth(self) -> Flags:
-        """Cells that are interpolated."""
-        return (self.stencil >= 0) & (self.stencil < OVERTURNS)
+        """Cells in which the peak is interpolated."""
+        return np.asarray((self.stencil == PEAK) | (self.stencil == SQUARED))
 
     def at(self, cells: Cells, place: tuple[float, float]) -> Array:
-        """What is interpolated, E or the peak, at one place within each of some smooth cells."""
+        """The interpolated variable, E or the peak [-], at one point of each of some smooth cells."""
         values = np.empty(cells[0].size)
         interpolate_cells(
             self.peak_rotation,
@@ -73,34 +84,28 @@ class GridLayer:
         return values
 
     def peak_at(self, cells: Cells, place: tuple[float, float]) -> Array:
-        """The interpolated peak at one place within each of some smooth cells."""
-        return peak_of(self.at(cells, place), self.stencil[cells] >= SQUARED)
+        """The interpolated peak [-] at one point of each of some smooth cells."""
+        return peak_of(self.at(cells, place), self.stencil[cells] == SQUARED)
 
     def kinds(self) -> NDArray[np.int64]:
-        """What is known of each cell: 0 nothing, 1 a peak, below 0 the way in which it overturns."""
-        ways = outcome_codes(self.outcome, self.impacts)[:-1, :-1]
-        return np.where(self.stencil == OVERTURNS, ways, self.smooth.astype(np.int64))
-
-
-def outcome_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDArray[np.int64]:
-    """1 where the block stands, else a number below 0 for the way in which it overturns."""
-    return np.where(outcome >= Outcome.OVERTURNED_DIRECTLY, -(4 * impacts.astype(np.int64) + outcome), 1)
+        """Kind of each cell: the code of its outcome (`rocking.model.outcome_code`), or `UNKNOWN`."""
+        codes = outcome_codes(self.outcome, self.impacts)[:-1, :-1]
+        return np.where(self.stencil == OVERTURNS, codes, np.where(self.smooth, SURVIVES, UNKNOWN))
 
 
 def peak_of(value: Array, squared: Flags) -> Array:
-    """The peak from what is interpolated."""
+    """The peak [-] from the interpolated variable."""
     return np.where(squared, 1.0 - np.sqrt(np.maximum(value, 0.0)), value)
 
 
-def largest_in_neighbourhood(errors: Array, share: float = 1.0) -> Array:
-    """The largest of the errors (..., n, m) of a cell and a share of those of the eight around it.
+def largest_in_neighbourhood(errors: Array) -> Array:
+    """The largest of the errors (..., n, m) of each cell and the eight cells around it; nan stays nan, and only there.
 
-    nan stays nan, and only there. A crease of the peak that only cuts a corner of a cell passes the points of its
-    neighbours.
+    A crease of the peak that only cuts a corner of a cell shows at the probe points of its neighbours.
     """
     n, m = errors.shape[-2:]
     outside = [(0, 0)] * (errors.ndim - 2) + [(1, 1), (1, 1)]
-    around = np.pad(share * errors, outside, constant_values=np.nan)
+    around = np.pad(errors, outside, constant_values=np.nan)
     largest = errors.copy()
     for i in range(3):
         for j in range(3):
@@ -109,14 +114,15 @@ def largest_in_neighbourhood(errors: Array, share: float = 1.0) -> Array:
 
 
 def _same_overturning(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Flags:
-    """Cells whose four corners overturn in one way, and the twelve nodes around them too if any has several impacts.
+    """Cells whose four corners overturn in the same way; after several impacts, the twelve nodes around them as well.
 
-    Where the ways of many impacts meet they lie in layers, with safe bands between them that are thinner than a cell.
+    Where regions of overturning after many impacts meet, they form layers with safe bands between them that are
+    narrower than a cell.
     """
     n, m = ways.shape
     around = np.pad(ways, 1, mode="edge")
     most = np.zeros((n - 1, m - 1), dtype=np.int32)
-    alike, uniform = ways[:-1, :-1] < 0, np.ones((n - 1, m - 1), dtype=np.bool_)
+    alike, uniform = ways[:-1, :-1] != SURVIVES, np.ones((n - 1, m - 1), dtype=np.bool_)
     padded = np.pad(impacts, 1, mode="edge")
     for i in range(4):
         for j in range(4):

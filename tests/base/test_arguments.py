@@ -1,4 +1,4 @@
-"""Arguments that numpy would silently turn into other numbers, and objects that are no pulse: refused by name."""
+"""Arguments that numpy would convert silently, and objects that are no pulse, are rejected by name."""
 
 import numpy as np
 import pandas as pd
@@ -41,7 +41,7 @@ class Lookalike:
 
 @pytest.mark.parametrize("value", AMBIGUOUS.values(), ids=AMBIGUOUS)
 @pytest.mark.parametrize("name", GROUPS)
-def test_values_that_are_not_plain_numbers_are_refused(name, value):
+def test_values_that_are_not_real_numbers_are_rejected(name, value):
     with pytest.raises(
         InvalidArgumentError, match=rf"(?s)^`{name}` = .*allowed: real numbers, none of them masked, in"
     ) as e:
@@ -50,7 +50,7 @@ def test_values_that_are_not_plain_numbers_are_refused(name, value):
     assert e.value.value is value
 
 
-def test_real_numbers_of_any_kind_are_taken():
+def test_real_numbers_of_any_type_are_accepted():
     expected = rocking.peak_response("sine", **GROUPS).peak_rotation
     unmasked = np.ma.masked_array([0.4], mask=[False])
     for value in (np.float32(0.5), 1, np.array([0.25], dtype=object), np.array([1], dtype=np.uint8), []):
@@ -71,7 +71,7 @@ LABELLED = {
 
 
 @pytest.mark.parametrize(("slenderness", "frequency_ratio"), LABELLED.values(), ids=LABELLED)
-def test_labels_that_differ_are_not_paired_by_position(slenderness, frequency_ratio):
+def test_arguments_with_different_labels_are_rejected(slenderness, frequency_ratio):
     groups = GROUPS | {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
     with pytest.raises(InvalidArgumentError, match=r"`slenderness, frequency_ratio` .*broadcast or align first"):
         rocking.peak_response("sine", **groups)
@@ -79,7 +79,7 @@ def test_labels_that_differ_are_not_paired_by_position(slenderness, frequency_ra
     assert rocking.peak_response("sine", **plain).shape == slenderness.shape
 
 
-def test_labels_that_agree_are_taken_in_their_order():
+def test_arguments_with_equal_labels_are_accepted():
     slenderness, frequency_ratio = xr.broadcast(*LABELLED["dimensions"])
     found = rocking.peak_response("sine", **GROUPS | {"slenderness": slenderness, "frequency_ratio": frequency_ratio})
     for i, s in enumerate([0.3, 0.4]):
@@ -109,7 +109,7 @@ NO_PULSES = {
 
 @pytest.mark.parametrize("pulse", NO_PULSES.values(), ids=NO_PULSES)
 @pytest.mark.parametrize("ask", QUESTIONS.values(), ids=QUESTIONS)
-def test_what_is_no_pulse_is_refused(ask, pulse):
+def test_objects_that_are_no_pulse_are_rejected(ask, pulse):
     with pytest.raises(InvalidArgumentError, match=r"^`pulse` = .*mavroeidis_papageorgiou") as error:
         ask(pulse)
     assert error.value.value is pulse

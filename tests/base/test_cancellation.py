@@ -1,4 +1,4 @@
-"""Work ends soon after its flag is set, wherever it is, and no incomplete answer comes back."""
+"""Work ends soon after its flag is set, and no incomplete result is returned."""
 
 import threading
 import time
@@ -17,12 +17,12 @@ from rocking.solver.state import FLIGHT_STATE, RESPONSE_RECORD, SINGLE_SINUSOID_
 from rocking.spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
-"""Slendernesses just below uplift: an elastic block then strikes the ground 200,000 times."""
+"""Slendernesses just below uplift: an elastic block then has 200,000 impacts."""
 
 ELASTIC = {"frequency_ratio": 0.05, "restitution": 1.0}
 
 SOON = 0.1
-"""Processor time in which the work ends [s]: on a free machine the time on the clock is the same."""
+"""Processor time within which the work ends [s]; equal to the elapsed time on an idle machine."""
 
 AXES = {"slenderness": MANY[:40], "frequency_ratio": np.linspace(0.04, 0.05, 40)}
 
@@ -61,7 +61,7 @@ def _loaded():
 
 
 @pytest.mark.parametrize("name", WORK)
-def test_work_ends_soon_after_the_flag_is_set(name):
+def test_work_ends_soon_after_cancellation(name):
     stop, ended = StopFlag(), []
 
     def work():
@@ -97,7 +97,7 @@ def test_a_kernel_reads_the_flag_within_one_cell():
         assert 0 < reached < 200_000
 
 
-def test_a_flag_that_is_set_before_ends_the_work_at_once():
+def test_a_flag_set_in_advance_ends_the_work_at_once():
     stop = StopFlag()
     stop.set()
     with pytest.raises(StoppedError):
@@ -106,13 +106,13 @@ def test_a_flag_that_is_set_before_ends_the_work_at_once():
         build_motion("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop).events()
 
 
-def test_a_flag_that_is_not_set_changes_no_answer():
+def test_a_flag_that_is_not_set_changes_no_result():
     groups = {"slenderness": np.linspace(0.1, 0.9, 99), "frequency_ratio": 3.0, "restitution": 0.9}
     free, watched = (rocking.peak_response("sine", **groups, stop=stop) for stop in (None, StopFlag()))
     np.testing.assert_array_equal(free.peak_rotation, watched.peak_rotation)
 
 
-def test_a_part_stops_with_the_whole_and_not_the_other_way_round():
+def test_cancelling_the_whole_cancels_its_children_only():
     whole = StopFlag()
     with whole.child() as part:
         part.set()
@@ -124,7 +124,7 @@ def test_a_part_stops_with_the_whole_and_not_the_other_way_round():
         assert part.is_set()
 
 
-def test_what_is_not_done_in_its_time_is_given_up():
+def test_work_that_exceeds_its_time_limit_is_cancelled():
     stop = StopFlag()
     began = time.process_time()
     assert run_with_timeout(WORK["amplitude"], 0.1, stop) is None

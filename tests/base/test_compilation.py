@@ -1,4 +1,4 @@
-"""Machine code of the kernels: one form of each for all questions, the same in every process, kept on disk."""
+"""Compiled kernels: one signature for all arguments, equal results in every process, cache on disk."""
 
 import os
 import shutil
@@ -19,9 +19,8 @@ from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.excitation.shapes import MAX_SINUSOIDS
 from rocking.history import sampling
-from rocking.interpolation import selection as stencil_choice
+from rocking.interpolation import kernel as lookup_kernel
 from rocking.interpolation import stencils as interpolation
-from rocking.lookup import kernel as lookup_kernel
 from rocking.lookup.open import open_cube
 from rocking.solver import peak_response as solve
 from rocking.solver.arcs.arc import cosh_minus_one_and_sinh
@@ -39,8 +38,8 @@ ENTRIES = (
         sampling.sample_arcs,
         sampling.sample_free_rocking,
     ),
-    *(interpolation.lagrange_weight, lookup_kernel.interpolate_many),
-    *(stencil_choice.choose_stencils, stencil_choice.interpolate_cells),
+    *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
+    lookup_kernel.interpolate_many,
 )
 
 
@@ -50,7 +49,7 @@ def read_only(*values):
     return array
 
 
-def test_each_entry_has_one_form_whatever_is_asked(tmp_path):
+def test_each_entry_has_one_signature_for_all_arguments(tmp_path):
     precompile.load_kernels()
     forms = {one.__name__: len(one.signatures) for one in ENTRIES}  # other tests may have added to them
     for name in rocking.PULSE_NAMES:
@@ -88,7 +87,7 @@ def test_records_of_one_sinusoid_and_of_many_differ_by_rounding_only():
 
 
 def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
-    """A sine in as many equal parts."""
+    """A sine as the sum of equal parts."""
     sine, groups = rocking.get_pulse("sine"), {"slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.9}
     whole = rocking.peak_response(sine, **groups).peak_rotation
     for count in (2, 5, MAX_SINUSOIDS):
@@ -99,7 +98,7 @@ def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
         SinusoidalPulse("many", sine.start, sine.end, sine.stationary, sine.terms * (MAX_SINUSOIDS + 1))
 
 
-def test_plain_arrays_are_taken_as_they_are_and_others_are_copied():
+def test_contiguous_arrays_are_not_copied():
     array = np.ones((3, 4))
     assert contiguous_array(array) is array
     for other in (array[:, ::2], array.T, np.broadcast_to(1.0, (3,)), read_only(1.0), *np.broadcast_arrays(1.0, array)):
@@ -109,7 +108,7 @@ def test_plain_arrays_are_taken_as_they_are_and_others_are_copied():
 
 
 def script(code, **environment):
-    """What a new process prints that runs some code."""
+    """Output of a new process that runs some code."""
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=os.environ | environment
     )
@@ -117,7 +116,7 @@ def script(code, **environment):
 
 
 @pytest.mark.slow
-def test_the_process_that_compiles_and_the_next_one_answer_alike_bit_by_bit(tmp_path):
+def test_compiling_process_and_cached_process_give_equal_bits(tmp_path):
     code = """
 import hashlib, numpy as np, rocking
 from rocking.model.fields import RESPONSE_FIELDS
@@ -141,7 +140,7 @@ def digest_of(package):
     return rocking._numba.compilation._digest(package)
 
 
-def test_the_cache_folder_follows_every_kernel_source_and_what_it_imports(tmp_path):
+def test_the_cache_folder_depends_on_kernel_sources_and_their_imports(tmp_path):
     (tmp_path / "inner").mkdir()
     one, constants = tmp_path / "inner" / "one.py", tmp_path / "inner" / "constants.py"
     one.write_text("from rocking.inner.constants import X\n\n@kernel\ndef f(x): ...\n")
@@ -153,7 +152,7 @@ def test_the_cache_folder_follows_every_kernel_source_and_what_it_imports(tmp_pa
     one.write_text("from rocking.inner.constants import X\n\n@kernel\ndef f(x): return 1\n")
     second = digest_of(tmp_path)
     assert second != first
-    constants.write_text("X = 2\n")  # frozen into the machine code
+    constants.write_text("X = 2\n")  # a constant of the machine code
     third = digest_of(tmp_path)
     assert third not in (first, second)
     (tmp_path / "two.py").write_text("@entry\ndef h(x): ...\n")
@@ -162,7 +161,7 @@ def test_the_cache_folder_follows_every_kernel_source_and_what_it_imports(tmp_pa
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The choice of the folder in a process with a package, a user and an environment of its own."""
+    """The cache folder of a process with its own package, user and environment."""
     monkeypatch.setattr(rocking._numba.compilation, "_PACKAGE", tmp_path / "package")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
@@ -171,11 +170,11 @@ def folder(tmp_path, monkeypatch):
 
 
 def closed(path):
-    """A place where no folder can be made, not even by the superuser."""
+    """A path where no folder can be created, not even by the superuser."""
     path.write_text("")
 
 
-def test_the_cache_lies_beside_the_package_or_where_it_can_be_written_to(folder, tmp_path, monkeypatch):
+def test_the_cache_is_beside_the_package_or_in_a_writable_folder(folder, tmp_path, monkeypatch):
     assert Path(folder()).parent == tmp_path / "package" / "__pycache__"
     shutil.rmtree(tmp_path / "package" / "__pycache__")
     closed(tmp_path / "package" / "__pycache__")
@@ -184,7 +183,7 @@ def test_the_cache_lies_beside_the_package_or_where_it_can_be_written_to(folder,
     assert Path(folder()).parent == tmp_path / "given"
 
 
-def test_without_a_place_for_the_cache_kernels_work_with_one_warning(folder, tmp_path, monkeypatch):
+def test_kernels_without_a_cache_folder_give_one_warning(folder, tmp_path, monkeypatch):
     closed(tmp_path / "package" / "__pycache__")
     closed(tmp_path / "user")
     with pytest.warns(RuntimeWarning, match="NUMBA_CACHE_DIR") as said:
@@ -202,7 +201,7 @@ def test_without_a_place_for_the_cache_kernels_work_with_one_warning(folder, tmp
 
 
 @pytest.mark.slow
-def test_a_process_without_a_place_for_the_cache_answers_after_one_warning(tmp_path):
+def test_a_process_without_a_cache_folder_gives_results_after_one_warning(tmp_path):
     code = """
 import warnings
 with warnings.catch_warnings(record=True) as said:
@@ -219,11 +218,11 @@ def test_kernels_release_the_interpreter_and_do_not_reorder_sums():
     for compiled in (*ENTRIES, cosh_minus_one_and_sinh):
         options = compiled.targetoptions
         assert options["nogil"]
-        assert options["fastmath"] == {"contract"}  # nothing that would assume away nan or rounding
+        assert options["fastmath"] == {"contract"}  # no option that ignores nan or reorders operations
     assert rock_many.solve_batch.nopython_signatures is not None
 
 
-def test_division_by_zero_is_arithmetic_and_no_exception():
+def test_division_by_zero_raises_no_exception():
     @kernel
     def divide(x, y):
         return x / y

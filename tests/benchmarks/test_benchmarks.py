@@ -1,4 +1,4 @@
-"""The benchmarks' truth is the truth, their peers are fair ones, and the commands still run; no time is asserted."""
+"""The reference tables are correct, the baselines converge to them, and the commands run; no time is asserted."""
 
 import json
 import math
@@ -13,14 +13,17 @@ import pytest
 import yaml
 
 import rocking
-from benchmarks import cells, fixed_step_peer, grid_size, stages, truth, work_precision
-from benchmarks.equal_error import time_for
+from benchmarks import cells, reference_tables
+from benchmarks.accuracy import grid_size
+from benchmarks.accuracy.tolerance import peaks, summary
+from benchmarks.baselines import runge_kutta
+from benchmarks.baselines.event_loop import SINE, respond
+from benchmarks.baselines.methods import compiled_peaks, package_peaks, python_peaks
+from benchmarks.baselines.scipy_ivp import integrate_flight
+from benchmarks.cost import stages, work_precision
+from benchmarks.cost.equal_error import time_for
 from benchmarks.measure import accuracy
-from benchmarks.methods import compiled, ours, plain
-from benchmarks.one_pulse import SINE, rock
-from benchmarks.scipy_peer import flight
 from benchmarks.summary import page
-from benchmarks.tolerance import peaks, summary
 from rocking.lookup.open import open_cube
 from rocking.solver.peak_response import peak_response
 from tests.workflow_fixtures import snakemake
@@ -30,83 +33,85 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(params=cells.DIAGRAMS)
 def diagram(request) -> cells.Cells:
-    return cells.read(request.param)
+    return cells.read_table(request.param)
 
 
 @pytest.fixture
-def standing(diagram) -> cells.Cells:
-    """Ten blocks of a diagram that rock and stand."""
-    return diagram.chosen(np.flatnonzero(diagram.peak_rotation > 0.0)[::45][:10])
+def surviving(diagram) -> cells.Cells:
+    """Ten blocks of a diagram that uplift and survive."""
+    return diagram.select(np.flatnonzero(diagram.peak_rotation > 0.0)[::45][:10])
 
 
-@pytest.mark.parametrize("name", truth.TABLES)
-def test_the_tables_are_what_their_generator_writes(name: str) -> None:
-    generated, solve = truth.TABLES[name]
-    table = cells.read(name)
+@pytest.mark.parametrize("name", reference_tables.TABLES)
+def test_the_tables_are_those_that_their_generator_writes(name: str) -> None:
+    generated, solve = reference_tables.TABLES[name]
+    table = cells.read_table(name)
     assert len(table) == sum(1 for _ in generated())
     for k, cell in islice(enumerate(generated()), 3, None, len(table) // 3):
         row = solve(cell)
         assert row["pulse"] == table.pulse[k]
-        for column in truth.columns(name):
+        for column in reference_tables.columns(name):
             if column != "pulse":
                 np.testing.assert_allclose(float(row[column] or "nan"), getattr(table, column)[k], rtol=1e-14)
 
 
-def test_the_script_with_scipy_finds_the_same_slender_peaks() -> None:
-    """A dozen cells, from no uplift over impacts to chatter and renewed uplift."""
+def test_scipy_with_the_shared_event_loop_gives_the_same_slender_peaks() -> None:
+    """A dozen cells: no uplift, impacts, chatter, renewed uplift."""
     random = np.random.default_rng(3)
     slenderness = np.r_[random.uniform(0.1, 0.97, 10), 0.97, 1.2]
     frequency_ratio = np.r_[random.uniform(0.5, 12.0, 10), 4.0, 2.0]
     groups = zip(slenderness, frequency_ratio, strict=True)
-    found = [rock.py_func(flight, ("DOP853", 1e-9), s, w, 0.6, 0.0, SINE) for s, w in groups]
+    found = [respond.py_func(integrate_flight, ("DOP853", 1e-9), s, w, 0.6, 0.0, SINE) for s, w in groups]
     response = rocking.peak_response("sine", slenderness=slenderness, frequency_ratio=frequency_ratio, restitution=0.6)
     assert response.chatter.any()
     np.testing.assert_allclose(found, response.peak_rotation, rtol=1e-6, atol=1e-10)
 
 
 @pytest.mark.parametrize(("method", "rtol", "error"), [("DOP853", 1e-10, 1e-6), ("LSODA", 1e-10, 1e-5)])
-def test_the_script_with_scipy_finds_the_truth(standing, method: str, rtol: float, error: float) -> None:
-    found = plain(flight, lambda tolerance: (method, tolerance))(rtol, standing)
-    np.testing.assert_allclose(found, standing.peak_rotation, rtol=error)
+def test_scipy_agrees_with_the_reference(surviving, method: str, rtol: float, error: float) -> None:
+    found = python_peaks(integrate_flight, lambda tolerance: (method, tolerance))(rtol, surviving)
+    np.testing.assert_allclose(found, surviving.peak_rotation, rtol=error)
 
 
-def test_fixed_steps_converge_to_the_truth_with_the_fourth_order(diagram: cells.Cells) -> None:
+def test_fixed_steps_converge_to_the_reference_with_the_fourth_order(diagram: cells.Cells) -> None:
     steps = np.array([64, 128, 256]) * (1 if diagram.pulse[0] == "sine" else 8)
-    found = [accuracy(compiled(fixed_step_peer.flight)(n, diagram), diagram.peak_rotation) for n in steps]
-    assert found[2]["wrong_fates"] == 0
+    found = [accuracy(compiled_peaks(runge_kutta.integrate_flight)(n, diagram), diagram.peak_rotation) for n in steps]
+    assert found[2]["wrong_outcomes"] == 0
     order = np.log2(found[0]["median_error"] / found[2]["median_error"]) / 2
     assert 3.5 < order < 4.5
 
 
-def test_heyoka_finds_the_truth(standing: cells.Cells) -> None:
-    peer = pytest.importorskip("benchmarks.heyoka_peer", exc_type=ModuleNotFoundError)
-    np.testing.assert_allclose(plain(peer.flight)(1e-13, standing), standing.peak_rotation, rtol=1e-10)
+def test_heyoka_agrees_with_the_reference(surviving: cells.Cells) -> None:
+    module = pytest.importorskip("benchmarks.baselines.heyoka_taylor", exc_type=ModuleNotFoundError)
+    np.testing.assert_allclose(
+        python_peaks(module.integrate_flight)(1e-13, surviving), surviving.peak_rotation, rtol=1e-10
+    )
 
 
 @pytest.mark.parametrize(("name", "error"), [("dop853_flight", 1e-8), ("lsoda_flight", 1e-6)])
-def test_numbalsoda_finds_the_truth(standing: cells.Cells, name: str, error: float) -> None:
-    peer = pytest.importorskip("benchmarks.numbalsoda_peer", exc_type=ModuleNotFoundError)
-    found = compiled(getattr(peer, name))(1e-11, standing)
-    np.testing.assert_allclose(found, standing.peak_rotation, rtol=error)
+def test_numbalsoda_agrees_with_the_reference(surviving: cells.Cells, name: str, error: float) -> None:
+    module = pytest.importorskip("benchmarks.baselines.numbalsoda_ivp", exc_type=ModuleNotFoundError)
+    found = compiled_peaks(getattr(module, name))(1e-11, surviving)
+    np.testing.assert_allclose(found, surviving.peak_rotation, rtol=error)
 
 
-def test_diffrax_finds_the_truth(standing: cells.Cells) -> None:
-    peer = pytest.importorskip("benchmarks.diffrax_peer", exc_type=ModuleNotFoundError)
-    np.testing.assert_allclose(peer.peaks(1e-11, standing), standing.peak_rotation, rtol=1e-6)
+def test_diffrax_agrees_with_the_reference(surviving: cells.Cells) -> None:
+    module = pytest.importorskip("benchmarks.baselines.diffrax_dopri8", exc_type=ModuleNotFoundError)
+    np.testing.assert_allclose(module.peaks(1e-11, surviving), surviving.peak_rotation, rtol=1e-6)
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
-def test_the_diagrams_keep_to_the_tolerance(diagram: cells.Cells, tolerance: float) -> None:
-    found = accuracy(ours(tolerance, diagram), diagram.peak_rotation)
-    assert found["wrong_fates"] == 0
+def test_errors_in_the_diagrams_are_within_the_tolerance(diagram: cells.Cells, tolerance: float) -> None:
+    found = accuracy(package_peaks(tolerance, diagram), diagram.peak_rotation)
+    assert found["wrong_outcomes"] == 0
     assert found["largest_error"] <= tolerance
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7, 1e-10, 1e-13])
-def test_random_cells_keep_to_the_tolerance_as_far_as_their_condition_allows(tolerance: float) -> None:
-    table = cells.read("random")
+def test_errors_of_random_cells_are_within_tolerance_times_condition_number(tolerance: float) -> None:
+    table = cells.read_table("random")
     counts = summary(table, peaks(table, tolerance), tolerance)
-    assert counts["wrong_fates"] == 0
+    assert counts["wrong_outcomes"] == 0
     assert counts["above_and_unexplained"] == 0
     assert counts["above_tenfold"] == 0
 
@@ -132,20 +137,20 @@ def run(module: str, out: Path, *options: str) -> tuple[dict, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["slender-sine", "rigid-ricker"])
-def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path, name: str) -> None:
-    record, text = run("work_precision", tmp_path / "a.json", name, "--rounds", "1", "--coarse", "4")
+@pytest.mark.parametrize("diagram_name", ["slender-sine", "rigid-ricker"])
+def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path, diagram_name: str) -> None:
+    record, text = run("cost.work_precision", tmp_path / "a.json", diagram_name, "--rounds", "1", "--coarse", "4")
     assert record["cells"]["all"] == 64
-    assert all(rows[-1]["wrong_fates"] == 0 for rows in record["methods"].values())
+    assert all(rows[-1]["wrong_outcomes"] == 0 for rows in record["methods"].values())
     assert record["methods"]["rocking"][-1]["largest_error"] < 1e-12
-    for peers in record["time_over_ours"].values():
-        assert set(peers) == set(record["methods"]) - {"rocking"}
-    assert all(f"{peer} cannot be imported here" in text for peer in record["missing_peers"])
+    for baselines in record["time_ratios"].values():
+        assert set(baselines) == set(record["methods"]) - {"rocking"}
+    assert all(f"{name} cannot be imported and is omitted" in text for name in record["missing_baselines"])
 
 
 @pytest.mark.slow
-def test_growth_finds_the_same_fates_however_many_threads(tmp_path: Path) -> None:
-    record, _ = run("growth", tmp_path / "a.json", "--largest", "10000")
+def test_growth_finds_the_same_outcomes_for_any_number_of_threads(tmp_path: Path) -> None:
+    record, _ = run("cost.growth", tmp_path / "a.json", "--largest", "10000")
     counts = {(one["kind"], one["cells"]): set() for one in record["sizes"]}
     for one in record["sizes"]:
         counts[one["kind"], one["cells"]].add(one["overturned"])
@@ -159,28 +164,30 @@ def test_growth_finds_the_same_fates_however_many_threads(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-def test_interpolation_gains_four_orders_where_linear_gains_two(tmp_path: Path) -> None:
-    record, text = run("grid_size", tmp_path / "a.json", "--count", "20000", "--scales", "0.125", "0.25", "0.5")
+def test_interpolation_is_of_fourth_order_where_linear_is_of_second(tmp_path: Path) -> None:
+    record, text = run(
+        "accuracy.grid_size", tmp_path / "a.json", "--count", "20000", "--scales", "0.125", "0.25", "0.5"
+    )
     for angle in ("0", "20"):
-        ours, linear = ([row["alpha_deg"][angle][name] for row in record["grids"]] for name in ("ours", "linear"))
-        assert all(one["wrong_fates"] == 0 for one in ours)
+        package, linear = ([row["alpha_deg"][angle][name] for row in record["grids"]] for name in ("package", "linear"))
+        assert all(one["wrong_outcomes"] == 0 for one in package)
         assert 3.0 < math.log2(linear[0]["error"]["0.5"] / linear[2]["error"]["0.5"]) < 4.5
-        assert ours[2]["within"]["1e-04"] > 0.8
+        assert package[2]["within"]["1e-04"] > 0.8
     assert "189 x 121" in text
     assert (tmp_path / "a.png").exists()
 
-    # a coarse grid leaves what it is bad at to the solver: of the questions that both answer
+    # a coarse grid leaves points with large errors to the solver: compare the points that both answer
     config = yaml.safe_load(grid_size.CONFIG.read_text())
-    points = grid_size.questions(config, 20_000, 0.0, 1)
-    true = peak_response(grid_size.PULSE, **vars(points)).peak_rotation
+    points = grid_size.random_points(config, 20_000, 0.0, 1)
+    exact = peak_response(grid_size.PULSE, **vars(points)).peak_rotation
     errors = []
-    for path, _ in grid_size.made(tmp_path, config, (0.125, 0.5)):
-        known, found = open_cube(path).promised(points, math.inf)
-        errors.append(np.full(true.size, np.nan))
-        errors[-1][known] = np.abs(found.peak_rotation - true[known])
+    for path, _ in grid_size.build_cubes(tmp_path, config, (0.125, 0.5)):
+        known, found = open_cube(path).interpolate(points, math.inf)
+        errors.append(np.full(exact.size, np.nan))
+        errors[-1][known] = np.abs(found.peak_rotation - exact[known])
     both = ~np.isnan(errors).any(axis=0)
     coarse, fine = (np.median(error[both]) for error in errors)
-    assert math.log2(coarse / fine) > 7.0  # a fourth of the spacing: 8 at order 4
+    assert math.log2(coarse / fine) > 7.0  # one fourth of the spacing: 8 at order 4
 
 
 def test_stages_add_up(tmp_path: Path) -> None:
@@ -195,24 +202,24 @@ def test_stages_add_up(tmp_path: Path) -> None:
     assert list(rows) == ["spectrum cubes", "figures and table", "manifest"]
 
 
-def test_the_best_peer_is_the_fastest_that_gets_there() -> None:
+def test_the_fastest_baseline_is_chosen_among_those_that_reach_the_error() -> None:
     def spread(ratio: float) -> dict[str, float]:
         return {"median": ratio, "smallest": ratio, "largest": ratio}
 
     errors = [f"{error:.0e}" for error in work_precision.TARGETS]
-    peers = {"a": dict.fromkeys(errors, spread(9.0)), "scipy b": dict.fromkeys(errors, spread(50.0))}
-    peers["a"]["1e-12"] = None
-    record = {"time_over_ours": {"error_99": peers}}
-    best = work_precision.best_peers(record, "error_99")
+    baselines = {"a": dict.fromkeys(errors, spread(9.0)), "scipy b": dict.fromkeys(errors, spread(50.0))}
+    baselines["a"]["1e-12"] = None
+    record = {"time_ratios": {"error_99": baselines}}
+    best = work_precision.fastest_baselines(record, "error_99")
     assert best["1e-09"][0] == "a"
     assert best["1e-12"][0] == "scipy b"
-    assert work_precision.best_peers(record, "error_99", "scipy")["1e-03"][0] == "scipy b"
+    assert work_precision.fastest_baselines(record, "error_99", "scipy")["1e-03"][0] == "scipy b"
 
 
-def test_a_setting_with_a_wrong_fate_reaches_no_error() -> None:
+def test_a_setting_with_a_wrong_outcome_reaches_no_error() -> None:
     rows = [
-        {"us": [1.0], "error_99": 1e-9, "wrong_fates": 1},
-        {"us": [5.0], "error_99": 1e-8, "wrong_fates": 0},
+        {"us": [1.0], "error_99": 1e-9, "wrong_outcomes": 1},
+        {"us": [5.0], "error_99": 1e-8, "wrong_outcomes": 0},
     ]
     assert work_precision.least_times(rows, 1e-6, "error_99") == pytest.approx([5.0])
     assert np.isnan(work_precision.least_times(rows, 1e-9, "error_99")).all()
@@ -223,23 +230,23 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
     planned = snakemake(tmp_path, "--dry-run", "--quiet", "host", "--", "bench")
     assert planned.returncode == 0, planned.stdout
     jobs = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout, flags=re.MULTILINE))
-    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_answer", "service", "stages")
+    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_call", "service", "stages")
     assert jobs["work_precision"] == str(len(cells.DIAGRAMS))
     assert {jobs[name] for name in (*one_each, "bench")} == {"1"}
 
 
-def test_the_summary_tells_what_was_measured_and_leaves_out_the_rest(tmp_path: Path) -> None:
+def test_the_summary_holds_what_was_measured_and_omits_the_rest(tmp_path: Path) -> None:
     growth = [{"kind": "slender", "cells": 1024, "threads": 1, "overturned": 666, "seconds": [2e-3], "peak_bytes": 5e8}]
     (tmp_path / "growth.json").write_text(json.dumps({"sizes": growth}))
     text = "\n".join(page(tmp_path))
-    assert "Cost as the work grows" in text
-    assert "1.953" in text  # us a cell
+    assert "Cost against the number of cells" in text
+    assert "1.953" in text  # us per cell
     assert "Interpolation" not in text
 
 
 @pytest.mark.slow
 def test_the_tolerance_benchmark_runs_and_draws(tmp_path: Path) -> None:
-    record, _ = run("tolerance", tmp_path / "a.json")
+    record, _ = run("accuracy.tolerance", tmp_path / "a.json")
     assert record["cells"] == 1000
     assert len(record["tolerances"]) == 11
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

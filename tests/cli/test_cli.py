@@ -1,4 +1,4 @@
-"""The `rocking` command: the solver's answers, three forms, units at the edge, refusals that name the option."""
+"""The `rocking` command: responses in three formats, units, and errors that name the option."""
 
 import csv
 import io
@@ -43,38 +43,38 @@ def read_csv(text):
     return list(csv.DictReader(io.StringIO(text)))
 
 
-def test_response_in_three_forms():
-    truth = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
-    answer = json.loads(run("response", *GROUPS, "--json"))
-    assert answer["peak_rotation"] == truth.peak_rotation
-    assert answer["outcome"] == "SAFE"
-    assert 0 < answer["error_bound"] < 1e-10
+def test_response_in_three_formats():
+    expected = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+    result = json.loads(run("response", *GROUPS, "--json"))
+    assert result["peak_rotation"] == expected.peak_rotation
+    assert result["outcome"] == "SAFE"
+    assert 0 < result["error_bound"] < 1e-10
     (row,) = read_csv(run("response", *GROUPS, "--csv"))
-    assert float(row["peak_rotation"]) == answer["peak_rotation"]
+    assert float(row["peak_rotation"]) == result["peak_rotation"]
     assert row["overturned"] == "false"
     text = run("response", *GROUPS)
     assert text.startswith("rocks and comes to rest\n")
-    assert f"{float(truth.peak_rotation):.9g}" in text
+    assert f"{float(expected.peak_rotation):.9g}" in text
 
 
-def test_response_with_units_is_the_rigid_block_s():
+def test_response_with_units_is_that_of_the_rigid_block():
     block = Block(0.2, 0.8)
-    truth = peak_response(
+    expected = peak_response(
         "sine",
         slenderness=block.uplift_acceleration / 4.0,
         frequency_ratio=4 * math.pi / block.frequency_parameter,
         restitution=block.housner_restitution,
         alpha=block.alpha,
     )
-    answer = json.loads(run("response", *UNITS, "--json"))
-    assert answer["peak_rotation"] == pytest.approx(float(truth.peak_rotation), rel=1e-9)
-    assert answer["peak_rotation_deg"] == pytest.approx(math.degrees(truth.peak_rotation * block.alpha), rel=1e-9)
+    result = json.loads(run("response", *UNITS, "--json"))
+    assert result["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-9)
+    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.peak_rotation * block.alpha), rel=1e-9)
 
 
 def test_alpha_is_an_angle_with_a_unit():
     degrees = run("response", *GROUPS, "--alpha", "20 deg", "--json")
-    truth = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, alpha=math.radians(20))
-    assert json.loads(degrees)["peak_rotation"] == pytest.approx(float(truth.peak_rotation), rel=1e-9)
+    expected = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, alpha=math.radians(20))
+    assert json.loads(degrees)["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-9)
 
 
 def test_overturned_has_no_peak():
@@ -83,42 +83,42 @@ def test_overturned_has_no_peak():
     assert run("response", *falls).startswith("overturns")
 
 
-def test_the_first_line_says_where_the_rocking_model_does_not_apply():
+def test_first_line_states_that_the_rocking_model_does_not_apply():
     cube = ["--half-width", "0.5m", "--half-height", "0.5m", "--peak-acceleration", "1.5g"]
-    asked = ["response", *UNITS[:2], *cube, *UNITS[8:]]
-    first = run(*asked).splitlines()[0]
+    options = ["response", *UNITS[:2], *cube, *UNITS[8:]]
+    first = run(*options).splitlines()[0]
     assert first.startswith("would slide: the rocking model does not apply")
-    answer = json.loads(run(*asked, "--json"))
-    assert (answer["outcome"], answer["rocking_model_applies"]) == ("SAFE", False)
-    assert answer["friction_demand"] == pytest.approx(17.9, abs=0.1)
+    result = json.loads(run(*options, "--json"))
+    assert (result["outcome"], result["rocking_model_applies"]) == ("SAFE", False)
+    assert result["friction_demand"] == pytest.approx(17.9, abs=0.1)
     assert json.loads(run("response", *UNITS, "--json"))["rocking_model_applies"]
     assert "rocking_model_applies" not in json.loads(run("response", *GROUPS, "--json"))  # the slender limit
 
 
-def test_a_squat_block_does_not_uplift():
+def test_squat_block_does_not_uplift():
     squat = ["--half-width", "1m", "--half-height", "0.5m", "--peak-acceleration", "1.2g"]
     assert run("response", *UNITS[:2], *squat, *UNITS[8:]).startswith("never uplifts")
 
 
-def test_history_in_three_forms():
-    truth = time_history("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, samples=20)
-    answer = json.loads(run("history", *GROUPS, "--samples", "20", "--json"))
-    assert answer["rotation"] == truth["rotation"].values.tolist()
-    assert answer["impact_time"] == truth["impact_time"].values.tolist()
+def test_history_in_three_formats():
+    expected = time_history("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, samples=20)
+    result = json.loads(run("history", *GROUPS, "--samples", "20", "--json"))
+    assert result["rotation"] == expected["rotation"].values.tolist()
+    assert result["impact_time"] == expected["impact_time"].values.tolist()
     rows = read_csv(run("history", *GROUPS, "--samples", "20", "--csv"))
-    assert [float(row["tau"]) for row in rows] == truth["tau"].values.tolist()
+    assert [float(row["tau"]) for row in rows] == expected["tau"].values.tolist()
     assert len(run("history", *GROUPS, "--samples", "20").splitlines()) > len(rows)
 
 
 def test_history_of_a_given_length_with_units():
-    answer = json.loads(run("history", *UNITS, "--duration", "2", "--json"))
-    assert answer["tau"][-1] == 2.0
+    result = json.loads(run("history", *UNITS, "--duration", "2", "--json"))
+    assert result["tau"][-1] == 2.0
 
 
 def test_history_with_the_reactions_of_the_ground():
-    asked = ["history", *UNITS, "--samples", "20", "--contact"]
+    options = ["history", *UNITS, "--samples", "20", "--contact"]
     block = Block(0.2, 0.8)
-    truth = time_history(
+    expected = time_history(
         "sine",
         slenderness=block.uplift_acceleration / 4.0,
         frequency_ratio=4 * math.pi / block.frequency_parameter,
@@ -127,44 +127,44 @@ def test_history_with_the_reactions_of_the_ground():
         samples=20,
         contact=True,
     )
-    answer = json.loads(run(*asked, "--json"))
-    assert answer["normal_reaction"] == pytest.approx(truth["normal_reaction"].values, rel=1e-9)
-    assert answer["largest_friction_demand"] == pytest.approx(truth.largest_friction_demand, rel=1e-9)
-    assert (answer["lifts_off"], answer["warnings"]) == (False, None)
-    assert [float(row["friction_demand"]) for row in read_csv(run(*asked, "--csv"))] == answer["friction_demand"]
-    assert f"{answer['largest_friction_demand']:.9g}" in run(*asked)
-    assert "friction_demand" not in run(*asked[:-1])
+    result = json.loads(run(*options, "--json"))
+    assert result["normal_reaction"] == pytest.approx(expected["normal_reaction"].values, rel=1e-9)
+    assert result["largest_friction_demand"] == pytest.approx(expected.largest_friction_demand, rel=1e-9)
+    assert (result["lifts_off"], result["warnings"]) == (False, None)
+    assert [float(row["friction_demand"]) for row in read_csv(run(*options, "--csv"))] == result["friction_demand"]
+    assert f"{result['largest_friction_demand']:.9g}" in run(*options)
+    assert "friction_demand" not in run(*options[:-1])
 
 
-def test_a_block_that_lifts_off_says_so_and_has_no_friction_demand():
-    asked = [*GROUPS[:3], "0.2", "--frequency-ratio", "12", "--restitution", "0.85", "--alpha", "45 deg", "--contact"]
-    answer = json.loads(run("history", *asked, "--json"))
-    assert answer["lifts_off"]
-    assert answer["largest_friction_demand"] is None
-    assert None in answer["friction_demand"]
-    assert "lifts off" in answer["warnings"]
-    assert any(row["friction_demand"] == "" for row in read_csv(run("history", *asked, "--csv")))
-    assert "the block lifts off" in run("history", *asked)
+def test_block_that_lifts_off_has_no_friction_demand():
+    options = [*GROUPS[:3], "0.2", "--frequency-ratio", "12", "--restitution", "0.85", "--alpha", "45 deg", "--contact"]
+    result = json.loads(run("history", *options, "--json"))
+    assert result["lifts_off"]
+    assert result["largest_friction_demand"] is None
+    assert None in result["friction_demand"]
+    assert "lifts off" in result["warnings"]
+    assert any(row["friction_demand"] == "" for row in read_csv(run("history", *options, "--csv")))
+    assert "the block lifts off" in run("history", *options)
 
 
-def test_spectrum_in_three_forms():
+def test_spectrum_in_three_formats():
     arguments = ["--pulse", "cosine", "--slenderness", "0.6", "--restitution", "0.9", "--points", "7"]
-    truth = peak_response("cosine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 7), restitution=0.9)
-    answer = json.loads(run("spectrum", *arguments, "--json"))
-    assert answer["outcome"] == [Outcome(code).name for code in truth.outcome]
-    assert [math.nan if peak is None else peak for peak in answer["peak_rotation"]] == pytest.approx(
-        truth.peak_rotation.tolist(), rel=0, abs=0, nan_ok=True
+    expected = peak_response("cosine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 7), restitution=0.9)
+    result = json.loads(run("spectrum", *arguments, "--json"))
+    assert result["outcome"] == [Outcome(code).name for code in expected.outcome]
+    assert [math.nan if peak is None else peak for peak in result["peak_rotation"]] == pytest.approx(
+        expected.peak_rotation.tolist(), rel=0, abs=0, nan_ok=True
     )
     assert len(read_csv(run("spectrum", *arguments, "--csv"))) == 7
-    assert run("spectrum", *arguments).splitlines()[-1].endswith(str(truth.impacts[-1]))
+    assert run("spectrum", *arguments).splitlines()[-1].endswith(str(expected.impacts[-1]))
 
 
-def test_boundary_in_three_forms():
+def test_boundary_in_three_formats():
     arguments = ["--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-min", "2"]
-    truth = overturning_boundary("sine", restitution=0.85, frequency_ratio=(2.0, 15.0))
-    answer = json.loads(run("boundary", *arguments, "--json"))
-    assert answer["slenderness"] == truth["slenderness"].values.tolist()
-    assert len(read_csv(run("boundary", *arguments, "--csv"))) == truth.sizes["point"]
+    expected = overturning_boundary("sine", restitution=0.85, frequency_ratio=(2.0, 15.0))
+    result = json.loads(run("boundary", *arguments, "--json"))
+    assert result["slenderness"] == expected["slenderness"].values.tolist()
+    assert len(read_csv(run("boundary", *arguments, "--csv"))) == expected.sizes["point"]
     assert run("boundary", *arguments).splitlines()[0].split()[:2] == ["curve", "slenderness"]
 
 
@@ -193,7 +193,7 @@ def test_boundary_in_three_forms():
         (["serve", "--results", ""], "--results", "the name of a folder"),
     ],
 )  # fmt: skip
-def test_refusals_name_the_option_and_what_is_allowed(arguments, option, allowed):
+def test_errors_name_the_option_and_the_allowed_values(arguments, option, allowed):
     output = refused(*arguments)
     assert option in output
     assert allowed in output
@@ -224,7 +224,7 @@ def test_units(text, unit, value):
     [("0.3", "m"), ("0.3 s", "m"), ("0.3 furlongs per", "m"), ("", "m"), ("m", "s"), ("nan m", "m"), ("0.3", "rad"),
      ("1 kg", "m/s**2"), ("__import__('os')", "m"), ("1e999 m", "m")],
 )  # fmt: skip
-def test_quantities_that_mean_nothing(text, unit):
+def test_invalid_quantities_are_refused(text, unit):
     with pytest.raises(InvalidArgumentError) as caught:
         si_value("x", text, unit)
     assert caught.value.parameter == "x"

@@ -1,4 +1,4 @@
-"""The approximate impact time of case 1.1, (3.23) to (3.30), and which root of appendix A is the impact."""
+"""Approximate impact time of case 1.1, (3.23) to (3.30), and the root of appendix A that is the impact."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from tests.direct_integration import integrate
 finite = st.floats(-5, 5)
 
 
-def test_expansions_match_to_second_order_about_the_guess():
+def test_expansions_agree_to_second_order_about_the_initial_guess():
     a, omega = 1.8, 3.0
     assert cf.EXPANSION_TIME == 1.0  # (3.23)
     for order, step in ((3, 1e-2), (3, 2e-2)):
@@ -26,7 +26,7 @@ def test_expansions_match_to_second_order_about_the_guess():
 
 
 @pytest.mark.parametrize(("a", "omega"), [(1.3, 0.8), (1.8, 3.0), (2.5, 5.0)])
-def test_coefficients_equate_the_two_series(a, omega):
+def test_kappa_and_lambda_make_the_two_series_equal(a, omega):
     time = np.array([0.7, 1.0, 1.4])
     constant = (omega**2 + 1) * np.sin(omega + cf.uplift_phase(a))
     np.testing.assert_allclose(
@@ -34,7 +34,7 @@ def test_coefficients_equate_the_two_series(a, omega):
     )  # (3.24) = (3.25) + the constant of (3.27), by (3.26)
 
 
-def test_ad_hoc_sine_is_excellent_for_slow_pulses_and_satisfactory_for_fast_ones():
+def test_error_of_the_ad_hoc_sine_grows_with_frequency_ratio():
     time = np.linspace(0.8, 1.2, 41)
 
     def error(omega):
@@ -47,7 +47,7 @@ def test_ad_hoc_sine_is_excellent_for_slow_pulses_and_satisfactory_for_fast_ones
 
 
 @given(falling=finite, growing=finite, constant=finite)
-def test_rising_root_is_a_root_and_rises(falling, growing, constant):
+def test_rising_root_is_a_root_with_positive_slope(falling, growing, constant):
     tau = cf.rising_root(falling, growing, constant)
     if np.isnan(tau) or abs(tau) > 30:
         return
@@ -57,7 +57,7 @@ def test_rising_root_is_a_root_and_rises(falling, growing, constant):
 
 
 @given(falling=finite, growing=finite, constant=finite)
-def test_rising_root_misses_no_upward_crossing(falling, growing, constant):
+def test_rising_root_finds_every_upward_crossing(falling, growing, constant):
     tau = np.linspace(-3, 3, 400)
     value = cf.residual(falling, growing, constant, tau)
     crossing = np.flatnonzero((value[:-1] < -1e-9) & (value[1:] > 1e-9))
@@ -68,17 +68,17 @@ def test_rising_root_misses_no_upward_crossing(falling, growing, constant):
 
 
 @pytest.mark.parametrize(("a", "omega"), [(1.45, 3.0), (1.7, 3.8), (2.0, 4.4)])
-def test_physical_root_of_the_approximation_is_the_impact(a, omega):
+def test_rising_root_of_the_approximation_is_close_to_the_impact_time(a, omega):
     exact = integrate(a, omega, 0.9).impact_times[0]
     tau = cf.ad_hoc_impact_time(a, omega)
     assert cf.ad_hoc_residual(a, omega, tau) == pytest.approx(0, abs=1e-12)  # (3.28)
     assert tau == pytest.approx(exact, abs=0.02)  # (3.29)
-    # the other root of the quadratic, with the minus sign, is no impact: not a time, or one of falling theta
+    # theta increases at this root; at the other one, with the minus sign, it decreases
     before, after = cf.ad_hoc_residual(a, omega, tau - 1e-6), cf.ad_hoc_residual(a, omega, tau + 1e-6)
     assert before < 0 < after
 
 
-def test_the_other_root_after_the_pulse_is_no_time_or_before_the_stage():
+def test_other_root_after_the_pulse_is_not_a_physical_time():
     omega = np.linspace(1.5, 6, 10)
     a = (cf.limit_amplitude(omega) + cf.case_2_amplitude(omega)) / 2
     falling, growing = cf.after_pulse_coefficients(a, omega)
@@ -89,7 +89,7 @@ def test_the_other_root_after_the_pulse_is_no_time_or_before_the_stage():
 
 
 @pytest.mark.parametrize(("eta", "reach"), [(0.80, 3.5), (0.85, 4.1), (0.90, 4.4), (0.95, 4.7), (1.00, 5.2)])
-def test_semi_analytical_curve_solves_its_condition_and_lies_near_the_exact_one(eta, reach):
+def test_semi_analytical_curve_solves_its_condition_and_is_close_to_the_exact_curve(eta, reach):
     omega = np.linspace(0.3, reach, 40)
     semi, exact = cf.semi_analytical_amplitudes(omega, eta).lower, cf.case_1_1_amplitudes(omega, eta).lower
     np.testing.assert_allclose(cf.ad_hoc_margin(semi, omega, eta), 0, atol=1e-10)  # (3.30)
@@ -99,27 +99,27 @@ def test_semi_analytical_curve_solves_its_condition_and_lies_near_the_exact_one(
     np.testing.assert_allclose(semi[omega > 3], exact[omega > 3], rtol=0.006)
 
 
-def test_semi_analytical_curve_fails_close_to_the_end_of_case_1_1():
+def test_semi_analytical_curve_is_wrong_close_to_the_end_of_case_1_1():
     semi, exact = cf.semi_analytical_amplitudes(4.0, 0.8).lower, cf.case_1_1_amplitudes(4.0, 0.8).lower
     assert semi > 1.2 * exact
     assert not cf.within_pulse(semi, 4.0)
     assert np.isnan(cf.semi_analytical_amplitudes(4.4, 0.85).lower)  # case 1.1 ends at 4.437
 
 
-def test_semi_analytical_curve_coincides_where_the_impact_comes_at_the_guess():
-    """An impact at tau = 1 is where (3.29) is exact."""
+def test_ad_hoc_impact_time_is_exact_where_the_impact_is_at_the_initial_guess():
+    """(3.29) is exact for an impact at tau = 1."""
     for omega in (3.5, 4.0, 4.4):
         a = float(cf.amplitude_of_impact_time(1.0, omega))
         assert cf.ad_hoc_impact_time(a, omega) == pytest.approx(1, abs=1e-12)
 
 
-def test_upper_solution_of_the_semi_analytical_condition_stands_for_no_event():
+def test_upper_solution_of_the_semi_analytical_condition_is_outside_the_pulse():
     semi = cf.semi_analytical_amplitudes([4.0, 4.8], 0.9)
     assert np.isfinite(semi.upper).all()
     assert not cf.within_pulse(semi.upper, [4.0, 4.8]).any()
 
 
-def test_solutions_beyond_twice_case_2_are_left_out():
+def test_semi_analytical_solutions_above_twice_case_2_are_not_returned():
     omega, eta = np.array([4.2327731092436975, 4.921008403361344, 6.002521008403361]), np.array([0.7, 0.8, 1.0])
     limit = 2 * cf.case_2_amplitude(omega)
     beyond = cf.ad_hoc_margin(np.linspace(limit, limit + 1, 400), omega, eta)

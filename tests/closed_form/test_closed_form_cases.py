@@ -1,4 +1,4 @@
-"""Overturning conditions and curves, (3.8) to (3.22) and (3.31), and the thresholds that they make together."""
+"""Overturning conditions and curves, (3.8) to (3.22) and (3.31), and the thresholds that follow from them."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from rocking.solver.peak_response import peak_response
 from tests.direct_integration import integrate
 
 NONE = (np.nan, np.nan)
-# omega: direct, then (falls from, safe again) for eta 0.85, 0.90, 0.95, from an independent implementation
+# omega: direct, then (falls_from, safe_again) for eta 0.85, 0.90, 0.95, from an independent implementation
 GOLDEN = {
     1: (1.418315, [(1.134352, 1.415149), (1.132047, 1.416384), (1.129869, 1.417427)]),
     2: (2.349903, [(1.231672, 2.291073), (1.225179, 2.314403), (1.219261, 2.333713)]),
@@ -28,30 +28,30 @@ def test_golden_thresholds_to_the_last_digit(omega):
     np.testing.assert_allclose(np.transpose([found.falls_from, found.safe_again]), pairs, rtol=0, atol=LAST_DIGIT)
 
 
-def test_zhang_and_makris_2001():
+def test_thresholds_of_zhang_and_makris_2001():
     found = cf.overturning_amplitudes(5.0, 0.9)
     assert [float(v) for v in found] == pytest.approx([3.01, 6.33, 7.18], abs=0.013)  # read off a plot
 
 
 @pytest.mark.parametrize(("omega", "eta"), [(1.0, 0.85), (2.5, 0.8), (4.2, 0.9), (5.0, 0.9), (0.7, 0.95), (0.5, 0.6)])
-def test_thresholds_separate_fates_in_direct_integration(omega, eta):
+def test_thresholds_separate_outcomes_of_direct_integration(omega, eta):
     found = cf.overturning_amplitudes(omega, eta)
-    for threshold, falls_above in zip(found, (True, False, True), strict=True):
+    for threshold, overturns_above in zip(found, (True, False, True), strict=True):
         for side in (-1, 1):
             a = threshold * (1 + side * 1e-8 * min(1.0, omega**2))
-            assert falls(a, omega, eta) == (falls_above == (side > 0)), (threshold, side)
+            assert overturns(a, omega, eta) == (overturns_above == (side > 0)), (threshold, side)
 
 
-def falls(a, omega, eta) -> bool:
+def overturns(a, omega, eta) -> bool:
     motion = integrate(a, omega, eta, most_impacts=40)
     if motion.overturns_freely:
         return True
-    # at most one impact matters after the pulse: its velocity follows from the energy
+    # only the first impact after the pulse can lead to overturning: its velocity follows from the energy
     y, v = motion.rotation, motion.velocity
     return bool(eta * np.sqrt(v * v + abs(y) * (2 - abs(y))) > 1)
 
 
-def test_case_2_curve_solves_both_lines_of_its_condition():
+def test_case_2_curve_satisfies_both_lines_of_its_condition():
     omega = np.geomspace(0.05, 50, 60)
     a = cf.case_2_amplitude(omega)
     np.testing.assert_allclose(cf.case_2_margin(a, omega) / a, 0, atol=5e-14)  # (3.10), second line
@@ -59,7 +59,7 @@ def test_case_2_curve_solves_both_lines_of_its_condition():
     assert (cf.growing_coefficient(a * (1 + 1e-9), omega) < 0).all()
 
 
-def test_free_rocking_on_the_manifold_neither_falls_nor_returns():
+def test_free_rocking_on_the_case_2_curve_approaches_the_unstable_equilibrium():
     omega = np.array([1.0, 3.0, 8.0])
     y, v = cf.state_at_pulse_end(cf.case_2_amplitude(omega), omega)
     np.testing.assert_allclose(y + v, -1, atol=1e-12)  # B_ex0 = 0, first line of (3.10)
@@ -82,7 +82,7 @@ def test_case_1_2_impact_against_direct_integration(a, omega):
     assert cf.free_velocity(a, omega, tau) == pytest.approx(velocity, rel=1e-10)  # (3.14)
 
 
-def test_a_block_that_falls_without_impact_has_no_velocity_of_impact():
+def test_impact_velocity_is_nan_where_the_block_overturns_without_impact():
     omega = np.array([0.8, 1.15, 3.0])
     above = cf.case_2_amplitude(omega) * np.array([[1.001], [1.02], [1.5]])
     assert (cf.impact_velocity_squared(above, omega) < 0).any(axis=0).all()
@@ -91,7 +91,7 @@ def test_a_block_that_falls_without_impact_has_no_velocity_of_impact():
 
 
 def test_case_1_2_impact_time_where_the_exponential_overflows():
-    # the amplitude 1.01 is far above case 2 for slow pulses; take the last one below it
+    # the limit is so close to case 2 here that the largest double below it is used
     omega = 5e-3
     a = np.nextafter(cf.limit_amplitude(omega), 1.0)
     time = cf.case_1_2_impact_time(a, omega)
@@ -149,19 +149,19 @@ def test_first_impact_within_the_pulse_exactly_below_the_limit():
     np.testing.assert_allclose(v, cf.limit_velocity(omega), rtol=1e-7)
 
 
-def test_limit_falls_as_recorded():
+def test_limit_curve_has_the_recorded_values():
     np.testing.assert_allclose(1 / cf.limit_amplitude([0.5, 3.0, 15.0]), [0.89, 0.42, 0.34], atol=0.005)
 
 
-def test_impact_time_and_its_inverse_agree():
+def test_amplitude_of_impact_time_inverts_the_impact_time():
     omega = np.array([0.4, 1.0, 3.0, 7.0])[:, None]
     a = 1 + (cf.limit_amplitude(omega) - 1) * np.linspace(0.01, 0.99, 20)
     tau = cf.case_1_1_impact_time(a, omega)
     np.testing.assert_allclose(cf.amplitude_of_impact_time(tau, omega), a, rtol=1e-12)
-    assert (np.diff(tau, axis=1) > 0).all()  # stronger pulses throw the block for longer
+    assert (np.diff(tau, axis=1) > 0).all()  # the impact time increases with the amplitude
 
 
-def test_block_at_the_uplift_limit_returns_at_once():
+def test_impact_time_tends_to_zero_at_the_uplift_limit():
     s = 1e-5
     assert cf.case_1_1_impact_time(np.hypot(1, s), 2.0) == pytest.approx(4 * s / 2.0, rel=1e-4)
     assert cf.case_1_1_impact_time(1.0, 2.0) == 0
@@ -174,14 +174,14 @@ def test_case_1_1_curve_solves_its_condition(eta):
     found = np.isfinite(interval.lower)
     assert (found == (omega < cf.case_1_1_end(eta))).all()
     np.testing.assert_allclose(cf.case_1_1_margin(interval.lower[found], omega[found], eta), 0, atol=1e-6)
-    well = found & (omega > 1)
-    np.testing.assert_allclose(cf.case_1_1_margin(interval.lower[well], omega[well], eta), 0, atol=1e-11)
+    accurate = found & (omega > 1)
+    np.testing.assert_allclose(cf.case_1_1_margin(interval.lower[accurate], omega[accurate], eta), 0, atol=1e-11)
     limit = cf.limit_amplitude(omega)
     assert (interval.upper[found] <= limit[found]).all()
-    turned = well & (interval.upper < limit)
+    turned = accurate & (interval.upper < limit)
     np.testing.assert_allclose(cf.case_1_1_margin(interval.upper[turned], omega[turned], eta), 0, atol=1e-11)
-    inside = (interval.lower[well] + interval.upper[well]) / 2
-    assert (cf.case_1_1_margin(inside, omega[well], eta) > 0).all()
+    inside = (interval.lower[accurate] + interval.upper[accurate]) / 2
+    assert (cf.case_1_1_margin(inside, omega[accurate], eta) > 0).all()
 
 
 def test_case_1_1_has_an_upper_branch_only_for_slow_pulses():
@@ -191,23 +191,23 @@ def test_case_1_1_has_an_upper_branch_only_for_slow_pulses():
     assert 0.8 * cf.limit_velocity(0.2) < 1 < 0.8 * cf.limit_velocity(0.3)
 
 
-def test_case_1_1_ends_where_recorded():
+def test_case_1_1_ends_at_the_recorded_frequency_ratios():
     ends = cf.case_1_1_end([0.80, 0.85, 0.90, 0.96, 1.00])
     np.testing.assert_allclose(ends, [4.1, 4.4, 4.8, 5.2, 5.5], atol=0.051)  # recorded on a grid of 0.05
     np.testing.assert_allclose(cf.limit_velocity(ends), 1 / np.array([0.80, 0.85, 0.90, 0.96, 1.00]), rtol=1e-10)
 
 
-def test_cases_join_on_the_limit():
+def test_cases_1_1_and_1_2_meet_on_the_limit():
     below, above = cf.case_1_1_end(0.9) * (1 - 1e-7), cf.case_1_1_end(0.9) * (1 + 1e-7)
     assert cf.case_1_1_amplitudes(below, 0.9).lower == pytest.approx(cf.limit_amplitude(below), rel=1e-5)
     assert cf.case_1_2_amplitudes(above, 0.9).lower == pytest.approx(cf.limit_amplitude(above), rel=1e-5)
 
 
-def test_no_overturning_after_impact_without_restitution():
+def test_no_overturning_after_impact_for_zero_restitution():
     assert np.isnan(cf.case_1_2_amplitudes([1.0, 5.0], 0.0).lower).all()
 
 
-def test_solver_and_closed_forms_agree_on_every_fate_outside_the_islands():
+def test_solver_and_closed_forms_agree_on_every_outcome_outside_the_islands():
     rng = np.random.default_rng(11)
     n = 20_000
     omega, slenderness = np.exp(rng.uniform(np.log(0.2), np.log(15), n)), rng.uniform(0.02, 0.999, n)
@@ -226,7 +226,7 @@ def test_solver_and_closed_forms_agree_on_every_fate_outside_the_islands():
     np.testing.assert_allclose(cf.case_1_1_impact_time(a, omega)[during], found.first_impact_time[during], rtol=1e-10)
 
 
-def test_empty_question_empty_answer():
+def test_empty_arguments_give_empty_results():
     nothing = np.array([])
     assert all(part.shape == (0,) for part in cf.overturning_amplitudes(nothing, 0.9))
     assert cf.case_1_1_end(nothing).shape == (0,)

@@ -1,4 +1,4 @@
-"""Coefficients and the first arc, (3.3) to (3.11), against direct integration and 50-digit arithmetic."""
+"""Coefficients and motion before the first impact, (3.3) to (3.11), against integration and 50-digit arithmetic."""
 
 import mpmath as mp
 import numpy as np
@@ -23,12 +23,12 @@ def exact_arc(a: float, omega: float, tau: float) -> tuple[mp.mpf, mp.mpf]:
 
 
 @pytest.mark.parametrize("a", [1.0, 1 + 1e-12, 1.5, 40.0])
-def test_block_uplifts_where_the_ground_reaches_its_limit(a):
+def test_ground_acceleration_at_uplift_phase_is_the_uplift_acceleration(a):
     assert a * np.sin(cf.uplift_phase(a)) == pytest.approx(1, rel=1e-15)  # (3.3)
     assert a * np.cos(cf.uplift_phase(a)) == pytest.approx(np.sqrt((a - 1) * (a + 1)), rel=1e-14)
 
 
-def test_uplift_phase_keeps_its_digits_near_one():
+def test_uplift_phase_is_accurate_near_amplitude_one():
     a = 1 + 1e-13
     with mp.workdps(50):
         exact = float(mp.pi / 2 - mp.asin(1 / mp.mpf(a)))
@@ -36,7 +36,7 @@ def test_uplift_phase_keeps_its_digits_near_one():
 
 
 @pytest.mark.parametrize(("a", "omega"), CASES)
-def test_constants_start_the_block_from_rest(a, omega):
+def test_integration_constants_satisfy_the_initial_conditions_of_rest(a, omega):
     A, B = cf.integration_constants(a, omega)  # (3.7)
     psi, C = cf.uplift_phase(a), a / (omega**2 + 1)
     assert -1 + C * np.sin(psi) + A + B == pytest.approx(0, abs=1e-15)
@@ -44,18 +44,18 @@ def test_constants_start_the_block_from_rest(a, omega):
 
 
 @pytest.mark.parametrize(("a", "omega"), CASES)
-def test_state_at_pulse_end_is_that_of_direct_integration(a, omega):
-    ground_only_down = integrate(a, omega, 1.0, most_impacts=9) if cf.limit_margin(a, omega) > 0 else None
+def test_state_at_pulse_end_against_direct_integration(a, omega):
+    motion = integrate(a, omega, 1.0, most_impacts=9) if cf.limit_margin(a, omega) > 0 else None
     y, v = cf.state_at_pulse_end(a, omega)  # (3.11)
     A0, B0, C0 = cf.coefficients(a, omega)
     T = cf.pulse_end(a, omega)
     assert y == pytest.approx((A0 * np.exp(-T) + B0 * np.exp(T)) / 2 - 1, rel=1e-11)  # (3.11) as printed
     assert v == pytest.approx((B0 * np.exp(T) - A0 * np.exp(-T) + C0 * omega) / 2, rel=1e-11)
-    if ground_only_down is not None:
-        assert [y, v] == pytest.approx([ground_only_down.rotation, ground_only_down.velocity], rel=1e-10)
+    if motion is not None:
+        assert [y, v] == pytest.approx([motion.rotation, motion.velocity], rel=1e-10)
 
 
-def test_first_arc_keeps_its_digits_where_the_printed_form_has_none():
+def test_first_arc_is_accurate_where_the_printed_form_is_not():
     rng = np.random.default_rng(7)
     worst, worst_printed = 0.0, 0.0
     for _ in range(300):
@@ -87,13 +87,13 @@ def test_rotation_obeys_the_equation_of_motion():
             assert curvature == pytest.approx(y[2] + 1 - ground, abs=1e-7)  # (3.2), theta < 0
 
 
-def test_d0_star_in_both_forms_and_as_the_energy_at_impact():
+def test_both_forms_of_d0_star_agree_with_the_energy_at_impact():
     a, omega = np.meshgrid(np.linspace(1.01, 12, 40), np.geomspace(0.3, 20, 40))
     np.testing.assert_allclose(cf.d0_star(a, omega), cf.d0_star_expanded(a, omega), rtol=1e-9, atol=1e-11)
     np.testing.assert_allclose(cf.impact_velocity_squared(a, omega), 1 - cf.d0_star(a, omega), rtol=1e-7, atol=1e-11)
 
 
-def test_velocity_at_impact_keeps_its_digits_for_short_pulses():
+def test_impact_velocity_is_accurate_for_short_pulses():
     a, omega = 1.5, 300.0
     with mp.workdps(50):
         s, w = mp.sqrt(mp.mpf(a) ** 2 - 1), mp.mpf(omega)
@@ -101,10 +101,12 @@ def test_velocity_at_impact_keeps_its_digits_for_short_pulses():
         K = w / (w * w + 1)
         exact = 1 - K**2 * (w + s - a * mp.exp(T)) * (w - s + a * mp.exp(-T))
     assert abs(float(cf.impact_velocity_squared(a, omega) / exact - 1)) < 1e-14
-    assert abs(float((1 - cf.d0_star(a, omega)) / exact - 1)) > 1e-13  # what the energy form is there for
+    assert (
+        abs(float((1 - cf.d0_star(a, omega)) / exact - 1)) > 1e-13
+    )  # the product form cancels, the energy form does not
 
 
-def test_nothing_overflows_or_warns_for_very_slow_pulses():
+def test_no_overflow_for_very_low_frequency_ratios():
     omega = np.array([1e-3, 5e-3, 9e-3])
     for a in (1 + 1e-9, 1.5, 50.0):
         assert np.isfinite(cf.case_2_margin(a, omega)).all()
@@ -122,6 +124,6 @@ def test_nothing_overflows_or_warns_for_very_slow_pulses():
         ("frequency_ratio", (2.0, -1.0)),
     ],
 )
-def test_wrong_questions_are_refused_by_name(name, arguments):
+def test_invalid_arguments_are_named_in_the_error(name, arguments):
     with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
         cf.coefficients(*arguments)

@@ -1,4 +1,4 @@
-"""Overturning without a further impact, for any pulse, and the published special cases."""
+"""Overturning without a further impact within the pulse, for any pulse, and published special cases."""
 
 import math
 
@@ -12,11 +12,11 @@ from rocking.solver.peak_response import peak_response
 from tests.direct_integration import integrate
 
 
-def test_half_sine_of_shi_et_al_1996():
+def test_half_sine_values_of_shi_et_al_1996():
     np.testing.assert_allclose(cf.half_sine_amplitude([1, 2, 3]), [1.322397, 1.800724, 2.293872], atol=0.6e-6)
 
 
-def test_rectangular_of_housner_1963():
+def test_rectangular_formula_of_housner_1963():
     omega = np.array([0.5, 1.0, 4.0])
     np.testing.assert_allclose(cf.rectangular_amplitude(omega), 1 / (1 - np.exp(-np.pi / omega)), rtol=1e-14)
 
@@ -31,7 +31,7 @@ def test_rectangular_of_housner_1963():
     ],
 )
 @pytest.mark.parametrize("omega", [0.5, 1.0, 3.0, 8.0])
-def test_general_criterion_contains_the_special_ones(pulse, closed, omega):
+def test_margin_without_impact_vanishes_on_the_published_curves(pulse, closed, omega):
     a = float(closed(omega))
     assert cf.margin_without_impact(pulse, a, omega) == pytest.approx(0, abs=1e-12)
     assert cf.margin_without_impact(pulse, a * (1 + 1e-9), omega) > 0
@@ -39,7 +39,7 @@ def test_general_criterion_contains_the_special_ones(pulse, closed, omega):
 
 
 @pytest.mark.parametrize("name", PULSE_NAMES)
-def test_uplift_phase_is_the_first_of_any_pulse(name):
+def test_first_uplift_phase_of_any_pulse(name):
     pulse = get_pulse(name)
     phi = np.linspace(pulse.start, pulse.end, 200_001)
     for a in (1.0 + 1e-6, 1.3, 4.0, 1e4):
@@ -66,12 +66,12 @@ def test_discounted_integral_against_quadrature(name, omega):
 
 
 @pytest.mark.parametrize("name", [n for n in PULSE_NAMES if not n.startswith("ricker")])
-def test_criterion_agrees_with_the_solver_for_sinusoids(name):
+def test_margin_without_impact_agrees_with_the_solver_for_sinusoids(name):
     check_against_solver(name, 400)
 
 
 @pytest.mark.parametrize("name", [n for n in PULSE_NAMES if n.startswith("ricker")])
-def test_criterion_agrees_with_the_solver_for_wavelets(name):
+def test_margin_without_impact_agrees_with_the_solver_for_wavelets(name):
     check_against_solver(name, 60)
 
 
@@ -86,7 +86,7 @@ def check_against_solver(name, n):
     np.testing.assert_array_equal(directly[untouched], margin[untouched] >= 0)
 
 
-def test_criterion_after_an_impact_vanishes_on_the_curves_of_the_sine():
+def test_margin_after_impact_vanishes_on_the_curves_of_the_sine():
     for omega, eta in ((2.0, 0.9), (3.0, 0.8)):
         a = float(cf.case_1_1_amplitudes(omega, eta).lower)
         motion = integrate(a, omega, eta)

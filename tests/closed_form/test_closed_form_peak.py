@@ -1,4 +1,4 @@
-"""Peak rotation after an impact that follows the pulse, (4.12) to (4.16), and the measured scale law."""
+"""Peak rotation after an impact that follows the pulse, (4.12) to (4.16), and deviations from the scale law."""
 
 import numpy as np
 import pytest
@@ -11,17 +11,17 @@ from tests.direct_integration import peak_of_free_rocking
 
 
 @pytest.mark.parametrize("velocity", [0.0, 1e-3, 0.3, 0.9, 0.999])
-def test_peak_of_velocity_is_that_of_free_rocking(velocity):
+def test_peak_of_velocity_against_integrated_free_rocking(velocity):
     assert cf.peak_of_velocity(velocity) == pytest.approx(peak_of_free_rocking(velocity), rel=1e-9, abs=1e-15)  # (4.12)
 
 
-def test_peak_of_velocity_at_and_beyond_the_barrier():
+def test_peak_of_velocity_at_and_above_the_overturning_velocity():
     assert cf.peak_of_velocity(1.0) == 1
     assert np.isnan(cf.peak_of_velocity(1.0 + 1e-12))
     assert cf.peak_of_velocity(1e-9) == pytest.approx(5e-19, rel=1e-12)
 
 
-def test_closed_spectrum_is_exact_where_its_lobe_holds_the_peak():
+def test_closed_form_spectrum_is_exact_where_the_peak_follows_the_first_impact():
     rng = np.random.default_rng(3)
     n = 4000
     omega = np.exp(rng.uniform(np.log(1.5), np.log(15), n))
@@ -36,8 +36,8 @@ def test_closed_spectrum_is_exact_where_its_lobe_holds_the_peak():
     np.testing.assert_allclose(cf.case_1_2_peak_by_pulse(a, omega, eta) * a, closed, rtol=1e-15)
 
 
-def test_no_peak_after_an_impact_where_the_block_overturns_without_one():
-    """(4.13) and its leading term mean something below (3.10) only, and are never negative."""
+def test_peak_after_impact_is_nan_where_the_block_overturns_without_impact():
+    """(4.13) and its leading term are valid below (3.10) only and are not negative there."""
     assert np.isnan(cf.case_1_2_peak(1 / 0.3, 2, 0.9))
     omega = np.geomspace(0.3, 12.0, 60)
     ratio = np.concatenate([np.linspace(0.5, 0.999, 40), np.linspace(1.001, 4.0, 40)])[:, None]
@@ -52,7 +52,7 @@ def test_no_peak_after_an_impact_where_the_block_overturns_without_one():
     assert np.isfinite(cf.scale_function(a, omega)[~directly]).mean() > 0.9
 
 
-def test_small_forms_are_the_leading_term():
+def test_small_peak_formulas_are_the_leading_term():
     a, omega = 3.0, np.array([20.0, 40.0, 80.0])
     exact = cf.case_1_2_peak(a, omega, 0.85)
     error = cf.small_peak(a, omega, 0.85) / exact - 1  # (4.14)
@@ -61,7 +61,7 @@ def test_small_forms_are_the_leading_term():
     np.testing.assert_allclose(cf.small_peak_by_pulse(a, omega, 0.85), cf.small_peak(a, omega, 0.85) / a)  # (4.15)
 
 
-def test_scale_law_is_exact_for_its_own_formula():
+def test_scale_law_deviation_is_zero_for_the_leading_term():
     eta = np.array([0.80, 0.85, 0.90, 0.96])
     peak = cf.small_peak(3.0, np.array([5.0, 10.0]), eta[:, None])  # (4.16)
     np.testing.assert_allclose(scale_law_deviation(peak, eta, reference=0.85), 0, atol=1e-14)
@@ -69,18 +69,18 @@ def test_scale_law_is_exact_for_its_own_formula():
     np.testing.assert_allclose(largest_deviation(peak, eta, reference=0.85), 0, atol=1e-14)
 
 
-def test_scale_law_measured_on_the_closed_spectrum():
+def test_scale_law_deviation_of_the_closed_form_spectrum():
     eta = np.arange(0.80, 0.961, 0.02)
     omega = np.array([8.0, 20.0, 60.0])
     peak = cf.case_1_2_peak(3.0, omega, eta[:, None])
     deviation = largest_deviation(peak, eta, reference=0.88)
     exponent = restitution_exponent(peak, eta)
-    assert (np.diff(deviation) < 0).all()  # the law is asymptotic: smaller rotations obey it better
+    assert (np.diff(deviation) < 0).all()  # the law is asymptotic: its error decreases with the rotation
     assert (np.diff(exponent) < 0).all()
     assert exponent[-1] == pytest.approx(2, abs=0.01)
 
 
-def test_scale_law_says_nothing_of_overturned_blocks():
+def test_scale_law_deviation_is_nan_for_overturned_blocks():
     eta = np.array([0.8, 0.9, 1.0])
     peak = np.array([[0.1, np.nan, np.nan], [0.2, np.nan, 0.3], [0.3, 0.4, np.nan]])
     deviation = scale_law_deviation(peak, eta, reference=0.9)
@@ -89,7 +89,7 @@ def test_scale_law_says_nothing_of_overturned_blocks():
     np.testing.assert_array_equal(np.isnan(restitution_exponent(peak, eta)), [False, True, True])
 
 
-def test_scale_law_along_any_axis():
+def test_scale_law_deviation_along_any_axis():
     eta = np.array([0.8, 0.9, 1.0])
     peak = np.random.default_rng(0).uniform(0.1, 1, (4, 3))
     turned = scale_law_deviation(peak.T, eta, reference=1.0)
@@ -99,7 +99,7 @@ def test_scale_law_along_any_axis():
     np.testing.assert_allclose(turned[0], expected)
 
 
-def test_scale_law_refuses_wrong_questions():
+def test_scale_law_refuses_invalid_arguments():
     with pytest.raises(InvalidArgumentError, match="`reference`"):
         scale_law_deviation([0.1, 0.2], [0.8, 0.9], reference=0.85)
     with pytest.raises(InvalidArgumentError, match="`restitution`"):
@@ -109,7 +109,7 @@ def test_scale_law_refuses_wrong_questions():
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_scale_law_of_a_block_of_peaks(axis):
+def test_scale_law_deviation_of_three_dimensional_peaks(axis):
     eta, rng = np.array([0.8, 0.9, 1.0]), np.random.default_rng(2)
     peaks = rng.uniform(0.1, 0.9, (3, 4, 5))
     deviation = scale_law_deviation(np.moveaxis(peaks, 0, axis), eta, reference=0.9, axis=axis)

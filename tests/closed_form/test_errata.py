@@ -1,4 +1,4 @@
-"""Each slip of the paper's text: the printed form fails, the corrected form holds."""
+"""Misprints of the paper: the printed form fails, the corrected form holds."""
 
 import inspect
 import math
@@ -21,7 +21,7 @@ def test_3_3_uplift_phase():
     with np.errstate(invalid="ignore"):
         printed = np.arcsin(1 / alpha)  # a slender block would have sin(psi) = 5
     assert np.isnan(printed)
-    # just before psi the ground is below the limit, just after it is above
+    # |a f| is below 1 just before psi and above 1 just after it
     psi = cf.uplift_phase(a)
     assert a * math.sin(psi - 1e-6) < 1 < a * math.sin(psi + 1e-6)
 
@@ -48,7 +48,7 @@ def test_3_9_second_line_at_the_recorded_point():
     assert K * bracket == pytest.approx(1.83880, abs=5e-6)  # printed
 
 
-def test_after_3_31_which_condition_belongs_to_which_case():
+def test_after_3_31_assignment_of_conditions_to_cases():
     omega, eta = 3.0, 0.9
     of_3_18 = float(cf.case_1_2_amplitudes(omega, eta).upper)
     of_3_30 = float(cf.semi_analytical_amplitudes(omega, eta).lower)
@@ -58,9 +58,9 @@ def test_after_3_31_which_condition_belongs_to_which_case():
     assert len(integrate(of_3_30, omega, eta).impact_times) == 1  # impact in the pulse: case 1.1, printed as 1.2
 
 
-def test_before_4_3_which_equation_has_six_variables():
+def test_before_4_3_equation_with_six_variables():
     of_3_31 = inspect.signature(cf.limit_margin).parameters
-    assert len(of_3_31) == 2  # printed: (3.31); it knows a and omega only
+    assert len(of_3_31) == 2  # printed: (3.31), which depends on a and omega only
     of_4_2 = [quantity_of(name) for name in ("theta", "alpha", "p", "a_g/g", "omega_g", "eta")]
     assert len(of_4_2) == 6  # right: (4.2)
     dimensions = {(q.length, q.time) for q in of_4_2} - {(0, 0)}
@@ -140,7 +140,7 @@ def test_figure_8_restitutions():
     assert all(np.isclose(computed, eta).any() for eta in text)  # the text is right: the plot has nine curves
 
 
-def test_slenderness_and_restitution_stay_apart():
-    # the symbol alpha for both a and the slenderness angle is what (3.3) and (4.8) stumble over
+def test_symbol_alpha_is_not_accepted_as_amplitude():
+    # (3.3) and (4.8) confuse a and alpha because of the similar symbols
     with pytest.raises(InvalidArgumentError, match="`amplitude`"):
         cf.uplift_phase(0.2)

@@ -1,4 +1,4 @@
-"""Data sets: what is written is described by the conventions, comes back whole, and damage is noticed."""
+"""Data set files: metadata conventions, round trip, and detection of damage."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ SLENDERNESS = np.linspace(0.1, 0.8, 29)
 FREQUENCY_RATIO = np.geomspace(0.8, 10.0, 41)
 
 NOT_APPLICABLE = (
-    "geospatial_", "time_coverage_",  # a control space is nowhere and never
-    "standard_name",  # CF has none for rocking
-    "date_",  # equal content gives equal bytes, on any day
-    "product_version",  # code_sha256 says it more exactly
+    "geospatial_", "time_coverage_",  # the control space has no place and no time
+    "standard_name",  # CF has no standard name for rocking
+    "date_",  # equal content gives equal bytes
+    "product_version",  # code_sha256 is more precise
     "creator_email", "creator_url", "creator_institution", "contributor_", "publisher_", "naming_authority",
-    "metadata_link", "program", "platform", "instrument", "keywords_vocabulary", "comment",  # nothing true to say
+    "metadata_link", "program", "platform", "instrument", "keywords_vocabulary", "comment",  # not applicable
 )  # fmt: skip
-"""Recommendations of ACDD-1.3 that make no sense here; all others are followed."""
+"""Recommendations of ACDD-1.3 that do not apply here; all others are followed."""
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def complaints(path: Path, standard: str) -> list[str]:
     return [message for group in groups if group.value[0] < group.value[1] for message in group.msgs]
 
 
-@pytest.mark.filterwarnings("ignore")  # of the checker's own dependencies
+@pytest.mark.filterwarnings("ignore")  # warnings of the dependencies of the checker
 def test_spectrum_follows_cf(written: Path) -> None:
     assert complaints(written, "cf:1.11") == []
 
@@ -80,7 +80,7 @@ def test_every_variable_is_described(cube: xr.Dataset) -> None:
     assert all("equation" in cube[name].attrs for name in VARIABLES)
 
 
-def test_cube_survives_the_file(cube: xr.Dataset, written: Path) -> None:
+def test_cube_round_trip(cube: xr.Dataset, written: Path) -> None:
     back = read_spectrum(written)
     xr.testing.assert_equal(back, cube)
     assert back.peak_rotation.dtype == np.float64
@@ -90,18 +90,16 @@ def test_cube_survives_the_file(cube: xr.Dataset, written: Path) -> None:
     assert back.attrs["title"] == cube.attrs["title"]
 
 
-def test_files_are_readable_by_everybody_and_writable_by_their_owner(written: Path) -> None:
+def test_file_permissions(written: Path) -> None:
     assert written.stat().st_mode & 0o777 == 0o644
 
 
-def test_same_content_gives_the_same_bytes(written: Path, tmp_path: Path) -> None:
+def test_equal_content_gives_equal_bytes(written: Path, tmp_path: Path) -> None:
     write_dataset(read_spectrum(written), tmp_path / "again.nc")
     assert (tmp_path / "again.nc").read_bytes() == written.read_bytes()
 
 
-def test_failed_write_leaves_the_old_file_and_no_other(
-    cube: xr.Dataset, written: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_failed_write_keeps_the_old_file_only(cube: xr.Dataset, written: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = written.read_bytes()
 
     def fail(_: xr.Dataset, path: Path, **__: object) -> None:
@@ -138,7 +136,7 @@ def test_flipped_bits(written: Path) -> None:
             read_dataset(written)
 
 
-def test_the_seal_is_no_hindrance_to_other_readers(written: Path) -> None:
+def test_other_readers_ignore_the_digest_at_the_end(written: Path) -> None:
     ours = read_dataset(written)
     for engine in ("netcdf4", "h5netcdf"):
         with xr.open_dataset(written, engine=engine, decode_times=False) as theirs:
@@ -171,7 +169,7 @@ def test_other_schema(cube: xr.Dataset, tmp_path: Path, change: str) -> None:
         read_spectrum(tmp_path / "other.nc")
 
 
-def test_nodes_are_the_answers_of_the_solver(cube: xr.Dataset) -> None:
+def test_nodes_are_the_responses_of_the_solver(cube: xr.Dataset) -> None:
     solved = peak_response("sine", slenderness=SLENDERNESS[:, None], frequency_ratio=FREQUENCY_RATIO, restitution=0.85)
     np.testing.assert_array_equal(cube.peak_rotation.values[0], solved.peak_rotation)
     np.testing.assert_array_equal(cube.outcome.values[0], solved.outcome)
@@ -188,30 +186,28 @@ def test_interpolation_error_marks_smooth_cells_only(cube: xr.Dataset) -> None:
     assert i.size > 200
     for corner in ((0, 0), (0, 1), (1, 0), (1, 1)):
         assert (cube.outcome.values[0][i + corner[0], j + corner[1]] == Outcome.SAFE).all()
-    # a random point of a cell is hardly further off than the probes: no lobe hides between them
+    # the error at a random point is hardly larger than at the probe points: no lobe lies between them
     rng = np.random.default_rng(3)
     u, v = rng.random((2, i.size))
     s = SLENDERNESS[i] + u * (SLENDERNESS[1] - SLENDERNESS[0])
     omega = FREQUENCY_RATIO[j] * (FREQUENCY_RATIO[1] / FREQUENCY_RATIO[0]) ** v
-    central = np.isin(cube.stencil.values[0][i, j], (0, SQUARED))  # the 16 nodes around the cell
     squared = cube.stencil.values[0][i, j] == SQUARED
-    assert central.mean() > 0.25
     assert squared.any()
     solved = peak_response("sine", slenderness=s, frequency_ratio=omega, restitution=0.85)
     weights = [lagrange(u), lagrange(v)]
     peak = cube.peak_rotation.values[0]
-    nodes = {(m, n): peak[np.clip(i - 1 + m, 0, 28), np.clip(j - 1 + n, 0, 40)] for m in range(4) for n in range(4)}
+    nodes = {(m, n): peak[i - 1 + m, j - 1 + n] for m in range(4) for n in range(4)}
     plain, square = (
         sum(weights[0][m] * weights[1][n] * form(z) for (m, n), z in nodes.items())
         for form in (lambda z: z, lambda z: (1 - z) ** 2)
     )
     interpolated = np.where(squared, 1 - np.sqrt(np.maximum(square, 0)), plain)
-    ratio = np.abs(interpolated - solved.peak_rotation)[central] / error[i, j][central]
+    ratio = np.abs(interpolated - solved.peak_rotation) / error[i, j]
     assert np.quantile(ratio, 0.99) < 2.5
 
 
 def lagrange(t: np.ndarray) -> list[np.ndarray]:
-    """Weights of the nodes -1, 0, 1, 2 at t in [0, 1], written down independently of the package."""
+    """Weights of the nodes -1, 0, 1, 2 at t in [0, 1], independent of the package."""
     return [
         -t * (t - 1) * (t - 2) / 6,
         (t + 1) * (t - 1) * (t - 2) / 2,
@@ -220,6 +216,6 @@ def lagrange(t: np.ndarray) -> list[np.ndarray]:
     ]
 
 
-def test_sweep_refuses_what_the_solver_would() -> None:
+def test_spectrum_refuses_invalid_arguments() -> None:
     with pytest.raises(InvalidArgumentError, match="frequency_ratio"):
         spectrum("sine", restitution=0.85, slenderness=SLENDERNESS, frequency_ratio=[0.0, 1.0, 2.0, 3.0])

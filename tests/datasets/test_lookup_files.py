@@ -1,4 +1,4 @@
-"""Files of a results folder that are replaced, written to, unreadable, or not files at all."""
+"""Files of a results folder that are replaced, overwritten, unreadable or not regular files."""
 
 import errno
 import hashlib
@@ -36,7 +36,7 @@ def contents(tmp_path_factory):
 
 @pytest.fixture
 def path(contents, tmp_path):
-    """The first version in a results folder, and beside it another data set."""
+    """The first version in a results folder that also holds another data set."""
     path = tmp_path / "results" / f"{NAME}.nc"
     for name in (path, path.parents[1] / "cosine" / "eta-0.90.nc"):
         name.parent.mkdir(parents=True)
@@ -45,7 +45,7 @@ def path(contents, tmp_path):
 
 
 @pytest.fixture
-def atlas(path):
+def cubes(path):
     return CubeCollection(path.parents[2])
 
 
@@ -64,21 +64,21 @@ def sha256(content):
 
 
 @pytest.mark.parametrize("change", [written, replaced])
-def test_other_bytes_of_the_same_size_and_time_are_noticed(atlas, path, contents, change):
+def test_changed_content_of_equal_size_and_time_is_detected(cubes, path, contents, change):
     times = path.stat().st_atime_ns, path.stat().st_mtime_ns
-    answers, versions = [], []
+    sources, versions = [], []
     for content in (*contents, contents[0]):
         change(path, content)
         os.utime(path, ns=times)
-        answer, version = atlas.response("sine", **POINT)
-        answers.append(str(answer.source))
-        versions.append((*version, atlas.catalogue.product(NAME).sha256))
-    assert answers == ["cube"] * 3
+        response, version = cubes.response("sine", **POINT)
+        sources.append(str(response.source))
+        versions.append((*version, cubes.catalogue.product(NAME).sha256))
+    assert sources == ["cube"] * 3
     assert versions == [(sha256(content),) * 2 for content in (*contents, contents[0])]
 
 
-def test_a_file_that_has_just_changed_is_given_a_tick(path, monkeypatch):
-    """Two writes in one tick of the clock of the file system bear the same time."""
+def test_opening_a_recently_changed_file_waits_one_clock_tick(path, monkeypatch):
+    """Two writes within one tick of the file system clock have the same time stamp."""
     waited = []
     monkeypatch.setattr(time, "sleep", waited.append)
     path.touch()
@@ -88,36 +88,36 @@ def test_a_file_that_has_just_changed_is_given_a_tick(path, monkeypatch):
     assert FileVersion(1, 2, 3, 4, changed=time.time_ns() - 10**9).is_settled
 
 
-def test_what_is_open_stays_what_it_was(path, contents):
+def test_open_file_is_not_affected_by_replacement(path, contents):
     with Catalogue(path.parents[2]).open(NAME) as file:
         replaced(path, contents[1])
         assert file.content() == contents[0]
 
 
-def test_a_file_that_changes_while_it_is_read_is_refused(path, monkeypatch):
+def test_file_that_changes_while_it_is_read_is_refused(path, monkeypatch):
     with Catalogue(path.parents[2]).open(NAME) as file:
         monkeypatch.setattr(type(file), "is_unchanged", lambda _: False)
         with pytest.raises(DatasetError, match="changes while it is read"):
             file.content()
 
 
-def test_an_answer_names_the_version_that_gave_it(atlas, path, contents, monkeypatch):
+def test_response_names_the_version_it_was_read_from(cubes, path, contents, monkeypatch):
     respond = rocking.lookup.cube.Cube.response
 
     def replacing(*args, **kwargs):
-        answer = respond(*args, **kwargs)
+        response = respond(*args, **kwargs)
         replaced(path, contents[1])
-        return answer
+        return response
 
     monkeypatch.setattr(rocking.lookup.cube.Cube, "response", replacing)
-    assert atlas.response("sine", **POINT)[1] == (sha256(contents[0]),)
+    assert cubes.response("sine", **POINT)[1] == (sha256(contents[0]),)
 
 
-def test_a_cube_that_has_to_be_read_again_is_not_open(atlas, path, contents):
-    atlas.response("sine", **POINT)
-    assert atlas.is_open("sine", 0.85)
+def test_cube_whose_file_changed_is_not_open(cubes, path, contents):
+    cubes.response("sine", **POINT)
+    assert cubes.is_open("sine", 0.85)
     replaced(path, contents[1])
-    assert not atlas.is_open("sine", 0.85)
+    assert not cubes.is_open("sine", 0.85)
 
 
 def loop(path, _):
@@ -137,7 +137,7 @@ def link_to_nothing(path, _):
 
 
 def forbidden(path, monkeypatch):
-    """As for anybody but root."""
+    """A file without permission to read; root could read it, so `os.open` is patched."""
     path.touch()
     opened = os.open
 
@@ -153,28 +153,28 @@ UNREADABLE = [loop, folder, pipe, link_to_nothing, forbidden]
 
 
 @pytest.mark.parametrize("make", UNREADABLE)
-def test_an_unreadable_file_is_told_and_the_solver_answers(atlas, path, monkeypatch, make):
+def test_unreadable_file_is_reported_and_the_solver_is_used(cubes, path, monkeypatch, make):
     path.unlink()
     make(path, monkeypatch)
-    assert atlas.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
+    assert cubes.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
     with pytest.raises(DatasetError, match="cannot be read"):
-        atlas.catalogue.product(NAME)
-    problem = atlas.problems()[NAME]
+        cubes.catalogue.product(NAME)
+    problem = cubes.problems()[NAME]
     assert problem.startswith(f"{NAME}: cannot be read: ")
     assert str(path.parents[2]) not in problem
-    answer, versions = atlas.response("sine", **POINT)
-    assert (str(answer.source), versions) == ("solver", ())
+    response, versions = cubes.response("sine", **POINT)
+    assert (str(response.source), versions) == ("solver", ())
     with pytest.raises(DatasetError, match="cannot be read"):
-        atlas.response("sine", **POINT, method="cube")
+        cubes.response("sine", **POINT, method="cube")
 
 
-def test_a_file_that_can_be_read_again_is(atlas, path, contents):
+def test_file_is_read_once_it_becomes_readable(cubes, path, contents):
     path.unlink()
     path.symlink_to(path)
-    assert str(atlas.response("sine", **POINT)[0].source) == "solver"
+    assert str(cubes.response("sine", **POINT)[0].source) == "solver"
     replaced(path, contents[0])
-    assert str(atlas.response("sine", **POINT)[0].source) == "cube"
-    assert NAME not in atlas.problems()
+    assert str(cubes.response("sine", **POINT)[0].source) == "cube"
+    assert NAME not in cubes.problems()
 
 
 def folder_loop(folder, _):
@@ -194,32 +194,32 @@ def folder_forbidden(folder, monkeypatch):
 
 
 @pytest.mark.parametrize("make", [folder_loop, folder_forbidden])
-def test_an_unreadable_folder_is_told_and_the_solver_answers(atlas, path, monkeypatch, make):
+def test_unreadable_folder_is_reported_and_the_solver_is_used(cubes, path, monkeypatch, make):
     path.unlink()
     path.parent.rmdir()
     make(path.parent, monkeypatch)
-    assert atlas.catalogue.names() == ["spectra/cosine/eta-0.90"]
-    assert atlas.problems()["spectra/sine"].startswith("cannot be read: ")
-    assert str(atlas.response("sine", **POINT)[0].source) == "solver"
+    assert cubes.catalogue.names() == ["spectra/cosine/eta-0.90"]
+    assert cubes.problems()["spectra/sine"].startswith("cannot be read: ")
+    assert str(cubes.response("sine", **POINT)[0].source) == "solver"
 
 
-def test_links_that_lead_back_are_followed_once(atlas, path):
+def test_links_to_parent_folders_are_followed_once(cubes, path):
     (path.parent / "around").symlink_to(path.parents[2])
-    assert atlas.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
-    assert "spectra/sine/around" not in atlas.problems()
+    assert cubes.catalogue.names() == ["spectra/cosine/eta-0.90", NAME]
+    assert "spectra/sine/around" not in cubes.problems()
 
 
 @pytest.mark.parametrize(
     "name",
     ["a" * 256, "spectra/" + "a" * 256, "a/" * 2500 + "b", f"{NAME}.nc/x", "spectra/sine/eta-0.99", "x", "../x/y", ""],
 )
-def test_there_is_no_such_data_set(atlas, name):
+def test_unknown_names_raise(cubes, name):
     with pytest.raises(UnknownDatasetError):
-        atlas.catalogue.product(name)
+        cubes.catalogue.product(name)
 
 
-def test_reading_a_cube_needs_its_file_once(path, monkeypatch):
-    """Its values and its digest are of the same bytes."""
+def test_reading_a_cube_opens_its_file_once(path, monkeypatch):
+    """The values and the digest come from the same bytes."""
     opened = []
     read = type(path).read_bytes
     monkeypatch.setattr(type(path), "read_bytes", lambda self: opened.append(self) or read(self))

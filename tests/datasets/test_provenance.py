@@ -1,4 +1,4 @@
-"""Digests of code and settings change with what a result depends on, and with nothing else."""
+"""Digests of code and settings change if and only if a dependency of the result changes."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> No
     assert {path.relative_to(tree).as_posix() for path in found} == expected
 
 
-def test_digest_sees_dependencies_and_the_lock_only(tree: Path) -> None:
+def test_digest_depends_on_imported_files_and_the_lock_only(tree: Path) -> None:
     first = code_digest(tree / "script.py", root=tree)
     (tree / "rocking/c.py").write_text("unrelated = 1")
     assert code_digest(tree / "script.py", root=tree) == first
@@ -56,7 +56,7 @@ def test_digest_sees_dependencies_and_the_lock_only(tree: Path) -> None:
     assert code_digest(tree / "script.py", root=tree) != second
 
 
-def test_digest_does_not_depend_on_where_the_code_lies(tree: Path, tmp_path: Path) -> None:
+def test_digest_is_independent_of_the_folder(tree: Path, tmp_path: Path) -> None:
     moved = tmp_path / "elsewhere"
     for name, text in TREE.items():
         (moved / name).parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Pulses: each definition evaluated plainly, unit peak, stationary phases, mirror images, and the physics of type C."""
+"""Pulses: independent definitions, unit peak, stationary phases, sign, final velocity and displacement of type C."""
 
 import itertools
 import math
@@ -53,7 +53,7 @@ def mavroeidis_papageorgiou(phi, gamma, nu):
     return -(sin(phi / gamma) * cos(phi + nu) + gamma * sin(phi + nu) * (1 + cos(phi / gamma)))
 
 
-def test_every_name_has_a_plain_definition():
+def test_every_name_has_a_definition_in_the_test():
     assert set(PULSE_NAMES) == {*PLAIN, "mavroeidis_papageorgiou"}
 
 
@@ -99,8 +99,10 @@ def test_unit_peak(pulse):
 
 
 @pytest.mark.parametrize("pulse", EVERY, ids=label)
-def test_stationary_phases_are_all_and_only_the_turns(pulse):
-    phi = pulse.start + (pulse.end - pulse.start) * (np.arange(100_000) + 0.3137) / 100_000  # no turn on a point
+def test_stationary_phases_are_all_sign_changes_of_the_slope(pulse):
+    phi = (
+        pulse.start + (pulse.end - pulse.start) * (np.arange(100_000) + 0.3137) / 100_000
+    )  # no stationary phase at a point
     slope = np.diff(pulse.shape(phi))
     turns = np.flatnonzero(slope[:-1] * slope[1:] < 0)
     assert len(turns) == len(pulse.stationary)
@@ -135,7 +137,7 @@ def test_mirror_image(pulse):
 
 
 @pytest.mark.parametrize("name", PULSE_NAMES)
-def test_a_leading_minus_mirrors(name):
+def test_a_leading_minus_changes_the_sign(name):
     assert get_pulse("-" + name) == get_pulse(name).mirrored()
 
 
@@ -149,7 +151,7 @@ def test_acceleration_is_zero_outside_the_window(pulse):
 
 
 @pytest.mark.parametrize("name", ["c1", "c2"])
-def test_type_c_leaves_the_ground_at_rest_where_it_was(name):
+def test_type_c_has_zero_final_velocity_and_displacement(name):
     pulse = get_pulse(name)
 
     def final(f):  # Gauss quadrature, exact for these
@@ -166,7 +168,7 @@ def test_type_c_starts_with_the_published_jump():
     assert get_pulse("c2").start / pi == pytest.approx(0.0409760, abs=1e-7)
 
 
-def test_full_sine_and_rickers_leave_no_velocity():
+def test_full_sine_and_rickers_have_zero_final_velocity():
     for name in ("sine", "ricker", "ricker_antisymmetric"):
         pulse = get_pulse(name)
         phi = np.linspace(pulse.start, pulse.end, 20_001)
@@ -178,7 +180,7 @@ def test_constant_of_the_antisymmetric_ricker():
 
 
 @pytest.mark.parametrize("name", ["square", "", "--sine", "Sine", "sine "])
-def test_unknown_pulses_are_refused(name):
+def test_unknown_pulses_are_rejected(name):
     with pytest.raises(InvalidArgumentError, match="`pulse`"):
         get_pulse(name)
 
@@ -193,25 +195,25 @@ def test_parameters_belong_to_one_pulse():
             get_pulse("mavroeidis_papageorgiou", **{name: value})
 
 
-def test_abstract_pulse_cannot_be_made():
+def test_abstract_pulse_cannot_be_instantiated():
     with pytest.raises(TypeError, match="abstract"):
         AbstractPulse("none", 0.0, 1.0, ())
 
 
 def without_stationary(pulse):
-    """The same shape, made by somebody who does not know its turns."""
+    """The same pulse, constructed without its stationary phases."""
     own = (pulse.terms,) if isinstance(pulse, SinusoidalPulse) else (pulse.polynomial, pulse.spread)
     return type(pulse)(pulse.name, pulse.start, pulse.end, (), *own)
 
 
 @pytest.mark.parametrize("pulse", EVERY, ids=label)
-def test_stationary_phases_are_found_if_not_given(pulse):
+def test_stationary_phases_are_computed_if_not_given(pulse):
     made = without_stationary(pulse)
     np.testing.assert_allclose(made.stationary, pulse.stationary, rtol=0, atol=3e-15 * max(1.0, pulse.end))
 
 
 @pytest.mark.parametrize("name", PULSE_NAMES)
-def test_a_pulse_made_by_hand_answers_as_the_one_of_the_catalogue(name):
+def test_an_equal_pulse_object_gives_the_response_of_the_catalogue(name):
     groups = {"slenderness": [0.2, 0.5, 0.8], "frequency_ratio": [[1.0], [4.0]], "restitution": 0.85}
     for alpha in (None, 0.3):
         own, known = (
@@ -222,7 +224,7 @@ def test_a_pulse_made_by_hand_answers_as_the_one_of_the_catalogue(name):
 
 
 def scaled(kind, start, end, *shape):
-    """A pulse of that shape with unit peak, and its largest value before."""
+    """A pulse of that shape scaled to unit peak, and the peak before scaling."""
     probe = np.linspace(start, end, 20_001)
 
     def divided(peak):
@@ -231,7 +233,7 @@ def scaled(kind, start, end, *shape):
         return tuple(c / peak for c in shape[0]), shape[1]
 
     peak = 1.0
-    for _ in range(8):  # the largest value lies between two points: the refusal says how much larger it is
+    for _ in range(8):  # the maximum lies between two points: the error message gives it
         try:
             return kind("drawn", start, end, (), *divided(peak))
         except InvalidArgumentError as error:
@@ -254,24 +256,26 @@ def assert_monotone_between_turns(pulse):
 
 
 @given(terms=TERMS, start=NUMBER, length=st.floats(0.1, 20.0))
-def test_no_turn_of_a_sum_of_sinusoids_is_missed(terms, start, length):
+def test_all_stationary_phases_of_a_sum_of_sinusoids_are_found(terms, start, length):
     assert_monotone_between_turns(scaled(SinusoidalPulse, start, start + length, tuple(terms)))
 
 
 @given(polynomial=POLYNOMIALS, spread=st.floats(0.5, 20.0), start=NUMBER, length=st.floats(0.1, 20.0))
-def test_no_turn_of_a_wavelet_is_missed(polynomial, spread, start, length):
+def test_all_stationary_phases_of_a_wavelet_are_found(polynomial, spread, start, length):
     assert_monotone_between_turns(scaled(WaveletPulse, start, start + length, tuple(polynomial), spread))
 
 
-def test_a_turn_of_order_three_is_one_and_of_order_two_is_none():
+def test_zeros_of_the_slope_of_order_three_count_and_of_order_two_do_not():
     flat = WaveletPulse("flat", -1.0, 1.0, (), (0.0, 0.0, 0.0, math.exp(0.01)), 100.0)  # phi^3: f' touches 0 at 0
     assert flat.stationary == ()
     assert flat.mirrored().stationary == ()
-    cusp = SinusoidalPulse("flat top", -2.0, 2.0, (), ((4 / 3, 1.0, 0.0), (-1 / 3, 2.0, 0.0)))  # f'' = 0 at its top too
+    cusp = SinusoidalPulse(
+        "flat top", -2.0, 2.0, (), ((4 / 3, 1.0, 0.0), (-1 / 3, 2.0, 0.0))
+    )  # f'' = 0 at the maximum too
     assert cusp.stationary == pytest.approx((0.0,), abs=1e-5)
 
 
-def test_a_window_without_the_top_of_its_sinusoid():
+def test_peak_of_a_window_without_a_stationary_phase():
     start, end = pi / 3, 2 * pi / 3
     one = SinusoidalPulse("one", start, end, (), ((2.0, 1.0, 0.0),))
     two = SinusoidalPulse("two", start, end, (), ((1.0, 1.0, 0.0), (1.0, 1.0, 0.0)))
@@ -306,13 +310,13 @@ WRONG = {
 
 
 @pytest.mark.parametrize("parameter", WRONG)
-def test_what_the_solver_cannot_follow_is_refused_when_it_is_made(parameter):
+def test_pulses_outside_the_limits_of_the_solver_are_rejected(parameter):
     with pytest.raises(InvalidArgumentError) as error:
         WRONG[parameter]()
     assert error.value.parameter == parameter.strip()
 
 
-def test_the_longest_pulse_is_followed():
+def test_the_longest_pulse_has_a_response():
     pulse = SinusoidalPulse("long", 0.0, MAX_PIECES * pi, (), ((1.0, 1.0, 0.0),))
     assert len(pulse.monotone_pieces) == MAX_PIECES
     found = rocking.peak_response(pulse, slenderness=0.9, frequency_ratio=8.0, restitution=0.5)

@@ -1,4 +1,4 @@
-"""Similarity groups both ways, and what they promise: equal groups, equal scaled response."""
+"""Conversion to similarity groups and back; blocks with equal groups have equal scaled responses."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def assert_same(left: Problem, right: Problem) -> None:
 
 
 @given(problem=problems, group_set=sets)
-def test_groups_and_block_give_the_problem_back(problem, group_set):
+def test_problem_of_block_inverts_groups_of(problem, group_set):
     found = groups.groups_of(problem, group_set)
     again = groups.problem_of_block(
         found,
@@ -41,7 +41,7 @@ def test_groups_and_block_give_the_problem_back(problem, group_set):
 
 
 @given(problem=problems, group_set=sets)
-def test_groups_and_pulse_give_the_problem_back(problem, group_set):
+def test_problem_of_pulse_inverts_groups_of(problem, group_set):
     found = groups.groups_of(problem, group_set)
     again = groups.problem_of_pulse(
         found,
@@ -54,7 +54,7 @@ def test_groups_and_pulse_give_the_problem_back(problem, group_set):
 
 
 @given(problem=problems, group_set=sets, rotation=st.floats(-1, 1), time=st.floats(0, 10), velocity=st.floats(-5, 5))
-def test_response_there_and_back(problem, group_set, rotation, time, velocity):
+def test_scaling_of_responses_is_inverted(problem, group_set, rotation, time, velocity):
     there = groups.scaled_rotation(rotation, problem, group_set)
     assert groups.rotation_of_scaled(there, problem, group_set) == pytest.approx(rotation, rel=1e-14)
     assert groups.time_of_scaled(groups.scaled_time(time, problem), problem) == pytest.approx(time, rel=1e-14)
@@ -62,7 +62,7 @@ def test_response_there_and_back(problem, group_set, rotation, time, velocity):
     assert groups.angular_velocity_of_scaled(there, problem, group_set) == pytest.approx(velocity, rel=1e-14)
 
 
-def test_groups_are_those_of_the_paper():
+def test_groups_have_the_values_defined_in_the_paper():
     problem = Problem(alpha=0.2, frequency_parameter=2.0, peak_acceleration=4.0, pulse_frequency=8.0, gravity=10.0)
     slender = groups.groups_of(problem, GroupSet.SLENDER_BY_BLOCK)
     assert slender.frequency_ratio == 4  # (3.6)
@@ -99,7 +99,7 @@ def test_two_blocks_of_equal_groups_have_equal_scaled_responses():
     assert first_scaled == pytest.approx(second_scaled, rel=1e-12)
 
 
-def test_arrays_broadcast():
+def test_problem_arrays_broadcast():
     problem = Problem(0.2, np.array([[1.0], [2.0]]), np.array([3.0, 4.0, 5.0]), 8.0)
     assert groups.groups_of(problem, GroupSet.RIGID).frequency_ratio.shape == (2, 1)
     assert groups.scaled_angular_velocity(0.1, problem, GroupSet.RIGID).shape == (2, 3)
@@ -107,20 +107,20 @@ def test_arrays_broadcast():
 
 @pytest.mark.parametrize("name", ["alpha", "frequency_parameter", "peak_acceleration", "pulse_frequency", "gravity"])
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
-def test_problem_refuses_what_is_no_block_or_pulse(name, value):
+def test_problem_refuses_values_out_of_range(name, value):
     good = {"alpha": 0.2, "frequency_parameter": 2.0, "peak_acceleration": 4.0, "pulse_frequency": 8.0}
     with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
         Problem(**{**good, name: value})
 
 
-def test_groups_refuse_what_no_problem_has():
+def test_groups_refuse_values_out_of_range():
     with pytest.raises(InvalidArgumentError, match="`slenderness`"):
         Groups(frequency_ratio=1.0, slenderness=0.0)
     with pytest.raises(InvalidArgumentError, match="`cos_alpha`"):
         Groups(frequency_ratio=1.0, slenderness=0.5, cos_alpha=1.0)
 
 
-def test_blocks_that_are_not_similar_are_refused():
+def test_blocks_with_other_cos_alpha_are_refused():
     found = groups.groups_of(Problem(0.3, 2.0, 4.0, 8.0), GroupSet.RIGID)
     with pytest.raises(InvalidArgumentError, match="`cos_alpha`"):
         groups.problem_of_block(found, GroupSet.RIGID, alpha=0.2, frequency_parameter=2.0)

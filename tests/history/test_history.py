@@ -1,4 +1,4 @@
-"""Time histories: equation of motion between events, law of impact at them, and the solver's own answer."""
+"""Time histories: equation of motion between events, restitution at impacts, agreement with the response."""
 
 import math
 
@@ -19,7 +19,7 @@ QUESTIONS = (
 
 
 def pulled(z, alpha, ground):
-    """z'' of a mirrored flight with `ground` = sgn(theta) a f."""
+    """z'' of a flight with `ground` = sgn(theta) a f."""
     if alpha is None:
         return z - 1 - ground  # (3.1)
     return -(np.sin(alpha * (1 - z)) + np.tan(alpha) * ground * np.cos(alpha * (1 - z))) / alpha  # (2.2)
@@ -50,7 +50,7 @@ def test_equation_of_motion_between_events(name, alpha):
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 @pytest.mark.parametrize("name", SIGNED)
-def test_velocity_falls_by_the_restitution_at_impacts(name, alpha):
+def test_velocity_is_reduced_by_the_restitution_at_impacts(name, alpha):
     question = {"slenderness": 0.75, "frequency_ratio": 4.0, "restitution": 0.8}
     impacts = rocking.time_history(name, **question, alpha=alpha).impact_time.values
     if name.removeprefix("-") == "rectangular":
@@ -61,10 +61,10 @@ def test_velocity_falls_by_the_restitution_at_impacts(name, alpha):
         at = int(np.flatnonzero(tau == history.impact_time.values[-1])[0])
         assert tau[at] == pytest.approx(impact, rel=1e-13)
         assert abs(y[at]) < 1e-14
-        # straight on from the two samples before
+        # extrapolation of the two samples before
         gap = tau[at] - tau[at - 1]
         before = v[at - 1] + gap * (v[at - 1] - v[at - 2]) / (tau[at - 1] - tau[at - 2])
-        if abs(before) > 0.01:  # several samples a flight
+        if abs(before) > 0.01:  # several samples per flight
             assert v[at] == pytest.approx(question["restitution"] * before, rel=1e-2)
 
 
@@ -130,11 +130,11 @@ def test_duration_and_samples():
 
 @pytest.mark.parametrize("alpha", [None, 0.3, 1.2])
 @pytest.mark.parametrize("name", SIGNED)
-def test_an_overturning_block_is_followed_without_a_gap_until_it_lies(name, alpha):
+def test_an_overturning_block_is_followed_without_a_gap_to_the_ground(name, alpha):
     farthest = min(4.0, math.pi / 2 / alpha) if alpha else 4.0
     seen = 0
     for slenderness in (0.1, 0.3, 0.8):
-        for omega in (0.1, 0.5, 2.0):  # long before the end of the pulse and after it
+        for omega in (0.1, 0.5, 2.0):  # overturning before the end of the pulse and after it
             history = rocking.time_history(
                 name, slenderness=slenderness, frequency_ratio=omega, restitution=0.9, alpha=alpha, samples=4000
             )
@@ -151,14 +151,14 @@ def test_an_overturning_block_is_followed_without_a_gap_until_it_lies(name, alph
 
 @pytest.mark.parametrize("name", ["sine", "ricker"])
 @pytest.mark.parametrize("alpha", [None, 0.3, 1.5])
-def test_a_very_slow_pulse_is_not_followed_for_ever(name, alpha):
+def test_the_history_of_a_very_slow_pulse_ends(name, alpha):
     history = rocking.time_history(name, slenderness=0.5, frequency_ratio=1e-4, restitution=0.9, alpha=alpha)
     assert history.overturned
     assert np.isfinite(history.rotation.values).all()
 
 
 @pytest.mark.parametrize("alpha", [None, 0.3])
-def test_a_block_that_is_not_lifted_stays_at_zero(alpha):
+def test_a_block_without_uplift_has_zero_rotation(alpha):
     history = rocking.time_history("sine", slenderness=1.2, frequency_ratio=3.0, restitution=0.9, alpha=alpha)
     assert not history.rotation.any()
     assert not history.angular_velocity.any()
@@ -175,7 +175,7 @@ def test_a_block_that_is_not_lifted_stays_at_zero(alpha):
         ("slenderness", [0.0, math.nan]),
     ],
 )
-def test_wrong_questions(argument, values):
+def test_invalid_arguments(argument, values):
     question = {"slenderness": 0.7, "frequency_ratio": 4.0, "restitution": 0.9}
     for value in values:
         with pytest.raises(rocking.InvalidArgumentError, match=argument):

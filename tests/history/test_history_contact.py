@@ -1,4 +1,4 @@
-"""Extremes of the contact through a whole motion, what is said about them, and who pays for them."""
+"""Extremes of the contact forces during a motion, the sentences derived from them, and their cost."""
 
 import math
 
@@ -25,7 +25,7 @@ def test_extremes_are_those_of_a_very_finely_sampled_motion(pulse, alpha):
         fine = rocking.time_history(pulse, **question, alpha=alpha, contact=True, samples=100_001)
         coarse = rocking.time_history(pulse, **question, alpha=alpha, contact=True, samples=2)
         for name in ("largest_friction_demand_over_slope", "smallest_normal_reaction", "lifts_off"):
-            assert fine.attrs[name] == coarse.attrs[name]  # not a matter of the samples shown
+            assert fine.attrs[name] == coarse.attrs[name]  # independent of the samples
         until = fine.tau.size
         if fine.overturned:
             until = int(np.flatnonzero(np.abs(fine.rotation.values) <= 1)[-1]) + 1
@@ -39,8 +39,8 @@ def test_extremes_are_those_of_a_very_finely_sampled_motion(pulse, alpha):
         assert fine.largest_friction_demand_over_slope > 1 - 1e-9  # it uplifts
 
 
-def test_the_last_moment_before_an_impact_counts():
-    # it lands so fast under such a pulse that the ground carries least of it then
+def test_extremes_include_the_instant_before_an_impact():
+    # the impact velocity is so large that the normal reaction has its minimum there
     question = {"slenderness": 0.25, "frequency_ratio": 3.0, "restitution": 0.72, "alpha": 0.57}
     impact = rocking.time_history("cosine", **question).impact_time.values[0]
     before = rocking.time_history("cosine", **question, duration=impact * (1 - 1e-9), contact=True)
@@ -65,19 +65,21 @@ def test_a_stocky_block_under_a_strong_pulse_lifts_off(tmp_path):
     np.testing.assert_array_equal(again.friction_demand, history.friction_demand)
 
 
-def test_a_block_that_overturns_is_judged_until_it_passes_alpha_for_good():
+def test_extremes_of_an_overturning_block_end_at_the_last_crossing_of_alpha():
     question = {"slenderness": 0.2, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": math.radians(20)}
     history = rocking.time_history("sine", **question, contact=True, samples=50_001)
     assert history.overturned
     last = np.flatnonzero(np.abs(history.rotation.values) <= 1)[-1] + 1
     demand = history.friction_demand.values
     assert history.largest_friction_demand == pytest.approx(demand[:last].max(), rel=1e-6)
-    assert demand[last:].max() > 3 * history.largest_friction_demand  # falling asks for more, and it does not matter
+    assert (
+        demand[last:].max() > 3 * history.largest_friction_demand
+    )  # the demand during the fall is larger and is not included
     brief = rocking.time_history("sine", **question, contact=True, duration=0.4)
     assert brief.largest_friction_demand <= history.largest_friction_demand * (1 + 1e-9)
 
 
-def test_warnings_name_what_is_needed():
+def test_warnings_give_the_demand():
     slides = rocking.time_history(
         "ricker", slenderness=0.2, frequency_ratio=5.0, restitution=0.85, alpha=math.radians(20), contact=True
     )
@@ -98,7 +100,7 @@ def contact_of(**question):
     return contact_extremes(build_motion("sine", **question))
 
 
-def test_the_sentence_puts_first_that_the_rocking_model_does_not_apply():
+def test_the_sentence_starts_with_an_invalid_rocking_model():
     upright = contact_of(slenderness=0.6, frequency_ratio=5.0, restitution=0.93, alpha=math.radians(12))
     assert (upright.rocking_applies, upright.sentence) == (True, "rocks and comes to rest")
     squat = {"restitution": 0.25, "alpha": math.radians(45)}
@@ -120,11 +122,11 @@ def test_a_block_at_rest_may_slide_but_does_not_overturn():
         assert still.rocking_applies
         assert still.sentence == sentence
     slender = contact_of(slenderness=0.2, frequency_ratio=3.0, restitution=0.9)
-    assert slender.rocking_applies  # friction is not judged in the slender limit
+    assert slender.rocking_applies  # friction is not assessed in the slender limit
 
 
 @pytest.mark.parametrize("alpha", [None, 1e-12, 1e-3, 0.5, 1.57])
-def test_far_corners_give_numbers(alpha):
+def test_extreme_arguments_give_numbers(alpha):
     for slenderness in (1e-9, 0.5, 1 - 1e-12, 1e9):
         for omega in (1e-6, 1.0, 1e6):
             for eta in (0.0, 1.0):
@@ -138,7 +140,7 @@ def test_far_corners_give_numbers(alpha):
                 assert math.isfinite(history.smallest_normal_reaction)
 
 
-def test_nobody_pays_who_does_not_ask():
+def test_contact_forces_are_computed_on_request_only():
     question = QUESTIONS[0] | {"alpha": 0.3}
     plain, full = (rocking.time_history("sine", **question, contact=contact) for contact in (False, True))
     assert "friction_demand" not in plain

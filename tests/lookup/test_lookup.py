@@ -1,4 +1,4 @@
-"""Answers from a cube: the right fate, a bound that holds, and the solver wherever the cube cannot promise."""
+"""Responses from one cube: correct outcomes, error bounds that hold, and the solver where no bound is known."""
 
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -17,8 +17,7 @@ from rocking.model.response import Outcome
 from rocking.solver.bounded_response import SOLVER_ERROR, solve_with_bound
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectrum
-from rocking.spectra.layer import largest_in_neighbourhood
-from tests.lookup_grid import GRID, crossed, questions
+from tests.lookup_grid import GRID, crossed, random_points
 
 ETA = 0.85
 
@@ -36,14 +35,14 @@ def cube(path):
     return open_cube(path)
 
 
-def test_a_cube_is_opened_by_its_address_too(path):
+def test_cube_is_opened_by_its_address(path):
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(SimpleHTTPRequestHandler, directory=path.parent))
     Thread(target=server.serve_forever, daemon=True).start()
     try:
         address = f"http://127.0.0.1:{server.server_port}"
         fetched = open_cube(f"{address}/{path.name}")
-        asked = questions(200)
-        here, there = (one.response(**asked) for one in (open_cube(path), fetched))
+        points = random_points(200)
+        here, there = (one.response(**points) for one in (open_cube(path), fetched))
         np.testing.assert_array_equal(here.peak_rotation, there.peak_rotation)
         with pytest.raises(DatasetError, match="cannot be fetched"):
             open_cube(f"{address}/none.nc")
@@ -52,7 +51,7 @@ def test_a_cube_is_opened_by_its_address_too(path):
         server.server_close()
 
 
-def test_no_cell_that_a_boundary_crosses_is_interpolated(path):
+def test_cells_crossed_by_a_boundary_have_no_stencil(path):
     stencil = read_spectrum(path)["stencil"].values[0, :-1, :-1]
     curves = overturning_boundary(
         "sine", restitution=ETA, nodes=301, slenderness=(0.05, 0.95), frequency_ratio=(0.5, 12.0)
@@ -61,80 +60,68 @@ def test_no_cell_that_a_boundary_crosses_is_interpolated(path):
     column = np.searchsorted(GRID["frequency_ratio"], curves.frequency_ratio.values) - 1
     inside = (row >= 0) & (column >= 0) & (row < stencil.shape[0]) & (column < stencil.shape[1])
     assert inside.sum() > 500
-    # points of a finer tracing; a few sit on the edge of a cell or belong to islands that the coarse one does not see
+    # points of a finer tracing; a few are on the edge of a cell or on islands that the coarse tracing does not find
     assert (stencil[row[inside], column[inside]] == -1).mean() > 0.97
 
 
-def test_largest_around_spreads_errors_and_keeps_what_is_unknown():
-    errors = np.zeros((1, 5, 6))
-    errors[0, 2, 3], errors[0, 2, 4] = 7.0, np.nan
-    found = largest_in_neighbourhood(errors)[0]
-    assert np.isnan(found[2, 4])
-    assert np.isnan(found).sum() == 1
-    expected = np.zeros((5, 6))
-    expected[1:4, 2:5] = 7.0
-    expected[2, 4] = np.nan
-    np.testing.assert_array_equal(found, expected)
-
-
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6])
-def test_fate_is_right_and_the_bound_holds(cube, tolerance):
-    asked = questions(20_000)
-    found = cube.response(**asked, tolerance=tolerance)
-    truth = peak_response("sine", **asked, restitution=ETA)
-    np.testing.assert_array_equal(found.outcome, truth.outcome)
-    counted = (found.impacts >= 0) & ~truth.chatter
-    np.testing.assert_array_equal(found.impacts[counted], truth.impacts[counted])
+def test_outcome_is_correct_and_the_bound_holds(cube, tolerance):
+    points = random_points(20_000)
+    found = cube.response(**points, tolerance=tolerance)
+    expected = peak_response("sine", **points, restitution=ETA)
+    np.testing.assert_array_equal(found.outcome, expected.outcome)
+    counted = (found.impacts >= 0) & ~expected.chatter
+    np.testing.assert_array_equal(found.impacts[counted], expected.impacts[counted])
     assert counted.mean() > 0.9
-    np.testing.assert_array_equal(found.exceeded_alpha, truth.exceeded_alpha)
-    np.testing.assert_array_equal(found.overturned, truth.overturned)
-    stands = ~truth.overturned
-    error = np.abs(found.peak_rotation - truth.peak_rotation)[stands]
-    assert np.all(error <= found.error_bound[stands])
+    np.testing.assert_array_equal(found.exceeded_alpha, expected.exceeded_alpha)
+    np.testing.assert_array_equal(found.overturned, expected.overturned)
+    survives = ~expected.overturned
+    error = np.abs(found.peak_rotation - expected.peak_rotation)[survives]
+    assert np.all(error <= found.error_bound[survives])
     from_cube = found.source == "cube"
-    assert np.all(found.error_bound[from_cube & stands] <= tolerance)
-    assert np.isnan(found.error_bound[~stands]).all()
-    assert from_cube[~stands].mean() > 0.8  # where all blocks around overturn alike, no tolerance is needed
-    assert from_cube.mean() > (0.5 if tolerance > 1e-5 else 0.2)  # a coarse cube still answers most
+    assert np.all(found.error_bound[from_cube & survives] <= tolerance)
+    assert np.isnan(found.error_bound[~survives]).all()
+    assert from_cube[~survives].mean() > 0.8  # where all corners overturn in the same way there is no error
+    assert from_cube.mean() > (0.5 if tolerance > 1e-5 else 0.2)  # a coarse cube is sufficient for most points
 
 
-def test_rest_is_told_by_whoever_was_asked(cube):
-    """From 1/a = 1 on nothing is solved or interpolated, whatever the axes of the cube."""
-    question = {"slenderness": 1.5, "frequency_ratio": 100.0}
+def test_no_uplift_is_known_with_every_method(cube):
+    """From 1/a = 1 on there is no uplift, also outside of the axes of the cube."""
+    point = {"slenderness": 1.5, "frequency_ratio": 100.0}
     for method, source in (("auto", "solver"), ("solver", "solver"), ("cube", "cube")):
-        found = cube.response(**question, method=method)
+        found = cube.response(**point, method=method)
         assert (found.outcome, found.source, found.error_bound) == (Outcome.NO_UPLIFT, source, 0.0)
 
 
 @pytest.mark.parametrize(
     ("name", "value", "allowed"), [("slenderness", 0.96, "[0.05, 0.95]"), ("alpha", 0.3, "0 [rad]")]
 )
-def test_axes_of_a_cube_are_told(cube, name, value, allowed):
-    question = {"slenderness": 0.5, "frequency_ratio": 3.0} | {name: value}
+def test_error_outside_of_the_cube_states_its_axes(cube, name, value, allowed):
+    point = {"slenderness": 0.5, "frequency_ratio": 3.0} | {name: value}
     with pytest.raises(OutsideCubeError) as caught:
-        cube.response(**question, method="cube")
+        cube.response(**point, method="cube")
     assert caught.value.allowed.startswith(allowed)
 
 
-def test_method_cube_is_refused_or_right(cube):
-    asked = questions(300, seed=6)
+def test_method_cube_raises_or_is_correct(cube):
+    points = random_points(300, seed=6)
     refused = 0
-    for s, w in zip(*asked.values(), strict=True):
+    for s, w in zip(*points.values(), strict=True):
         try:
             found = cube.response(slenderness=s, frequency_ratio=w, method="cube")
         except OutsideCubeError as error:
             assert error.parameter in ("method", "tolerance")  # noqa: PT017  (many points in one test)
             refused += 1
             continue
-        truth = peak_response("sine", slenderness=s, frequency_ratio=w, restitution=ETA)
+        expected = peak_response("sine", slenderness=s, frequency_ratio=w, restitution=ETA)
         assert found.source == "cube"
-        assert found.outcome == truth.outcome
-        assert truth.overturned or abs(found.peak_rotation - truth.peak_rotation) <= found.error_bound <= 1e-4
+        assert found.outcome == expected.outcome
+        assert expected.overturned or abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound <= 1e-4
     assert 0 < refused < 150
 
 
 @pytest.mark.parametrize(
-    ("question", "parameter"),
+    ("point", "parameter"),
     [
         ({"slenderness": 0.01, "frequency_ratio": 3.0}, "slenderness"),
         ({"slenderness": 0.96, "frequency_ratio": 3.0}, "slenderness"),
@@ -144,35 +131,35 @@ def test_method_cube_is_refused_or_right(cube):
         ({"slenderness": 1 / 1.42727, "frequency_ratio": 3.0}, "method"),  # beside the first golden threshold
     ],
 )
-def test_what_a_cube_cannot_answer_names_the_reason(cube, question, parameter):
+def test_method_cube_names_the_parameter_that_prevents_a_response(cube, point, parameter):
     with pytest.raises(OutsideCubeError) as caught:
-        cube.response(**question, method="cube")
+        cube.response(**point, method="cube")
     assert caught.value.parameter == parameter
 
 
-def test_outside_the_cube_the_solver_answers(cube):
+def test_solver_is_used_outside_of_the_cube(cube):
     found = cube.response(slenderness=[0.01, 0.5], frequency_ratio=[3.0, 40.0])
-    truth = peak_response("sine", slenderness=[0.01, 0.5], frequency_ratio=[3.0, 40.0], restitution=ETA)
+    expected = peak_response("sine", slenderness=[0.01, 0.5], frequency_ratio=[3.0, 40.0], restitution=ETA)
     assert list(found.source) == ["solver", "solver"]
-    np.testing.assert_array_equal(found.peak_rotation, truth.peak_rotation)
+    np.testing.assert_array_equal(found.peak_rotation, expected.peak_rotation)
 
 
-def test_method_solver_never_reads_the_cube(cube):
-    asked = questions(50)
-    found = cube.response(**asked, method="solver")
-    np.testing.assert_array_equal(found.peak_rotation, peak_response("sine", **asked, restitution=ETA).peak_rotation)
+def test_method_solver_does_not_use_the_cube(cube):
+    points = random_points(50)
+    found = cube.response(**points, method="solver")
+    np.testing.assert_array_equal(found.peak_rotation, peak_response("sine", **points, restitution=ETA).peak_rotation)
     assert set(found.source) == {"solver"}
 
 
 @pytest.mark.parametrize("method", rocking.lookup.cube.METHODS)
-def test_from_slenderness_one_on_nothing_moves(cube, method):
+def test_no_uplift_from_slenderness_one_on(cube, method):
     found = cube.response(slenderness=[1.0, 1.5, 1e308], frequency_ratio=[1.0, 99.0, 1e-3], method=method)
     assert set(found.outcome) == {Outcome.NO_UPLIFT}
     np.testing.assert_array_equal(found.peak_rotation, 0.0)
     np.testing.assert_array_equal(found.error_bound, 0.0)
 
 
-def test_shapes_broadcast(cube):
+def test_arguments_broadcast(cube):
     found = cube.response(slenderness=np.linspace(0.3, 0.9, 4)[:, None], frequency_ratio=[1.0, 2.0, 3.0])
     assert found.peak_rotation.shape == found.source.shape == (4, 3)
     alone = cube.response(slenderness=0.3, frequency_ratio=1.0)
@@ -192,15 +179,15 @@ def test_shapes_broadcast(cube):
         ({"method": "guess"}, "method"),
     ],
 )
-def test_wrong_questions_are_refused(cube, wrong, parameter):
+def test_invalid_arguments_are_refused(cube, wrong, parameter):
     with pytest.raises(InvalidArgumentError) as caught:
         cube.response(**({"slenderness": 0.5, "frequency_ratio": 3.0} | wrong))
     assert caught.value.parameter == parameter
 
 
 def test_solver_bound_grows_beside_a_separatrix():
-    falls_from = 3.980175  # golden table, sine, omega 5, eta 0.85: to 1e-6
-    slenderness = 1.0 / (falls_from - np.array([1.0, 1e-2, 1e-4]))
+    threshold = 3.980175  # golden table, sine, omega 5, eta 0.85: to 1e-6
+    slenderness = 1.0 / (threshold - np.array([1.0, 1e-2, 1e-4]))
     found = solve_with_bound("sine", slenderness=slenderness, frequency_ratio=5.0, restitution=ETA, alpha=None)
     assert np.all(found.outcome == Outcome.SAFE)
     assert np.all(np.diff(found.error_bound) > 0)
@@ -229,17 +216,17 @@ def test_axes_may_be_spaced_unevenly(tmp_path):
     made = spectrum("sine", restitution=ETA, slenderness=rows, frequency_ratio=np.r_[6.0:9.0:0.1, 9.0:12.0:0.2])
     write_dataset(made, tmp_path / "uneven.nc")
     rng = np.random.default_rng(2)
-    asked = {"slenderness": rng.uniform(0.3, 0.7, 2000), "frequency_ratio": rng.uniform(6.0, 11.8, 2000)}
-    found = open_cube(tmp_path / "uneven.nc").response(**asked)
-    truth = peak_response("sine", **asked, restitution=ETA)
+    points = {"slenderness": rng.uniform(0.3, 0.7, 2000), "frequency_ratio": rng.uniform(6.0, 11.8, 2000)}
+    found = open_cube(tmp_path / "uneven.nc").response(**points)
+    expected = peak_response("sine", **points, restitution=ETA)
     from_cube = found.source == "cube"
     assert from_cube.mean() > 0.7
-    np.testing.assert_array_equal(found.outcome, truth.outcome)
-    error = np.abs(found.peak_rotation - truth.peak_rotation)[~truth.overturned]
-    assert (error <= found.error_bound[~truth.overturned]).all()
+    np.testing.assert_array_equal(found.outcome, expected.outcome)
+    error = np.abs(found.peak_rotation - expected.peak_rotation)[~expected.overturned]
+    assert (error <= found.error_bound[~expected.overturned]).all()
 
 
-def test_missing_and_damaged_files_say_so(tmp_path, path):
+def test_missing_and_damaged_files_raise(tmp_path, path):
     with pytest.raises(DatasetError, match="no such data set"):
         open_cube(tmp_path / "none.nc")
     damaged = tmp_path / "damaged.nc"
@@ -248,7 +235,7 @@ def test_missing_and_damaged_files_say_so(tmp_path, path):
         open_cube(damaged)
 
 
-def test_bound_of_the_solver_is_the_change_when_all_groups_shrink_together():
+def test_solver_bound_is_the_change_when_all_groups_shrink_together():
     rng = np.random.default_rng(7)
     groups = {"slenderness": rng.uniform(0.1, 0.9, 200), "frequency_ratio": rng.uniform(0.5, 9.0, 200)}
     groups["restitution"] = rng.uniform(0.6, 1.0, 200)

@@ -33,7 +33,7 @@ def test_frequency_parameter_is_that_of_a_rectangle_about_its_corner(b, h):
 
 
 @given(alpha=st.floats(0.01, 1.5), R=lengths)
-def test_angle_and_diagonal_there_and_back(alpha, R):
+def test_angle_and_diagonal_round_trip(alpha, R):
     block = Block.from_slenderness_angle(alpha, R)
     assert block.alpha == pytest.approx(alpha, rel=1e-12)
     assert block.half_diagonal == pytest.approx(R, rel=1e-12)
@@ -49,12 +49,12 @@ def test_housner_restitution_conserves_angular_momentum(b, h):
 
 
 @given(alpha=st.floats(0.05, 1.5))
-def test_inelastic_restitution_is_that_of_a_ground_that_only_pushes(alpha):
-    """Housner's impact lets the old corner rise; where it would have to sink, the ground pushes at both corners."""
+def test_inelastic_restitution_has_no_tensile_impulse(alpha):
+    """(2.4) requires the old corner to rise; otherwise the ground exerts impulses at both corners."""
     block = Block.from_slenderness_angle(alpha, 1.0)
     b, h = block.half_width, block.half_height
     # turning with unit rate about the corner (b, 0) towards the corner (-b, 0), its centre (0, h) goes (-h, -b);
-    # to stop it takes vertical impulses at the two corners over the mass, whose sum is b and whose moment is:
+    # stopping it requires vertical impulses at both corners (over the mass) with the sum b and the moment:
     old, new = np.linalg.solve([[1, 1], [b, -b]], [b, -(h * h + 1 / 3)])
     assert new > 0
     if abs(block.housner_restitution) > 1e-9:
@@ -75,14 +75,14 @@ def test_smaller_gravity_slows_rocking():
 
 @pytest.mark.parametrize("name", ["half_width", "half_height", "gravity"])
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf, "wide"])
-def test_impossible_blocks_are_refused_by_name(name, value):
+def test_invalid_blocks_are_rejected_by_name(name, value):
     good = {"half_width": 0.2, "half_height": 1.0, "gravity": 9.81}
     with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
         Block(**{**good, name: value})
 
 
 @pytest.mark.parametrize(("alpha", "R"), [(0.0, 1.0), (math.pi / 2, 1.0), (0.2, 0.0), (math.nan, 1.0)])
-def test_impossible_angles_are_refused(alpha, R):
+def test_invalid_angles_are_rejected(alpha, R):
     with pytest.raises(InvalidArgumentError, match=r"`alpha`|`half_diagonal`"):
         Block.from_slenderness_angle(alpha, R)
 

@@ -1,4 +1,4 @@
-"""Reactions of the ground against Newton's law by differences of the motion itself; slender limit; impacts."""
+"""Reactions of the ground: Newton's law by differences of the motion, slender limit, impacts."""
 
 import math
 from itertools import pairwise
@@ -24,7 +24,7 @@ QUESTIONS = (
 
 
 def flights(pulse, question, alpha, samples=8001):
-    """Uniformly sampled stretches between events, before the block passes alpha for good."""
+    """Uniformly sampled intervals between events, up to the last crossing of alpha."""
     history = rocking.time_history(pulse, **question, alpha=alpha, contact=True, samples=samples)
     step = history.tau.values[-1] / (samples - 1) if not history.overturned else None
     events = np.concatenate([history.impact_time.values, [0.0, history.pulse_end]])
@@ -44,14 +44,14 @@ def flights(pulse, question, alpha, samples=8001):
 
 
 def centre_of_mass(flight):
-    """Horizontal and vertical place over the pivot and along with the ground, [g/p^2]; theta > 0 leans to the right."""
+    """Horizontal and vertical position relative to the pivot [g/p^2]; theta > 0 is a rotation to the right."""
     theta, alpha = flight.alpha * flight.rotation.values, flight.alpha
     side = np.sign(theta[theta.size // 2])
     return -side * RADIUS * np.sin(alpha - side * theta), RADIUS * np.cos(alpha - side * theta)
 
 
 def second_derivative(values, step):
-    """By differences of fourth order at all but two samples at each end."""
+    """Derivative by differences of fourth order, without two samples at each end."""
     v = values
     return (-v[:-4] + 16 * v[1:-3] - 30 * v[2:-2] + 16 * v[3:-1] - v[4:]) / (12 * step**2)
 
@@ -108,7 +108,7 @@ def test_mirrored_pulse_has_mirrored_reactions(alpha):
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
-def test_uplift_needs_friction_of_tan_alpha_and_keeps_it_where_the_pulse_rises_smoothly(alpha):
+def test_friction_demand_at_uplift_is_tan_alpha_for_a_smooth_pulse(alpha):
     question = {"slenderness": 0.6, "frequency_ratio": 3.0, "restitution": 0.9}
     uplift = float(rocking.peak_response("sine", **question, alpha=alpha).uplift_time)
     for after in (0.0, 1e-9):
@@ -121,7 +121,7 @@ def test_uplift_needs_friction_of_tan_alpha_and_keeps_it_where_the_pulse_rises_s
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
-def test_a_sudden_pulse_needs_less_friction_rocking_than_it_would_at_rest(alpha):
+def test_friction_demand_under_a_sudden_pulse_is_less_than_at_rest(alpha):
     a = 2.5
     history = rocking.time_history(
         "cosine", slenderness=1 / a, frequency_ratio=3.0, restitution=0.9, alpha=alpha, contact=True
@@ -132,7 +132,7 @@ def test_a_sudden_pulse_needs_less_friction_rocking_than_it_would_at_rest(alpha)
     assert 1 < expected < a
 
 
-def test_at_rest_the_ground_carries_weight_and_inertia():
+def test_reactions_at_rest_are_weight_and_inertia():
     history = rocking.time_history(
         "ricker", slenderness=1.25, frequency_ratio=3.0, restitution=0.9, alpha=0.4, contact=True
     )
@@ -166,7 +166,7 @@ def test_slender_limit(pulse):
 
 
 @pytest.mark.parametrize("alpha", [0.1, 0.4, 0.8])
-def test_free_rocking_below_2_alpha_needs_less_friction_than_uplift_unless_it_is_fast(alpha):
+def test_friction_demand_of_slow_free_rocking_is_below_that_of_uplift(alpha):
     lean, q = np.meshgrid(np.linspace(-1, 1, 61), np.linspace(-1.2, 1.2, 49))
     slow = q**2 < np.cos(alpha * lean)
     ones = np.ones_like(lean)
@@ -184,7 +184,9 @@ def test_impulse_of_an_impact_is_the_change_of_momentum(alpha):
     for time in (impact * (1 - 1e-9), impact * (1 + 1e-9)):
         state = rocking.time_history("sine", **question, alpha=alpha, duration=time, contact=True).isel(tau=-1)
         rate = alpha * float(state.angular_velocity)
-        side = math.copysign(1, rate) * (-1 if time < impact else 1)  # towards rest before, away from it after
+        side = math.copysign(1, rate) * (
+            -1 if time < impact else 1
+        )  # towards rest before the impact, away from it after
         velocities.append((math.cos(alpha) * rate, side * math.sin(alpha) * rate))
     (x0, y0), (x1, y1) = velocities
     assert y1 > y0
@@ -200,7 +202,7 @@ def test_impulse_ratio_of_housner_is_the_demand_of_slow_rocking(alpha):
     assert ratio < math.tan(alpha)
 
 
-def test_impulse_ratio_at_its_ends():
+def test_impulse_ratio_at_the_ends_of_its_range():
     assert impulse_ratio(1.0, 0.0) == impulse_ratio(1.0, 0.3) == 0.0
     assert impulse_ratio(0.9, 0.0) == math.inf
     assert impulse_ratio(0.0, 0.3) == pytest.approx(1 / math.tan(0.3))

@@ -7,6 +7,7 @@ from typing import get_type_hints
 import numpy as np
 import pytest
 import xarray as xr
+from rocking_api.models.responses import Columns, PointResponse
 
 import rocking
 from rocking.datasets.cube import VARIABLES
@@ -56,7 +57,13 @@ def test_files_store_the_declared_fields():
         assert attributes["equation"] == field.equation
 
 
-def test_the_page_of_the_notation_has_the_table():
+def test_http_responses_have_the_declared_columns():
+    for model in (PointResponse, Columns):
+        assert {field.name for field in COLUMN_FIELDS} <= set(model.model_fields)
+        assert model.model_fields["peak_rotation"].description == fields.PEAK_ROTATION.description()
+
+
+def test_notation_page_contains_the_table():
     assert fields.markdown_table() in NOTATION.read_text()
 
 
@@ -72,7 +79,7 @@ def test_description_tells_what_a_missing_number_looks_like():
     assert "null" not in fields.IMPACTS.description()
 
 
-def test_codes_of_overturning_are_decoded_again():
+def test_overturning_codes_round_trip():
     outcome = np.array([0, 1, 2, 3, 3, 3], dtype=np.int8)
     impacts = np.array([0, 7, 0, 1, 2, 200_003], dtype=np.int32)
     codes = outcome_codes(outcome, impacts)
@@ -132,7 +139,7 @@ def test_labelled_arguments_keep_their_dimensions():
         ({"slenderness": []}, "of 0 blocks"),
     ],
 )
-def test_repr_says_what_happened(groups, words):
+def test_repr_describes_the_outcome(groups, words):
     shown = repr(peak_response("sine", **GROUPS | groups))
     assert words in shown
     assert len(shown) < 200

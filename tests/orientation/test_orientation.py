@@ -1,4 +1,4 @@
-"""Siano's group, (4.4) to (4.9), table 1, and groups proposed and refused."""
+"""Siano's group, (4.4) to (4.9), table 1, and tests of proposed groups."""
 
 import math
 
@@ -80,7 +80,7 @@ def test_admissible_exponents_have_an_odd_sum():
     assert not is_homogeneous(LZ, {"a_g/g": LZ, "alpha": LZ}, {"a_g/g": 1, "alpha": 1})
 
 
-def test_admissible_exponents_of_nothing_oriented():
+def test_admissible_exponents_without_oriented_factors():
     assert admissible_exponents(L0, {"eta": L0}) == [{}]
     assert admissible_exponents(LZ, {"eta": L0}) == []
 
@@ -119,7 +119,7 @@ def test_proposed_groups_that_fail(group):
     "expression",
     ["", "theta+alpha", "mass*g", "exp(theta)", "theta**eta", "sin(g)", "theta(", "sin(theta, alpha)", "'theta'"],
 )
-def test_what_is_no_product_is_refused(expression):
+def test_expressions_that_are_no_product_are_rejected(expression):
     with pytest.raises(InvalidArgumentError, match="`expression`"):
         quantity_of(expression)
 

@@ -1,4 +1,4 @@
-"""The ledger docs/equations.md: complete, every function imports, every test exists, numbers stand in the code."""
+"""The ledger docs/equations.md is complete: functions can be imported, tests exist, numbers are in the code."""
 
 import ast
 import importlib
@@ -38,7 +38,7 @@ NAMES = [q for q in QUOTED if q.startswith("rocking.")]
 TESTS = [q for q in QUOTED if q.startswith("tests/")]
 
 
-def home(name: str) -> Path:
+def defining_file(name: str) -> Path:
     """File that defines a dotted name."""
     found = resolve_name(name)
     definition = found.fget if isinstance(found, property) else found
@@ -62,7 +62,7 @@ def test_every_row_names_a_function_and_a_test():
         assert "`rocking." in function or number == "(5.1)"
 
 
-def test_page_quotes_nothing_else():
+def test_the_page_quotes_functions_and_tests_only():
     assert set(QUOTED) == {*NAMES, *TESTS}
 
 
@@ -78,8 +78,8 @@ def test_named_test_exists(test):
 
 
 @pytest.mark.parametrize("row", [r for r in LEDGER if r[0].strip("()") not in NUMERIC_ONLY], ids=lambda r: r[0])
-def test_number_stands_in_the_code(row):
-    files = {home(name) for name in re.findall(r"`([^`]+)`", row[2])}
+def test_each_number_is_in_the_code(row):
+    files = {defining_file(name) for name in re.findall(r"`([^`]+)`", row[2])}
     sources = {file for path in files for file in (path.parent.glob("*.py") if path.stem == "__init__" else [path])}
     assert any(row[0] in source.read_text() for source in sources), f"{row[0]} in none of {sorted(sources)}"
 
@@ -97,6 +97,6 @@ def test_each_slip_is_remarked_in_the_ledger():
     assert remarked == set(range(1, 9))  # the last two are about figures
 
 
-def test_notation_knows_each_argument_of_the_closed_forms():
+def test_notation_lists_each_argument_of_the_closed_forms():
     words = set(re.findall(r"`(\w+)`", (ROOT / "docs" / "notation.md").read_text()))
     assert words >= {"amplitude", "slenderness", "frequency_ratio", "restitution", "alpha", "time"}

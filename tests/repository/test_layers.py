@@ -1,15 +1,17 @@
 """Layers, read from the import statements: a module imports from its own folder and from lower layers only."""
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "architecture.md").read_text()
 
-# From the top down: folders below the root, or single modules of `rocking`. A folder may import itself and whatever
-# stands in a later row; folders in one row do not import each other.
+# From the top down: folders below the root, or single modules of `rocking`. A folder may import itself and folders of
+# later rows; folders in one row do not import each other.
 LAYERS = (
     ("tests",),
     ("stress",),
@@ -30,13 +32,13 @@ SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as i
 
 
 def folder_of(path: Path) -> str | None:
-    """The entry of `LAYERS` that holds a file, None for a file outside of all of them."""
+    """Return the entry of `LAYERS` that holds a file, None for a file outside of all of them."""
     place = path.relative_to(ROOT).with_suffix("").as_posix()
     return next((folder for folder in LAYER_OF if place == folder or place.startswith(folder + "/")), None)
 
 
 def imported_files(path: Path) -> Iterator[Path]:
-    """Files of the project that a file imports, at any depth of its code."""
+    """Yield the files of the project that a file imports, at any depth of its code."""
     for node in ast.walk(ast.parse(path.read_text())):
         names = []
         if isinstance(node, ast.Import):
@@ -56,9 +58,43 @@ MODULES = sorted(path for path in ROOT.rglob("*.py") if folder_of(path) is not N
 NAMES = [path.relative_to(ROOT).as_posix() for path in MODULES]
 
 
+def documented_folders() -> list[str]:
+    """Return the folders of the table of layers in docs/architecture.md, from the top down."""
+    table = PAGE.split("| layer |")[1].split("\n\n")[0].splitlines()[2:]
+    return [
+        name.rstrip("/").removesuffix(".py") for row in table for name in re.findall(r"`([^`]+)`", row.split("|")[2])
+    ]
+
+
+def documented_tree() -> set[str]:
+    """Return the folders of the tree in docs/architecture.md."""
+    found, parents = set(), [""]
+    for line in PAGE.split("```text\n")[1].split("```")[0].splitlines():
+        name = line.split()[0].rstrip("/")
+        depth = (len(line) - len(line.lstrip())) // 2
+        parents[depth + 1 :] = [f"{parents[depth]}{name}/"]
+        found.add(parents[-1].rstrip("/"))
+    return found
+
+
+def test_the_documented_layers_are_those_of_this_test() -> None:
+    folders = documented_folders()
+    assert set(folders) == LAYER_OF.keys()
+    assert [LAYER_OF[folder] for folder in folders] == sorted(LAYER_OF.values())
+
+
+def test_the_documented_tree_is_the_real_one() -> None:
+    packages = {path.parent for top in ("rocking", "api") for path in (ROOT / top).rglob("__init__.py")}
+    grouped = {path.parent for path in (ROOT / "benchmarks").rglob("__init__.py")}
+    workflow = {path for path in (ROOT / "workflow").iterdir() if path.is_dir() and path.name != "__pycache__"}
+    real = {path.relative_to(ROOT).as_posix() for path in packages | grouped | workflow}
+    plain = {"api", "api/rocking_api/static", "workflow", "reference", "stress", "tests", "docs"}
+    assert documented_tree() == real | plain
+
+
 def test_every_module_of_the_package_has_a_layer() -> None:
-    ours = [*(ROOT / "rocking").rglob("*.py"), *(ROOT / "api").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")]
-    assert {path for path in ours if folder_of(path) is None} == {ROOT / "rocking/__init__.py"}
+    paths = [*(ROOT / "rocking").rglob("*.py"), *(ROOT / "api").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")]
+    assert {path for path in paths if folder_of(path) is None} == {ROOT / "rocking/__init__.py"}
 
 
 @pytest.mark.parametrize("path", MODULES, ids=NAMES)
@@ -74,7 +110,7 @@ def test_imports_point_to_own_folder_or_lower_layers(path: Path) -> None:
             assert own == other or LAYER_OF[own] < LAYER_OF[other], f"{path} imports {file}"
 
 
-def test_no_circle_between_modules() -> None:
+def test_no_circular_imports() -> None:
     edges = {path: set(imported_files(path)) - {path} for path in MODULES}
     while leaves := [path for path, targets in edges.items() if not targets & edges.keys()]:
         for leaf in leaves:

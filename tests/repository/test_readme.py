@@ -1,7 +1,7 @@
-"""Every command of README.md is run: the Python blocks, the requests, the command line; make's recipes are looked at.
+"""Every command of README.md is run: Python blocks, requests, command line; the recipes of make are checked.
 
-`make test` runs this file and the smoke configuration of the workflow, so the make lines themselves are not run again:
-their recipes are printed by `make --dry-run`, and what they call is run here or in the tests of the workflow.
+`make test` runs this file and the smoke configuration of the workflow, so that the make commands are not run again:
+`make --dry-run` prints their recipes, and what they call is run here or in the tests of the workflow.
 """
 
 import json
@@ -37,12 +37,12 @@ ROCKING = [command for command in COMMANDS if command[0] == ".venv/bin/rocking"]
 
 
 def recipe(*arguments: str) -> str:
-    answer = subprocess.run(["make", "--dry-run", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
-    return answer.stdout.strip().splitlines()[-1]
+    done = subprocess.run(["make", "--dry-run", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
+    return done.stdout.strip().splitlines()[-1]
 
 
 def installed(program: str) -> str:
-    """Path of a program in the environment that runs the tests."""
+    """Return the path of a program in the environment that runs the tests."""
     return str(Path(sys.executable).with_name(program))
 
 
@@ -54,7 +54,7 @@ def free_port() -> int:
 
 @pytest.fixture(scope="module")
 def server_port(smoke_results: Path) -> Iterator[int]:
-    """Port of what `make serve` starts, here over the results of the smoke configuration."""
+    """Port of the server that `make serve` starts, here over the results of the smoke configuration."""
     port = free_port()
     program, *arguments = shlex.split(recipe("serve", f"PORT={port}"))
     place = smoke_results.parent
@@ -80,17 +80,23 @@ def test_every_command_has_a_test() -> None:
 
 @pytest.mark.parametrize(
     ("target", "program"),
-    [("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"), ("test", "pytest"), ("serve", "rocking serve")],
+    [
+        ("environment", ":"),
+        ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
+        ("test", "pytest"),
+        ("serve", "rocking serve"),
+    ],
 )
 def test_make_targets_of_the_readme(target: str, program: str) -> None:
     assert ["make", target] in MAKE
-    assert len(MAKE) == 3
+    assert len(MAKE) == 4
     assert recipe(target).startswith(program)
 
 
 @pytest.mark.parametrize("command", ROCKING, ids=" ".join)
 def test_command_line(command: list[str]) -> None:
-    subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, check=True)
+    done = subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert f"`{done.stdout.splitlines()[0]}`" in README
 
 
 def test_first_python_block(capsys: pytest.CaptureFixture[str]) -> None:
@@ -127,7 +133,7 @@ def test_requests(command: list[str], server_port: int) -> None:
         body = subprocess.run(
             [*command[:-1], "--silent", "--fail", url], capture_output=True, text=True, check=True
         ).stdout
-    else:  # a machine with Python and make alone
-        with urllib.request.urlopen(url) as answer:
-            body = answer.read().decode()
+    else:  # a machine with Python and make only
+        with urllib.request.urlopen(url) as response:
+            body = response.read().decode()
     assert json.loads(body)["source"] in ("cube", "solver")

@@ -1,25 +1,34 @@
-"""`pip install .` yields a usable package: the wheel holds all of `rocking` and `api` and nothing else,
-and the service answers from it.
+"""The wheel: it holds `rocking` and `rocking_api` and nothing else, requires no service or plotting package without an
+extra, and its commands work from an installation outside of the checkout.
 """
 
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
+from email.message import Message
+from email.parser import Parser
 from pathlib import Path
 
 import httpx2
 import pytest
+from packaging.requirements import Requirement
 
 from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
+REQUIRED = {"contourpy", "lazy-loader", "llvmlite", "netCDF4", "numba", "numpy", "pint", "scipy", "typer", "xarray"}
+"""Distributions that an installation without extras requires."""
+
+OPTIONAL = {"service": {"fastapi", "prometheus-client", "uvicorn", "zarr"}, "plot": {"matplotlib"}}
+"""Distributions that only an extra brings."""
 
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy to build from: the build leaves files beside its sources."""
+    """A copy to build from, because the build writes files next to its sources."""
     source = tmp_path_factory.mktemp("source")
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source)
@@ -37,8 +46,14 @@ def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return wheel
 
 
-@pytest.mark.slow
-def test_wheel_holds_the_packages(source: Path, wheel: Path) -> None:
+@pytest.fixture(scope="module")
+def metadata(wheel: Path) -> Message:
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        return Parser().parsestr(archive.read(name).decode())
+
+
+def test_wheel_holds_the_two_packages_and_no_tests(source: Path, wheel: Path) -> None:
     held = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     files = {
         f"{package}/{path.relative_to(source / folder).as_posix()}"
@@ -47,11 +62,48 @@ def test_wheel_holds_the_packages(source: Path, wheel: Path) -> None:
         if path.is_file()
     }
     assert held == files
+    assert {name.split("/")[0] for name in held} == set(PACKAGES)
+    assert not [name for name in held if re.search(r"(^|/)(tests?|conftest|test_[^/]*)(/|\.py$)", name)]
+
+
+def test_requirements_without_extras_are_those_of_the_package(metadata: Message) -> None:
+    requirements = [Requirement(line) for line in metadata.get_all("Requires-Dist", [])]
+    assert {one.name for one in requirements if one.marker is None} == REQUIRED
+    for extra, names in OPTIONAL.items():
+        markers = {one.name: one.marker for one in requirements if one.name in names}
+        assert markers.keys() == names
+        for marker in markers.values():
+            assert marker is not None
+            assert marker.evaluate({"extra": extra})
+            assert not marker.evaluate({"extra": ""})
+
+
+def test_serve_without_its_packages_names_the_extra(wheel: Path, tmp_path: Path) -> None:
+    """The module search path of the process holds the wheel and what a plain installation requires."""
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path)
+    program = (
+        "import importlib.abc, sys\n"
+        "class Absent(importlib.abc.MetaPathFinder):\n"
+        "    def find_spec(self, name, path, target=None):\n"
+        f"        if name.split('.')[0] in {sorted(OPTIONAL['service'])}:\n"
+        "            raise ModuleNotFoundError(f'No module named {name!r}', name=name)\n"
+        "sys.meta_path.insert(0, Absent())\n"
+        "from rocking.cli.app import app\n"
+        "app(['serve'])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path, env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert "rocking serve needs the extra `service`, pip install 'rocking[service]'" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.slow
 def test_the_service_answers_from_the_wheel(wheel: Path, tmp_path: Path) -> None:
-    """Outside of the checkout; the environment lends it what it requires."""
+    """Outside of the checkout; the required packages are those of this environment."""
     installed = tmp_path / "installed"
     install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--quiet", "--target"]
     subprocess.run([*install, str(installed), str(wheel)], check=True)
@@ -61,7 +113,7 @@ def test_the_service_answers_from_the_wheel(wheel: Path, tmp_path: Path) -> None
         assert str(installed) in server.log.read_text()
         for page in ("/", "/docs", "/openapi.json", "/health", "/metrics", "/static/docs.js"):
             assert httpx2.get(server.address + page).status_code == 200, page
-        question = "/v1/response?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=0.85"
-        answer = httpx2.get(server.address + question, timeout=600).json()  # compiled anew, in a folder of its own
-        assert answer["outcome"] == "SAFE"
+        request = "/v1/response?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=0.85"
+        response = httpx2.get(server.address + request, timeout=600).json()  # compiled anew, in a folder of its own
+        assert response["outcome"] == "SAFE"
         assert server.stop() in (0, -15)

@@ -50,11 +50,13 @@ def test_peak_above_the_limit_curve(sine_cells):
     assert (found.peak_rotation[before] >= closed * (1 - 1e-12)).all()
 
 
-def test_fates_of_the_sine(sine_cells):
+def test_outcomes_of_the_sine(sine_cells):
     a, omega, eta, found = sine_cells
     closed = closed_form.overturning_amplitudes(omega, eta)
     falls = (a >= closed.direct) | ((a > closed.falls_from) & (a < closed.safe_again))
-    islands = (a < 1 / 0.89) & (omega < 1.2)  # overturning after three impacts and more, which they miss
+    islands = (a < 1 / 0.89) & (
+        omega < 1.2
+    )  # overturning after three or more impacts, which the closed forms do not cover
     np.testing.assert_array_equal(found.overturned[~islands], falls[~islands])
     directly = found.outcome == Outcome.OVERTURNED_DIRECTLY
     np.testing.assert_array_equal(directly, a >= closed.direct)
@@ -72,7 +74,9 @@ def test_overturning_without_a_further_impact_for_every_pulse(name):
         margin = closed_form.margin_without_impact(pulse, a[i], omega[i])
         if found.outcome[i] == Outcome.OVERTURNED_DIRECTLY:
             assert margin > -1e-9
-        elif np.isnan(found.first_impact_time[i]):  # no impact during the pulse, and it stands or falls after one
+        elif np.isnan(
+            found.first_impact_time[i]
+        ):  # no impact during the pulse: the outcome is decided by the one after it
             compared += 1
             assert margin < 1e-9
         elif found.impacts[i] == 1:
@@ -85,7 +89,7 @@ def test_overturning_without_a_further_impact_for_every_pulse(name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rigid", [False, True])
-def test_a_million_random_cells_have_an_answer(rigid):
+def test_a_million_random_cells_have_a_response(rigid):
     rng = np.random.default_rng(14)
     n = 1_000_000 // len(PULSE_NAMES) + 1
     for name in PULSE_NAMES:

@@ -1,4 +1,4 @@
-"""Chatter: rest is declared only where following every impact would come to rest too, and unseen."""
+"""Chatter: rest is set only where the followed impacts come to rest too and have no effect on the peak."""
 
 import math
 
@@ -31,7 +31,7 @@ WANTED = st.tuples(
 
 
 def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
-    """Impact by impact until next to nothing is left: the phase then, and the highest peak [z]."""
+    """Follow every impact until the velocity is negligible; returns the phase and the largest peak [z]."""
     highest, first, steps = 0.0, w, step_state(flight)
     while w > 1e-7 * first:
         flight_from(flight, phase, w, sign)
@@ -49,7 +49,7 @@ def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
 
 @given(WANTED)
 @settings(max_examples=500)
-def test_settles_never_promises_what_the_impacts_do_not_keep(wanted):
+def test_chatter_bound_holds_for_the_followed_impacts(wanted):
     pulse, slenderness, omega, eta, alpha, where, within, w, sign = wanted
     flight = cell(pulse, slenderness, omega, alpha)
     quiet = np.flatnonzero(flight["interval_level"][: int(flight["interval_count"])] == 0.0)
@@ -58,27 +58,27 @@ def test_settles_never_promises_what_the_impacts_do_not_keep(wanted):
     start, end = (float(x) for x in flight["interval_phase"][interval : interval + 2])
     phase = start + within * (end - start)
     assume(start < phase < end)
-    peak = 0.5 * w  # what a chattering block has reached before
+    peak = 0.5 * w  # an earlier peak of the block
     if chatter_ends_in_rest(flight, w, eta, phase, end, peak):
         rest, highest = follow(flight, w, eta, phase, sign)
         assert rest <= end
         assert highest <= peak
 
 
-def test_settles_says_yes_where_chatter_is_far_from_everything():
+def test_chatter_bound_applies_to_small_velocities_within_an_interval():
     flight = cell("sine", 0.9, 1.0)
     end = float(flight["interval_phase"][1])
     for eta in (0.0, 0.3, 0.9, 0.99):
         assert chatter_ends_in_rest(flight, 1e-7, eta, 0.1, end, 0.5)
-    assert not chatter_ends_in_rest(flight, 1e-7, 1.0, 0.1, end, 0.5)  # nothing is lost: no rest
-    assert not chatter_ends_in_rest(flight, 1e-7, 0.9, 0.1, end, 1e-15)  # a flight may pass the peak
+    assert not chatter_ends_in_rest(flight, 1e-7, 1.0, 0.1, end, 0.5)  # no energy loss: no rest
+    assert not chatter_ends_in_rest(flight, 1e-7, 0.9, 0.1, end, 1e-15)  # a flight may exceed the peak
     assert not chatter_ends_in_rest(flight, 0.5, 0.9, 0.1, end, 0.5)  # the window is too short
     assert not chatter_ends_in_rest(flight, 1e-3, 0.9, end - 1e-6, end, 0.5)
 
 
 @pytest.mark.parametrize("alpha", [None, 0.25])
-def test_a_block_at_rest_after_chatter_is_lifted_again(alpha):
-    # barely lifted by the first crest, at rest before the second, which lifts it to the other side
+def test_a_block_at_rest_after_chatter_uplifts_again(alpha):
+    # small uplift by the first crest, rest before the second, which uplifts the block to the other side
     question = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.3, "alpha": alpha}
     found = rocking.peak_response("sine", **question)
     assert found.outcome == Outcome.SAFE
@@ -93,7 +93,7 @@ def test_a_block_at_rest_after_chatter_is_lifted_again(alpha):
 
 
 @pytest.mark.parametrize("alpha", [None, 0.25])
-def test_the_same_lift_twice_when_rest_lies_between(alpha):
+def test_equal_uplifts_separated_by_rest_give_equal_motion(alpha):
     question = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.0, "alpha": alpha}
     one = rocking.peak_response("half_sine", **question)
     two = rocking.peak_response("sine", **question)
@@ -103,7 +103,7 @@ def test_the_same_lift_twice_when_rest_lies_between(alpha):
 
 @pytest.mark.parametrize("alpha", [None, 1e-6, 0.25])
 @pytest.mark.parametrize("name", SIGNED[::2])
-def test_no_rebound_means_rest_or_renewed_uplift(name, alpha):
+def test_zero_restitution_gives_rest_or_immediate_uplift(name, alpha):
     rng = np.random.default_rng(6)
     n = 300
     found = rocking.peak_response(
@@ -113,13 +113,13 @@ def test_no_rebound_means_rest_or_renewed_uplift(name, alpha):
         restitution=0.0,
         alpha=alpha,
     )
-    # one impact a lobe, or two where the ground pushes on at once
+    # one impact per lobe, or two where uplift follows immediately
     assert found.impacts.max() <= 16
     assert not (found.outcome == Outcome.NO_UPLIFT).any()
     assert not found.chatter.any()  # a single impact is not chatter
 
 
-def test_impacts_grow_as_restitution_does_and_peaks_stay():
+def test_impacts_increase_with_restitution_and_peaks_do_not_change():
     eta = np.linspace(0.0, 0.99, 34)
     found = rocking.peak_response("half_sine", slenderness=0.999, frequency_ratio=6.0, restitution=eta)
     assert (found.outcome == Outcome.SAFE).all()

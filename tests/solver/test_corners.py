@@ -1,4 +1,4 @@
-"""Every corner of the admitted question is answered: no exception, no hang, no nan that is not an overturned block."""
+"""Corners of the parameter space: each has a response, without exception, endless loop or unexplained nan."""
 
 import itertools
 
@@ -16,7 +16,7 @@ ALPHA = (0.0, parameters.SMALLEST_ALPHA, 1e-3, 1.2, parameters.ALPHA.upper)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("pulse", ["sine", "cosine", "rectangular", "c2", "ricker", "ricker_antisymmetric"])
-def test_corners_of_the_question(pulse: str) -> None:
+def test_corners_of_the_parameter_space(pulse: str) -> None:
     groups = np.array(list(itertools.product(SLENDERNESS, FREQUENCY_RATIO, RESTITUTION, ALPHA))).T
     response = rocking.peak_response(
         pulse, slenderness=groups[0], frequency_ratio=groups[1], restitution=groups[2], alpha=groups[3]
@@ -36,7 +36,7 @@ def test_corners_of_the_question(pulse: str) -> None:
         ("alpha", 1.5705),
     ],
 )
-def test_beyond_the_corners_is_refused(name: str, value: float) -> None:
+def test_arguments_beyond_the_corners_are_rejected(name: str, value: float) -> None:
     question = {"slenderness": 0.5, "frequency_ratio": 2.0, "restitution": 0.9, "alpha": 0.1, name: value}
     with pytest.raises(rocking.InvalidArgumentError) as refusal:
         rocking.peak_response("sine", **question)

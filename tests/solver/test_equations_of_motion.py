@@ -1,4 +1,4 @@
-"""What the solvers stand for: (2.1) to (2.3), (3.1), (3.2), (3.4) to (3.6) and (4.1), from first principles."""
+"""The solver against first principles: (2.1) to (2.3), (3.1), (3.2), (3.4) to (3.6) and (4.1)."""
 
 import math
 
@@ -37,7 +37,7 @@ def test_moment_balance_gives_the_equation_of_motion(theta, ground):
 
 @pytest.mark.parametrize("theta", [-0.7, 0.4])
 def test_linearisation_is_the_limit_of_slender_blocks(theta):
-    a = 1.7  # of the ground, in units of g alpha
+    a = 1.7  # ground acceleration in units of g alpha
     errors = []
     for alpha in (1e-2, 1e-3):
         exact = equation_2_2(theta * alpha, a * G * alpha, alpha, 1.0)
@@ -61,7 +61,7 @@ def test_solver_follows_the_equation_of_motion_and_the_law_of_impact(a, omega, e
         assert found.peak_rotation >= direct.peak - 1e-9
 
 
-def test_response_depends_on_the_groups_alone():
+def test_response_depends_on_the_groups_only():
     wanted = groups.Groups(frequency_ratio=3.3, slenderness=0.45)  # (3.6)
     peaks = []
     for alpha, p in ((0.1, 2.0), (0.2, 1.1)):

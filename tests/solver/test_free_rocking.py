@@ -1,4 +1,4 @@
-"""Free rocking: energy decides, conserved between impacts and lost at them."""
+"""Free rocking: energy is conserved between impacts, reduced at impacts, and determines the outcome."""
 
 import math
 from itertools import pairwise
@@ -16,13 +16,13 @@ ALPHAS = st.one_of(st.just(0.0), st.floats(-8, 0.19).map(lambda x: 10**x))
 
 
 def left_to_climb(z, alpha):
-    """X(z): 1 - z, or (2/alpha) sin(alpha (1 - z)/2), in many digits."""
+    """X(z): 1 - z, or (2/alpha) sin(alpha (1 - z)/2), in multi-precision."""
     z, alpha = mpmath.mpf(z), mpmath.mpf(alpha)
     return 1 - z if alpha == 0 else 2 / alpha * mpmath.sin(alpha * (1 - z) / 2)
 
 
 @given(z=st.floats(0, 0.999), w=st.floats(1e-6, 3), eta=st.floats(0, 1), alpha=ALPHAS)
-def test_a_rising_block_turns_where_its_energy_is_spent(z, w, eta, alpha):
+def test_a_rising_block_turns_at_the_height_given_by_its_energy(z, w, eta, alpha):
     assume(z < math.pi / 2 / alpha if alpha > 0 else True)
     escapes, peak, after = free_outcome(z, w, eta, alpha)
     with mpmath.workprec(160):
@@ -31,14 +31,14 @@ def test_a_rising_block_turns_where_its_energy_is_spent(z, w, eta, alpha):
         if escapes == 0:
             assert after == 0
             spent = left_to_climb(peak, alpha) ** 2 - energy
-            # what one ulp of z or of the peak changes
+            # change due to one ulp of z or of the peak
             assert abs(spent) <= 1e-14 * left_to_climb(0.0, alpha) ** 2
             assert z <= peak * (1 + 1e-15)
             assert peak < 1
 
 
 @given(z=st.floats(0, 1.5), w=st.floats(-3, 0), eta=st.floats(0, 1), alpha=ALPHAS)
-def test_a_falling_block_comes_through_at_most_one_impact(z, w, eta, alpha):
+def test_a_falling_block_overturns_after_at_most_one_impact(z, w, eta, alpha):
     assume(z < math.pi / 2 / alpha if alpha > 0 else True)
     escapes, peak, after = free_outcome(z, w, eta, alpha)
     with mpmath.workprec(160):
@@ -77,7 +77,7 @@ def test_small_rotations_keep_their_digits(alpha, velocity):
 
 
 @given(z=st.floats(1e-6, 0.9), w=st.floats(-0.4, 0.05), alpha=ALPHAS)
-def test_no_restitution_no_rotation_after_the_impact(z, w, alpha):
+def test_zero_restitution_gives_no_rotation_after_the_impact(z, w, alpha):
     assume(z + abs(w) < 0.95)
     escapes, peak, after = free_outcome(z, w, 0.0, alpha)
     assert (escapes, after) == (0, 0)
@@ -85,11 +85,11 @@ def test_no_restitution_no_rotation_after_the_impact(z, w, alpha):
 
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-6, 0.4])
-def test_fate_is_monotone_in_restitution_and_continuous_in_alpha(alpha):
-    fates = [free_outcome(1.2, -1.9, eta, alpha) for eta in np.linspace(0, 1, 101)]
-    escapes = [fate[0] for fate in fates]
+def test_outcome_is_monotone_in_restitution_and_continuous_in_alpha(alpha):
+    outcomes = [free_outcome(1.2, -1.9, eta, alpha) for eta in np.linspace(0, 1, 101)]
+    escapes = [outcome[0] for outcome in outcomes]
     assert escapes == sorted(escapes)
-    peaks = [fate[1] for fate in fates if fate[0] == 0]
+    peaks = [outcome[1] for outcome in outcomes if outcome[0] == 0]
     assert peaks == sorted(peaks)
     for z, w in ((0.4, 0.3), (0.4, -0.3), (1e-9, 0.6), (0.9, 0.05)):
         slender, nearly = free_outcome(z, w, 0.95, 0.0), free_outcome(z, w, 0.95, 1e-8)
@@ -112,7 +112,7 @@ def test_without_loss_the_peaks_of_free_rocking_are_equal(alpha):
 
 @pytest.mark.parametrize("alpha", [None, 1e-7, 0.3])
 @pytest.mark.parametrize("eta", [0.5, 0.9, 1.0])
-def test_energy_is_conserved_between_impacts_and_falls_by_eta_squared_at_them(alpha, eta):
+def test_energy_is_conserved_between_impacts_and_reduced_by_eta_squared(alpha, eta):
     history = rocking.time_history(
         "sine", slenderness=0.7, frequency_ratio=6.0, restitution=eta, alpha=alpha, duration=8.0, samples=500
     )

@@ -1,4 +1,4 @@
-"""Thresholds known from closed forms, from publications and from integration, asked of the front door."""
+"""Thresholds known from closed forms, publications and integration, computed by `peak_response`."""
 
 import math
 
@@ -12,7 +12,7 @@ from rocking import Outcome, closed_form
 
 # omega: amplitude from which the block overturns without impact, whatever eta
 DIRECT = {1: 1.418315, 2: 2.349903, 3: 3.631150, 4: 5.238964, 5: 7.168129, 6: 9.416966}
-# (omega, eta): the block falls after one impact between these amplitudes
+# (omega, eta): the block overturns after one impact between these amplitudes
 AFTER_IMPACT = {
     (1, 0.85): (1.134352, 1.415149),
     (1, 0.90): (1.132047, 1.416384),
@@ -122,12 +122,12 @@ def test_rigid_full_sine_by_size(half_diagonal, expected):
         decimals = len(printed.split(".")[1])
         # known to within one unit of the last digit: 4.0719142 is given as 4.07192
         assert abs(amplitude - float(printed)) <= 10**-decimals
-        for side in (-1e-9, 1e-9):  # the multi-precision integration sees the change at the same place
+        for side in (-1e-9, 1e-9):  # the multi-precision integration gives the same threshold
             question = {"slenderness": 1 / (amplitude * (1 + side)), "frequency_ratio": omega}
             with working_precision(128):
                 truth = integrate("sine", **question, restitution=housner(alpha), alpha=alpha)
-            fate = rocking.peak_response("sine", **question, restitution=housner(alpha), alpha=alpha)
-            assert truth.outcome == fate.outcome
+            response = rocking.peak_response("sine", **question, restitution=housner(alpha), alpha=alpha)
+            assert truth.outcome == response.outcome
             changed = np.flatnonzero(found.amplitude == amplitude)[0]
             assert truth.overturned == (found.overturns_above[changed] == (side > 0))
 
@@ -141,14 +141,14 @@ def test_rigid_cosine_of_makris_and_konstantinidis_2003():
     in_g = found.amplitude * math.tan(alpha)
     assert abs(in_g[0] - 0.3150340) <= 0.5001e-7
     assert found.overturns_above[0]
-    fates = rocking.peak_response(
+    found = rocking.peak_response(
         "cosine",
         slenderness=math.tan(alpha) / np.array([0.315, 0.316]),
         frequency_ratio=omega,
         restitution=housner(alpha),
         alpha=alpha,
     )
-    np.testing.assert_array_equal(fates.overturned, [False, True])
+    np.testing.assert_array_equal(found.overturned, [False, True])
 
 
 def test_island_of_overturning_after_three_impacts():
@@ -157,4 +157,4 @@ def test_island_of_overturning_after_three_impacts():
     np.testing.assert_array_equal(found.overturned, [False, True, True, True, False])
     np.testing.assert_array_equal(found.impacts[1:4], 3)
     closed = closed_form.overturning_amplitudes(omega, 0.9)
-    assert not ((closed.falls_from < 1 / 0.9) & (closed.safe_again > 1 / 0.9)).any()  # the closed forms miss it
+    assert not ((closed.falls_from < 1 / 0.9) & (closed.safe_again > 1 / 0.9)).any()  # not covered by the closed forms

@@ -1,4 +1,4 @@
-"""Far ends of the control space, where the answer is known: impulses, slow pulses, strong ones, and the onset."""
+"""Limits of the control space with known response: impulses, slow pulses, strong pulses, onset of rocking."""
 
 import numpy as np
 import pytest
@@ -10,14 +10,14 @@ SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
 
 def velocity_given(name: str, slenderness: float) -> float:
-    """Integral of a f - 1 over the cap of a half sine or a rectangle of unit frequency [-]."""
+    """Integral of a f - 1 over the part above 1 of a half sine or a rectangle of unit frequency [-]."""
     uplift = np.arcsin(slenderness) if name == "half_sine" else 0.0
     gained = (1 + np.cos(uplift)) / slenderness if name == "half_sine" else np.pi / slenderness
     return gained - (np.pi - uplift)
 
 
 @pytest.mark.parametrize("name", ["half_sine", "rectangular"])
-def test_an_impulse_gives_a_velocity_and_free_rocking_the_rest(name):
+def test_an_impulse_is_an_initial_velocity_of_free_rocking(name):
     omega, slenderness = 1e4, np.array([1e-2, 1e-3, 5e-4])
     speed = velocity_given(name, slenderness) / omega
     found = rocking.peak_response(name, slenderness=slenderness, frequency_ratio=omega, restitution=0.9)
@@ -39,7 +39,7 @@ def test_impulses_without_net_velocity_hardly_move_the_block(name):
 
 @pytest.mark.parametrize("name", SIGNED)
 @pytest.mark.parametrize("alpha", [None, 0.3])
-def test_a_slow_pulse_overturns_whatever_it_lifts(name, alpha):
+def test_a_slow_pulse_overturns_every_block_that_uplifts(name, alpha):
     slenderness = [1e-4, 0.01, 0.5, 0.9]
     slow = {"frequency_ratio": 1e-4, "restitution": 0.9, "alpha": alpha}
     assert rocking.peak_response(name, slenderness=slenderness, **slow).overturned.all()
@@ -57,7 +57,7 @@ def test_threshold_of_slow_pulses_tends_to_one(name):
 
 @pytest.mark.parametrize("alpha", [None, 1e-8, 0.4, 1.5])
 @pytest.mark.parametrize("name", SIGNED)
-def test_strong_and_extreme_pulses_have_an_answer(name, alpha):
+def test_strong_and_extreme_pulses_have_a_response(name, alpha):
     slenderness = np.array([1e-4, 1e-3, 0.1, 0.9, 1 - 1e-9, 1 - 1e-12, np.nextafter(1.0, 0.0)])[:, None]
     omega = np.array([1e-4, 1e-2, 1.0, 1e2, 1e4])
     for eta in (0.0, 1e-3, 0.9):
@@ -67,7 +67,7 @@ def test_strong_and_extreme_pulses_have_an_answer(name, alpha):
         np.testing.assert_array_equal(np.isnan(found.peak_rotation), found.overturned)
         standing = found.peak_rotation[~found.overturned]
         assert ((standing >= 0) & (standing < np.inf)).all()
-        assert (found.outcome[:-1] != Outcome.NO_UPLIFT).all()  # one ulp below 1 f itself is rounded
+        assert (found.outcome[:-1] != Outcome.NO_UPLIFT).all()  # one ulp below 1 the rounding of f decides
 
 
 @pytest.mark.parametrize("name", [name for name in PULSE_NAMES if name != "rectangular"])
@@ -76,7 +76,7 @@ def test_peaks_vanish_at_the_onset_of_rocking(name):
     found = rocking.peak_response(name, slenderness=1 - gap, frequency_ratio=3.0, restitution=0.5)
     assert (np.diff(found.peak_rotation) < 0).all()
     assert found.peak_rotation[-1] < 1e-9
-    # at the cap's half-width ~ sqrt(2 gap) the pull is of the order of the gap: rotation like gap x (cap/omega)^2
+    # over the half-width sqrt(2 gap) of uplift the acceleration is of order gap: rotation of order gap^2/omega^2
     if abs(float(get_pulse(name).shape(get_pulse(name).start))) < 1:
         order = np.diff(np.log(found.peak_rotation[2:])) / np.log(0.1)
         assert np.median(order) == pytest.approx(2.0, abs=0.1)
@@ -84,7 +84,7 @@ def test_peaks_vanish_at_the_onset_of_rocking(name):
 
 @pytest.mark.parametrize("name", [name for name in PULSE_NAMES if not name.startswith("ricker")])
 def test_small_flights_under_slow_pulses(name):
-    # the flight is over long before the pulse: the arc from uplift to the next cut grows by e^3000 and more
+    # the flight is much shorter than the pulse: the arc from uplift to the next interval end grows by e^3000 and more
     rng = np.random.default_rng(15)
     n = 600
     gap = 10 ** rng.uniform(-11, -0.5, n)
@@ -123,4 +123,4 @@ def test_response_is_continuous_in_each_group_inside_a_mode():
             gap = np.abs(moved.peak_rotation[same] - here.peak_rotation[same])
             assert np.median(gap) < 1e-8
             assert np.quantile(gap, 0.95) < 1e-6
-            assert gap.max() < 1e-3  # beside a threshold a peak grows like a square root
+            assert gap.max() < 1e-3  # near a threshold the peak varies as a square root

@@ -1,4 +1,4 @@
-"""Searches end: with an error where arithmetic has left the proof on which their bound rests, never with an answer."""
+"""Searches end with an error, without a result, if rounding invalidates the bound on their steps."""
 
 import numpy as np
 import pytest
@@ -23,8 +23,8 @@ def test_search_for_a_zero_ends():
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
-def test_zeros_of_any_order_are_passed_or_found(order):
-    """Far fewer intervals than the bound."""
+def test_zeros_of_any_order_are_found_or_excluded(order):
+    """The number of intervals is far below the bound."""
     rng = np.random.default_rng(order)
     for _ in range(20):
         zero = rng.uniform(0.2, 0.8)
@@ -41,7 +41,7 @@ def test_zeros_of_any_order_are_passed_or_found(order):
 
 @pytest.mark.parametrize("beyond", [1e-6, 1e-3, 0.02, 0.1, 0.3, 0.7])
 def test_zeros_beyond_the_end_are_not_found(beyond):
-    """Also where intervals have become short on the way, and grow again."""
+    """Also where intervals have become short and increase again."""
     for place in np.linspace(0.05, 0.95, 37):
         bowl = np.polynomial.Polynomial([place * place + 1e-4, -2 * place, 1.0])  # almost zero at `place`
         polynomial = bowl * np.polynomial.Polynomial([1.0 + beyond, -1.0])
@@ -55,7 +55,7 @@ def test_zeros_beyond_the_end_are_not_found(beyond):
 def test_a_flight_ends():
     flight = first_flight("sine", 0.5, 3.0, ALPHA)
     steps = step_state(flight)
-    steps["log_precision"] = -3000.0  # steps of no length
+    steps["log_precision"] = -3000.0  # step size 0
     with pytest.raises(SearchError, match="flight"):
         flight_by_steps(flight, steps)
 

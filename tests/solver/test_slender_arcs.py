@@ -1,4 +1,4 @@
-"""Exact arcs of the slender block: no digit lost where the code changes its branch; Taylor steps as second voice."""
+"""Exact arcs of the slender block: accuracy at changes of branch, and comparison with Taylor steps."""
 
 import mpmath
 import numpy as np
@@ -25,7 +25,7 @@ SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(get_pulse(name), Si
 
 
 @pytest.mark.parametrize("h", [0.0, 1e-300, 1e-9, 1e-3, 0.3, 0.5 - 1e-16, 0.5, 0.7, 3.0, 40.0, 300.0])
-def test_hyperbolic_functions_lose_no_digit(h):
+def test_hyperbolic_functions_are_accurate_for_small_arguments(h):
     cosh1, sinh = cosh_minus_one_and_sinh(float(h))
     with mpmath.workprec(200):
         exact = mpmath.mpf(h)
@@ -42,7 +42,7 @@ def test_hyperbolic_functions_are_continuous_where_the_series_ends_and_never_ove
 
 @pytest.mark.parametrize("name", SINUSOIDS)
 @pytest.mark.parametrize("omega", [1e-2, 0.4, 3.0, 30.0])
-def test_series_and_arc_agree_where_one_takes_over(name, omega):
+def test_series_and_arc_agree_at_the_radius_of_the_series(name, omega):
     flight = first_flight(name, 0.5, omega)
     reach = SERIES_RADIUS / float(flight["max_rate"])
     set_angles(flight, float(flight["phase"]) + omega * reach, flight["cosine1"], flight["sine1"])
@@ -78,8 +78,8 @@ def test_series_is_the_solution_in_many_digits(name):
 
 
 @pytest.mark.parametrize("omega", [0.3, 3.0])
-def test_a_short_flight_is_the_same_hopped_or_flown(omega):
-    # landing speeds about the largest that `short_flight` takes on: 2.5 w0 = reach q0
+def test_short_and_long_flight_agree_on_a_short_flight(omega):
+    # initial velocities near the largest that `short_flight` accepts: 2.5 w0 = reach q0
     flight = first_flight("sine", 0.8, omega)
     phase = 0.3
     flight["interval"] = 0
@@ -99,7 +99,7 @@ def test_a_short_flight_is_the_same_hopped_or_flown(omega):
 
 
 @pytest.mark.parametrize("name", SINUSOIDS)
-def test_flights_by_arcs_and_by_taylor_steps(name):
+def test_flights_by_arcs_and_by_taylor_steps_agree(name):
     rng = np.random.default_rng(4)
     compared = 0
     for _ in range(60):
@@ -118,7 +118,7 @@ def test_flights_by_arcs_and_by_taylor_steps(name):
 
 
 @pytest.mark.parametrize("name", SINUSOIDS)
-def test_responses_by_arcs_and_by_taylor_steps(name):
+def test_responses_by_arcs_and_by_taylor_steps_agree(name):
     rng = np.random.default_rng(5)
     n = 1500
     question = {
@@ -134,7 +134,7 @@ def test_responses_by_arcs_and_by_taylor_steps(name):
     np.testing.assert_array_equal(arcs.impacts[counted], steps.impacts[counted])
     np.testing.assert_allclose(steps.uplift_time, arcs.uplift_time, rtol=1e-13, atol=1e-14)
     np.testing.assert_allclose(steps.first_impact_time, arcs.first_impact_time, rtol=1e-9)
-    # next to a threshold a peak amplifies rounding without bound: all but a few are good to ten digits
+    # near a threshold rounding errors of a peak are amplified without bound: most peaks agree to ten digits
     error = np.abs(steps.peak_rotation / np.where(arcs.peak_rotation > 0, arcs.peak_rotation, 1.0) - 1)
     error = error[np.isfinite(error)]
     assert np.median(error) < 2e-14
@@ -142,8 +142,8 @@ def test_responses_by_arcs_and_by_taylor_steps(name):
     assert error.max() < 1e-6
 
 
-def test_a_peak_behind_a_dip_of_the_velocity_counts():
-    """w > 0 at both ends of a monotone stretch, and below zero between them; found among 420,000 random blocks."""
+def test_a_peak_after_a_minimum_of_the_velocity_is_found():
+    """w > 0 at both ends of a monotone interval and negative inside; found among 420,000 random blocks."""
     groups = {
         "slenderness": 0.9716350970804516,
         "frequency_ratio": 0.41023686938728526,

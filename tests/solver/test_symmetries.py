@@ -1,4 +1,4 @@
-"""Symmetries of the equation of motion that the solver has to share."""
+"""Symmetries of the equation of motion in the responses of the solver."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def random_cells(n: int, seed: int) -> dict[str, np.ndarray]:
 
 
 def shifted(pulse: SinusoidalPulse, by: float) -> SinusoidalPulse:
-    """The same acceleration in a phase that starts elsewhere."""
+    """The same acceleration with a shifted phase."""
     terms = tuple((c, w, d - w * by) for c, w, d in pulse.terms)
     stationary = tuple(phi + by for phi in pulse.stationary)
     return SinusoidalPulse(f"shifted {pulse.name}", pulse.start + by, pulse.end + by, stationary, terms)
@@ -73,7 +73,7 @@ def test_half_sine_is_a_window_of_the_cosine():
     np.testing.assert_allclose(other.peak_rotation, one.peak_rotation, rtol=1e-9)
 
 
-def test_one_sinusoid_or_the_same_in_three_parts():
+def test_a_sinusoid_and_its_three_equal_parts_give_equal_responses():
     sine = get_pulse("sine")
     amplitude, multiple, shift = sine.terms[0]
     parts = tuple((share * amplitude, multiple, shift) for share in (0.5, 0.25, 0.25))
@@ -109,14 +109,14 @@ def test_blocks_of_equal_groups_respond_equally(half_diagonal, alpha, slendernes
             )
         )
     one, other = peaks
-    if one.outcome == other.outcome:  # else the groups differ in the last bit, on a boundary
+    if one.outcome == other.outcome:  # otherwise the groups differ in the last bit at a boundary
         np.testing.assert_allclose(one.peak_rotation, other.peak_rotation, rtol=1e-8)
     else:
         beside = slenderness * (1 + np.array([-1e-12, 1e-12]))
-        fates = rocking.peak_response(
+        found = rocking.peak_response(
             "sine", slenderness=beside, frequency_ratio=frequency_ratio, restitution=0.9, alpha=alpha
         )
-        assert fates.outcome[0] != fates.outcome[1]
+        assert found.outcome[0] != found.outcome[1]
 
 
 def test_restitution_does_not_matter_before_the_first_impact():

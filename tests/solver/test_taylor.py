@@ -1,4 +1,4 @@
-"""Taylor steps: the order that they promise, events that no step passes over, and the slender limit."""
+"""Taylor steps: order of accuracy, detection of events, slender limit."""
 
 from itertools import pairwise
 
@@ -48,7 +48,7 @@ def velocity(steps, h: float, lane: int = 3) -> float:
 
 
 def one_lane(coefficients: np.ndarray) -> np.ndarray:
-    """A series in the second of all lanes."""
+    """A series in the second lane."""
     series = np.full((MAX_ORDER + 1, LANES), np.nan)
     series[:, 1] = coefficients
     return series
@@ -84,7 +84,7 @@ def test_coefficients_satisfy_the_equation_of_motion(name, alpha):
 @pytest.mark.parametrize("name", ["sine", "ricker", "mavroeidis_papageorgiou"])
 def test_measured_order(name, alpha, degree):
     lengths, orders = np.geomspace(0.1, 0.2, 7), []
-    for phase in (0.2, 0.7, 1.3, 2.1, 2.9):  # here or there the first term left out may nearly vanish
+    for phase in (0.2, 0.7, 1.3, 2.1, 2.9):  # at some phases the first omitted term is almost zero
         step = step_from(name, 0.2, 0.3, phase, 1.9, alpha)
         error = [abs(rotation(step, h, degree) - rotation(step, h)) for h in lengths]
         orders.append(np.polyfit(np.log(lengths), np.log(error), 1)[0])
@@ -108,7 +108,7 @@ def test_one_step_is_exact_to_rounding(name, alpha):
 
 
 @pytest.mark.parametrize("name", ["sine", "ricker", "c2"])
-def test_the_error_of_a_step_follows_the_precision_asked(name):
+def test_the_error_of_a_step_follows_the_precision(name):
     for precision in (1e-5, 1e-8, 1e-11, 1e-14):
         coarse = step_from(name, 0.2, 0.3, 0.7, 1.9, 0.3, precision=precision)
         h = float(coarse["h"][3])
@@ -121,7 +121,7 @@ def test_the_error_of_a_step_follows_the_precision_asked(name):
         assert int(coarse["order"]) < MAX_ORDER
 
 
-def test_lanes_do_not_know_of_each_other():
+def test_lanes_are_independent():
     alone = [step_from("c1", 0.2, 0.3, 0.7, 1.9, alpha, lane=lane) for lane, alpha in enumerate((0.0, 0.3, 1e-6))]
     together = step_state(pulse_state(rocking.get_pulse("c1")))
     for lane, one in enumerate(alone):
@@ -136,7 +136,7 @@ def test_lanes_do_not_know_of_each_other():
 
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-9, 0.3, 1.5])
-def test_uplift_starts_with_no_acceleration_at_all(alpha):
+def test_acceleration_at_uplift_is_exactly_zero(alpha):
     steps = step_state(pulse_state(rocking.get_pulse("sine")))
     init_block(steps, 0, alpha, 2.0)
     steps["starts_at_uplift"][0], steps["phase"][0], steps["strength"][0], steps["limit"][0] = 1.0, 0.4, -2.5, 1.0
@@ -145,7 +145,7 @@ def test_uplift_starts_with_no_acceleration_at_all(alpha):
     assert steps["z"][3, 0] > 0.0
 
 
-def test_the_bound_of_the_bend_holds_on_the_step():
+def test_the_second_derivative_bound_holds_on_the_step():
     steps = step_from("c2", 0.2, 0.3, 0.7, 1.9, 0.4)
     h = np.linspace(0, float(steps["h"][3]), 200)
     second = np.polynomial.polynomial.polyval(h, np.polynomial.polynomial.polyder(steps["rate"][:MAX_ORDER, 3], 2))
@@ -174,7 +174,7 @@ def test_first_crossing_is_the_first_of_all_roots(roots, scale, falling):
 
 
 @given(root=st.floats(1e-6, 1.0), curve=st.floats(-0.4, 0.4), falling=st.booleans())
-def test_polish_finds_the_zero_and_leaves_out_the_one_at_the_start(root, curve, falling):
+def test_refine_root_excludes_the_zero_at_the_start(root, curve, falling):
     side = -1.0 if falling else 1.0
     series = np.zeros(MAX_ORDER + 1)
     series[1:4] = -side * root, side * (1 - curve * root), side * curve  # side h (h - root)(1 + curve h)
@@ -190,7 +190,7 @@ def test_polish_finds_the_zero_and_leaves_out_the_one_at_the_start(root, curve, 
 
 
 @pytest.mark.parametrize("name", PULSE_NAMES)
-def test_slender_limit_is_reached_like_alpha_squared(name):
+def test_error_of_the_slender_limit_is_of_order_alpha_squared(name):
     rng = np.random.default_rng(9)
     n = 60
     question = {
@@ -216,7 +216,7 @@ def test_slender_limit_is_reached_like_alpha_squared(name):
 
 
 @pytest.mark.parametrize("name", SIGNED)
-def test_fates_reach_the_slender_limit(name):
+def test_outcomes_tend_to_those_of_the_slender_limit(name):
     rng = np.random.default_rng(10)
     n = 300
     question = {
@@ -231,8 +231,8 @@ def test_fates_reach_the_slender_limit(name):
 
 
 @pytest.mark.parametrize("pulse", ["sine", "ricker"])
-def test_terms_beyond_the_degree_do_not_count(pulse, monkeypatch):
-    """Series of a lower degree leave rows of the scratch memory unused, whatever these hold."""
+def test_terms_beyond_the_degree_are_not_used(pulse, monkeypatch):
+    """Series of a lower degree do not use the remaining rows of the solver state."""
     rng, n = np.random.default_rng(5), 4000
     groups = {"slenderness": rng.uniform(0.05, 0.99, n), "frequency_ratio": rng.uniform(0.3, 8.0, n)}
     groups |= {"restitution": rng.uniform(0.3, 0.95, n), "alpha": rng.uniform(0.05, 0.6, n)}

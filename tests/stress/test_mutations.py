@@ -1,4 +1,4 @@
-"""The mutation trial itself: what it changes, and how it tells a change that is noticed from one that is not."""
+"""The mutation trial: which changes it makes, and that it distinguishes changes that a test notices from others."""
 
 import ast
 import subprocess
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from stress.mutations import AREAS, ROOT, drawn, mutants_of
+from stress.mutations import AREAS, ROOT, draw_mutants, mutants_of
 
 SOURCE = """def clipped(x: float, low: float = 0.0) -> float:
     if x < low and low != 1:
@@ -48,10 +48,10 @@ def test_every_operator_constant_and_sign_is_changed(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("area", AREAS, ids=lambda area: area.name)
-def test_areas_name_what_exists_and_changes_are_python(area) -> None:
+def test_areas_name_existing_files_and_changes_are_valid_python(area) -> None:
     assert all(list(ROOT.glob(pattern)) for pattern in area.sources)
     assert all(list(ROOT.glob(pattern)) for pattern in (*area.first, *area.then))
-    first, again = drawn(area, 30, seed=1), drawn(area, 30, seed=1)
+    first, again = draw_mutants(area, 30, seed=1), draw_mutants(area, 30, seed=1)
     assert first == again
     assert len({(mutant.path, mutant.start) for mutant in first}) == 30
     for mutant in first:
@@ -59,22 +59,22 @@ def test_areas_name_what_exists_and_changes_are_python(area) -> None:
         ast.parse(text[: mutant.start] + mutant.new + text[mutant.start + len(mutant.old) :])
 
 
-def told(folder: Path, timeout: int) -> str:
-    """What the trial says of the tests of a folder."""
-    program = "import pathlib, sys; from stress.mutations import tested; "
-    program += "print(*tested(pathlib.Path(sys.argv[1]), ('.',), float(sys.argv[2])))"
+def result_of_trial(folder: Path, timeout: int) -> str:
+    """Return the result of the trial for the tests of a folder."""
+    program = "import pathlib, sys; from stress.mutations import run_tests;  "
+    program += "print(*run_tests(pathlib.Path(sys.argv[1]), ('.',), float(sys.argv[2])))"
     command = [sys.executable, "-c", program, str(folder), str(timeout)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()[0]
 
 
 @pytest.mark.parametrize(("change", "expected"), [("x - low|x + low", "survived"), ("max|min", "noticed")])
-def test_changes_are_told_by_the_tests(tmp_path: Path, change: str, expected: str) -> None:
+def test_a_change_is_noticed_if_a_test_fails(tmp_path: Path, change: str, expected: str) -> None:
     (tmp_path / "source.py").write_text(SOURCE.replace(*change.split("|")))
     (tmp_path / "test_source.py").write_text(TEST)
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
-    assert told(tmp_path, 60) == expected
+    assert result_of_trial(tmp_path, 60) == expected
 
 
-def test_a_change_that_never_ends_is_told(tmp_path: Path) -> None:
+def test_a_change_that_never_ends_is_a_timeout(tmp_path: Path) -> None:
     (tmp_path / "test_source.py").write_text("def test_waits():\n    while True:\n        pass\n")
-    assert told(tmp_path, 3) == "hangs"
+    assert result_of_trial(tmp_path, 3) == "timeout"

@@ -1,4 +1,4 @@
-"""Claims about blocks that are not slender: numbers that physics fixes, and verdicts that follow from numbers."""
+"""Claims about blocks that are not slender: numbers fixed by physics, and verdicts derived from numbers."""
 
 import json
 from pathlib import Path
@@ -25,13 +25,13 @@ def test_verdict_is_one_of_three() -> None:
         Claim("key", "place", "printed", "found", "perhaps")
 
 
-def test_thresholds_tend_to_the_closed_forms_with_the_square_of_alpha() -> None:
+def test_thresholds_converge_to_the_closed_forms_with_the_square_of_alpha() -> None:
     claim = by_key(non_slender.convergence(ETA))["slender-limit"]
     assert claim.verdict == HOLDS
     assert 1.98 < claim.numbers["lowest_order"] <= claim.numbers["highest_order"] < 2.02
 
 
-def test_dependence_on_alpha_grows_with_it_and_is_small_before_the_tip() -> None:
+def test_dependence_on_alpha_increases_with_alpha_and_is_small_before_the_tip() -> None:
     claims = by_key(non_slender.dependence_on_alpha(ETA))
     numbers = claims["alpha-thresholds"].numbers
     for pulse in ("sine", "cosine"):
@@ -45,26 +45,26 @@ def test_dependence_on_alpha_grows_with_it_and_is_small_before_the_tip() -> None
     assert claims["alpha-tip"].numbers["sine_0_deg"] == pytest.approx(omega[falls_after_impact].max(), abs=0.051)
 
 
-def test_uplift_is_decided_by_the_tangent() -> None:
+def test_uplift_depends_on_the_tangent_of_alpha() -> None:
     claim = by_key(non_slender.uplift(ETA))["uplift"]
     assert claim.verdict == HOLDS
     assert claim.numbers["exact"] == claim.numbers["angles"] == 80
 
 
-def test_expanded_equation_as_printed_fails_and_corrected_holds() -> None:
+def test_expanded_equation_is_wrong_as_printed_and_correct_as_corrected() -> None:
     claim = by_key(non_slender.expanded_equation())["expanded-equation"]
     assert claim.verdict == FAILS
     assert claim.numbers["corrected"] == pytest.approx(claim.numbers["equation_of_motion"], abs=1e-15)
 
 
 @pytest.mark.parametrize(("moved", "expected"), [(0, HOLDS), (1, IN_RANGE), (4, FAILS)])
-def test_similar_blocks_hold_only_if_each_threshold_does(moved: int, expected: str) -> None:
+def test_claim_of_similar_blocks_requires_every_threshold(moved: int, expected: str) -> None:
     above = np.array([1, 0, 1, 1])
-    falls = np.where(np.arange(4) < moved, 1 - above, above)
+    overturns = np.where(np.arange(4) < moved, 1 - above, above)
     figure = xr.Dataset(
         {
             "threshold_overturns_above": ("threshold", above),
-            "threshold_falls_above": ("threshold", falls),
+            "threshold_falls_above": ("threshold", overturns),
             "threshold_falls_below": ("threshold", 1 - above),
         },
         coords={"half_diagonal": ("block", [0.5, 1.0])},
@@ -77,7 +77,7 @@ def test_similar_blocks_hold_only_if_each_threshold_does(moved: int, expected: s
     ("spreads", "expected"),
     [([[0.3, 0.1], [0.4, 0.01]], HOLDS), ([[0.4, 0.01], [0.3, 0.1]], IN_RANGE), ([[0.3, 0.4], [0.4, 0.1]], FAILS)],
 )
-def test_histories_are_judged_by_how_much_closer_they_come(spreads: list[list[float]], expected: str) -> None:
+def test_verdict_of_histories_depends_on_the_reduction_of_the_spread(spreads: list[list[float]], expected: str) -> None:
     figures = [
         xr.Dataset({"spread": (("pulse", "group_set"), [spread])}, attrs={"pulse_names": "sine", "slenderness": s})
         for spread, s in zip(spreads, (0.5, 0.75), strict=True)
@@ -85,7 +85,7 @@ def test_histories_are_judged_by_how_much_closer_they_come(spreads: list[list[fl
     assert by_key(small_rotations.histories(figures))["histories"].verdict == expected
 
 
-def test_groups_of_6_1_bring_blocks_of_any_slenderness_together() -> None:
+def test_groups_of_6_1_reduce_the_spread_over_slenderness() -> None:
     claims = by_key(
         [
             *small_rotations.practical_similarity(["sine", "cosine"], ETA),
@@ -102,7 +102,7 @@ def test_groups_of_6_1_bring_blocks_of_any_slenderness_together() -> None:
     assert claims["groups-for-all-cases"].numbers["sine, 0.2 to 0.35"] < 0.5
 
 
-def test_pure_rocking_needs_more_friction_the_stockier_the_block() -> None:
+def test_pure_rocking_needs_more_friction_with_increasing_alpha() -> None:
     numbers = by_key(small_rotations.pure_rocking(["sine"], ETA))["pure-rocking"].numbers
     medians = [numbers[f"median_friction_{angle}_deg"] for angle in (10, 20, 30, 40)]
     for friction, angle in zip(medians, (10, 20, 30, 40), strict=True):

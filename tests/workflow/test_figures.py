@@ -1,4 +1,4 @@
-"""Figures: drawn twice they are the same file, and their data say what the captions claim."""
+"""Figures: reproducible files, and data that agree with the captions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
 
 @pytest.mark.parametrize("name", ["figure-01", "table-1"])
-def test_the_same_figure_has_the_same_bytes(name: str, smoke_results: Path, tmp_path: Path) -> None:
+def test_figure_drawn_twice_has_equal_bytes(name: str, smoke_results: Path, tmp_path: Path) -> None:
     paths = {kind: tmp_path / f"{name}.{kind}" for kind in ("svg", "png", "nc")}
     written = read_dataset(smoke_results / f"figures/{name}.nc").attrs
     provenance = {key: written[key] for key in ("code_sha256", "settings_sha256")}
@@ -37,7 +37,7 @@ def test_the_same_figure_has_the_same_bytes(name: str, smoke_results: Path, tmp_
 
 
 @pytest.mark.parametrize("name", CONFIGURED)
-def test_figure_says_which_values_are_ours_and_has_a_caption(name: str, smoke_results: Path) -> None:
+def test_figure_lists_values_chosen_here_and_has_a_caption(name: str, smoke_results: Path) -> None:
     attributes = read_dataset(smoke_results / f"figures/{name}.nc").attrs
     assert attributes.get("values_chosen_here", "") == ", ".join(CONFIGURED[name].get("ours", {}))
     assert f"[{name}](#" in (PROJECT / "docs/figures.md").read_text()
@@ -53,7 +53,7 @@ def test_two_blocks_collapse_to_the_master_curve(smoke_results: Path) -> None:
     np.testing.assert_allclose(data.rotation[0], master, atol=1e-9)
 
 
-def test_dimensional_blocks_have_the_groups_they_were_given(smoke_results: Path) -> None:
+def test_dimensional_blocks_have_the_given_groups(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-05.nc")
     gravity = 9.80665
     np.testing.assert_allclose(gravity * data.alpha / data.peak_acceleration, data.attrs["slenderness"], rtol=1e-12)
@@ -63,7 +63,7 @@ def test_dimensional_blocks_have_the_groups_they_were_given(smoke_results: Path)
     assert np.ptp(data.alpha.values) > 0.1
 
 
-def test_figure_2_shows_what_its_cases_are(smoke_results: Path) -> None:
+def test_cases_of_figure_2_have_their_response_sequences(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-02.nc")
     for i, case in enumerate(data.attrs["case_names"].split()):
         overturning, surviving = data.rotation[i]
@@ -83,7 +83,7 @@ def test_closed_form_of_figure_8_is_exact_on_its_main_branch(smoke_results: Path
     known = np.isfinite(spectrum)
     assert known.sum() > 40
     np.testing.assert_allclose(closed[known], spectrum[known], rtol=1e-10)
-    # and is not where the first impact falls inside the pulse
+    # and is not exact where the first impact is within the pulse
     below = data.sel(slenderness=0.60, method="nearest").where(data.frequency_ratio > 6, drop=True)
     assert np.nanmin(np.abs(below.closed_form.values / below.spectrum[0].values - 1)) > 0.05
 
@@ -98,7 +98,7 @@ def test_closed_form_of_figure_8_is_missing_where_the_block_overturns_without_im
     assert np.nanmin(closed) > 0
 
 
-def test_integration_with_dimensions_falls_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
+def test_integration_in_si_units_overturns_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-09.nc")
     above = data.threshold_overturns_above.values
     assert set(above) == {0, 1}
@@ -125,7 +125,7 @@ def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
     assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
 
 
-def test_upper_safe_region_of_figure_9_lies_above_the_loop(smoke_results: Path) -> None:
+def test_upper_safe_region_of_figure_9_is_above_the_overturning_region(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-09.nc")
     for k in range(2):
         found = data.isel(threshold=(data.threshold_pulse == k).values)
@@ -162,7 +162,7 @@ def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Datase
 
 
 @pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])
-def test_boundaries_of_figure_10_tend_to_the_slender_limit(overturning_at_angles: xr.Dataset, pulse: int) -> None:
+def test_boundaries_of_figure_10_converge_to_the_slender_limit(overturning_at_angles: xr.Dataset, pulse: int) -> None:
     data = overturning_at_angles
     omega = np.linspace(1.5, 2.4, 10)
     slender, *others = (
@@ -186,7 +186,7 @@ def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> No
 
 
 @pytest.mark.parametrize("name", ["figure-11", "figure-12"])
-def test_blocks_are_more_alike_in_the_groups_of_6_1(name: str, smoke_results: Path) -> None:
+def test_histories_are_closer_in_the_groups_of_6_1(name: str, smoke_results: Path) -> None:
     data = read_dataset(smoke_results / f"figures/{name}.nc")
     assert np.isfinite(data.rotation).all()
     slender, rigid = (
@@ -201,7 +201,7 @@ def test_blocks_are_more_alike_in_the_groups_of_6_1(name: str, smoke_results: Pa
     assert np.all(of_slender.max(axis=(1, 2)) < 0.06 * np.abs(data.slender_rotation.values).max(axis=1))
 
 
-def test_blocks_of_figure_11_share_the_groups_that_they_should() -> None:
+def test_blocks_of_figure_11_have_equal_groups() -> None:
     pulse, s, omega, eta, alpha = "cosine", 0.6, 4.0, 0.9, np.radians(20)
     data = similar_histories.data(
         pulses=[pulse], restitution=eta, alpha_deg=[20], slenderness=s, frequency_ratio=omega, duration=5.0
@@ -233,7 +233,7 @@ def test_spectra_of_figure_13_are_rows_of_the_cubes_in_their_groups(smoke_result
         assert np.isnan(slender).any()
 
 
-def test_islands_of_figure_4_lie_where_expected(smoke_results: Path) -> None:
+def test_islands_of_figure_4_are_in_the_expected_region(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-04.nc")
     assert data.sizes["point"] > 50
     assert 1 / data.island_amplitude.max() > 0.89

@@ -28,7 +28,7 @@ def copy_of_run(smoke_run: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(smoke_run, tmp_path / "run"))
 
 
-def test_every_promised_product_is_made_and_listed(smoke_results: Path) -> None:
+def test_every_product_is_made_and_listed(smoke_results: Path) -> None:
     manifest = json.loads((smoke_results / "manifest.json").read_text())
     figures = [
         *(f"figure-0{k}" for k in range(1, 10)),
@@ -58,7 +58,7 @@ def test_products_carry_the_digests_of_the_manifest(smoke_results: Path) -> None
     assert cube.attrs["settings_sha256"] == entry["settings_sha256"]
 
 
-def test_the_products_were_tested(smoke_results: Path) -> None:
+def test_products_were_tested(smoke_results: Path) -> None:
     lines = (smoke_results / "checks.txt").read_text().splitlines()
     assert len(lines) > 60
     assert all(line.startswith(("passed ", "code ")) for line in lines)
@@ -78,7 +78,7 @@ def test_cubes_made_again_have_the_same_bytes(copy_of_run: Path) -> None:
     assert digests(copy_of_run / "results/spectra") == before
 
 
-def test_a_changed_module_reruns_what_depends_on_it_and_nothing_else(smoke_run: Path, tmp_path: Path) -> None:
+def test_changed_module_reruns_only_dependent_jobs(smoke_run: Path, tmp_path: Path) -> None:
     project = tmp_path / "project"
     for folder in ("rocking", "workflow", "profiles"):
         shutil.copytree(PROJECT / folder, project / folder, ignore=shutil.ignore_patterns("__pycache__"))
@@ -107,7 +107,7 @@ def test_other_configurations_are_valid(name: str, tmp_path: Path) -> None:
     assert planned.returncode == 0, planned.stdout
 
 
-def test_each_rule_documents_itself() -> None:
+def test_each_rule_has_a_message_log_and_benchmark() -> None:
     linted = snakemake(PROJECT, "--lint")
     remarks = set(re.findall(r"^ {4}\* (.*?):?$", linted.stdout, flags=re.MULTILINE))
     assert {remark for remark in remarks if "PYTHONPATH" not in remark} == {

@@ -1,4 +1,4 @@
-"""Configurations: what no run could finish is refused before the first job, in one line with key, value and allowed."""
+"""Invalid configurations are refused before the first job, in one line with key, value and allowed values."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_configurations_of_the_repository_are_accepted(path: Path) -> None:
         ("figures/figure-scale-law/ours/reference", 0.8, "reference = 0.8; allowed: one of its [0.85, 0.9]"),
     ],
 )  # fmt: skip
-def test_a_wrong_value_is_refused_in_one_line(place: str, value: Any, message: str) -> None:
+def test_invalid_value_is_refused_in_one_line(place: str, value: Any, message: str) -> None:
     tracemalloc.start()
     with pytest.raises(ConfigurationError) as refused:
         check(smoke(place, value))
@@ -95,7 +95,7 @@ def test_a_wrong_value_is_refused_in_one_line(place: str, value: Any, message: s
     assert peak < 20e6  # no axis is made of what is refused
 
 
-def test_the_workflow_ends_with_that_line_before_any_job(tmp_path: Path) -> None:
+def test_workflow_ends_with_the_error_before_any_job(tmp_path: Path) -> None:
     written = tmp_path / "wrong.yaml"
     written.write_text(yaml.safe_dump(smoke("grid/frequency_ratio/low", 50.0)))
     for module in ("snakemake", "workflow.run"):

@@ -1,4 +1,4 @@
-"""The workflow after what goes wrong: killed runs, two runs at once, products that are missing, damaged or replaced."""
+"""Recovery of the workflow from killed runs, two runs at once, and missing, damaged or replaced products."""
 
 from __future__ import annotations
 
@@ -61,7 +61,9 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("name", "spoil", "job"), FAULTS, ids=lambda value: getattr(value, "__name__", None))
-def test_a_fault_is_named_and_its_job_forgotten(name: str, spoil: Callable[[Path], None], job: str, run: Path) -> None:
+def test_wrong_product_is_named_and_its_record_deleted(
+    name: str, spoil: Callable[[Path], None], job: str, run: Path
+) -> None:
     records = set((run / "results/.records").rglob("*.json"))
     assert [*problems(run)] == []
     assert [*forget_false_records(run)] == []
@@ -73,7 +75,7 @@ def test_a_fault_is_named_and_its_job_forgotten(name: str, spoil: Callable[[Path
 
 
 @pytest.mark.parametrize("spoil", [flipped, emptied])
-def test_a_damaged_record_is_forgotten_too(spoil: Callable[[Path], None], run: Path) -> None:
+def test_damaged_record_is_deleted(spoil: Callable[[Path], None], run: Path) -> None:
     record = run / "results/.records/figures/figure-04.json"
     spoil(record)
     assert [*forget_false_records(run)] != []
@@ -89,7 +91,7 @@ def test_each_missing_product_or_record_is_planned(run: Path) -> None:
 
 
 @pytest.mark.slow
-def test_one_command_makes_again_what_is_missing_damaged_or_replaced(run: Path) -> None:
+def test_one_command_remakes_missing_damaged_and_replaced_products(run: Path) -> None:
     before = content(run)
     spoiled = {CUBE: flipped, FIGURE: deleted, "figures/figure-03.png": flipped, "manifest.json": replaced}
     for name, spoil in spoiled.items():
@@ -107,7 +109,7 @@ def test_one_command_makes_again_what_is_missing_damaged_or_replaced(run: Path) 
 
 
 @pytest.mark.slow
-def test_a_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Path, tmp_path: Path) -> None:
+def test_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Path, tmp_path: Path) -> None:
     folder = project(tmp_path / "project")
     for part in ("results", "logs", ".snakemake"):
         shutil.copytree(smoke_run / part, folder / part)
@@ -121,6 +123,20 @@ def test_a_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Pat
     recovered = make_reproduce(folder)
     assert recovered.returncode == 0, recovered.stdout
     assert content(folder) == before
+
+
+def test_temporary_files_of_jobs_lie_in_the_folder_of_the_run_and_are_deleted_by_the_next_run(tmp_path: Path) -> None:
+    job = "import tempfile; print(tempfile.mkstemp()[1])"
+    (tmp_path / "Snakefile").write_text(f"rule all:\n    shell: {f'{sys.executable} -c {job!r}'!r}\n")
+    command = [sys.executable, "-m", "workflow.run", "--cores", "1", "--quiet", "all", "--directory", tmp_path / "run"]
+    environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
+    found = []
+    for _ in range(2):
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        found.append(Path(done.stdout.strip()))
+        assert [*(tmp_path / "run/.snakemake/tmp").iterdir()] == found[-1:]
+    assert found[0] != found[1]
 
 
 @pytest.fixture
@@ -139,23 +155,23 @@ def holder(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         process.kill()
 
 
-def test_a_second_run_is_refused_until_the_first_is_gone(
+def test_second_run_is_refused_until_the_first_has_ended(
     holder: subprocess.Popen[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("workflow.run_lock.PATIENCE", 0.1)
-    with pytest.raises(RunningError, match=rf"another run \(process {holder.pid}\) is at work here"):
+    monkeypatch.setattr("workflow.run_lock.LOCK_TIMEOUT", 0.1)
+    with pytest.raises(RunningError, match=rf"another run \(process {holder.pid}\) is active here"):
         acquire(tmp_path)
     for module in ("workflow.run", "snakemake"):
         refused = snakemake(tmp_path, module=module)
         assert refused.returncode == 1
-        assert f"another run (process {holder.pid}) is at work here" in refused.stdout
+        assert f"another run (process {holder.pid}) is active here" in refused.stdout
     assert not (tmp_path / "results").exists()
     holder.send_signal(signal.SIGKILL)
     holder.wait()
     acquire(tmp_path)
 
 
-def test_a_job_ends_with_its_run_and_holds_the_folder_until_then(tmp_path: Path) -> None:
+def test_job_ends_with_its_run_and_locks_the_folder_until_then(tmp_path: Path) -> None:
     (tmp_path / ".snakemake").mkdir()
     job = (
         "import time; from workflow.run_lock import join_run; join_run(); print('joined', flush=True); time.sleep(600)"

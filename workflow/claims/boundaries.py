@@ -1,4 +1,4 @@
-"""Claims of section 3 on the overturning curves: each closed form against curves traced with the solver."""
+"""Claims of section 3 on the overturning curves: closed forms compared with curves traced with the solver."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rocking.solver.peak_response import peak_response
 from workflow.claims.claim import FAILS, IN_RANGE, Claim, verdict
 
 AGREEMENT = 1e-9
-"""Difference in 1/a up to which a traced and a closed-form boundary count as the same curve [-]."""
+"""Difference in 1/a up to which a traced and a closed-form boundary are considered the same curve [-]."""
 
 
 def exact_curves(boundaries: Sequence[xr.Dataset]) -> list[Claim]:
@@ -51,7 +51,7 @@ def exact_curves(boundaries: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def completeness(cubes: Sequence[xr.Dataset]) -> list[Claim]:
-    """Whether the closed forms give the fate of every node of the spectrum cubes."""
+    """Whether the closed forms give the outcome of every node of the spectrum cubes."""
     missed, total, numbers = 0, 0, {}
     place = np.empty((0, 2))
     impacts: set[int] = set()
@@ -89,7 +89,7 @@ def completeness(cubes: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def limit() -> list[Claim]:
-    """(3.31): the first impact falls on the end of the pulse; and where that is."""
+    """(3.31): the curve on which the first impact coincides with the end of the pulse."""
     omega = np.linspace(0.5, 15.0, 581)
     a = limit_amplitude(omega)
     step = 1e-9
@@ -105,7 +105,7 @@ def limit() -> list[Claim]:
         Claim(
             key="limit-separates",
             place="section 3d, (3.31)",
-            printed="below (3.31) the first impact falls inside the pulse, above it after the pulse",
+            printed="below (3.31) the first impact is within the pulse, above it after the pulse",
             found=f"at {separates.mean():.2%} of {omega.size} frequency ratios from 0.5 to 15 the first impact changes "
             f"sides within a relative {step:.0e} of the curve",
             verdict=verdict(bool(separates.all()), somewhere=bool(separates.any())),
@@ -115,7 +115,7 @@ def limit() -> list[Claim]:
             key="limit-0.4",
             place="section 4a, below (4.13)",
             printed="(3.31) corresponds roughly to g alpha/a_g = 0.4",
-            found=f"1/a falls from {1 / a[0]:.2f} at omega = 0.5 through "
+            found=f"1/a decreases from {1 / a[0]:.2f} at omega = 0.5 through "
             f"{1 / float(limit_amplitude(3.0)):.2f} at 3 to {1 / a[-1]:.2f} at 15; within 10 % of 0.4 for omega from "
             f"{inside[0]:.2f} to {inside[-1]:.2f}",
             verdict=IN_RANGE,

@@ -1,4 +1,4 @@
-"""A quantitative claim of the paper, what we found, and the verdict."""
+"""A quantitative claim of the paper, the result, and the verdict."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Claim:
     place : str
         Section and equation of the paper.
     printed : str
-        What the paper says, in our words or with its numbers.
+        The statement of the paper, in short or with its numbers.
     found : str
         What we found, with the range where it holds.
     verdict : str
@@ -43,10 +43,10 @@ class Claim:
             raise ValueError(f"{self.key}: verdict {self.verdict!r} is none of {VERDICTS}")
 
     def record(self) -> dict[str, Any]:
-        """Plain mapping; numbers to six digits, which rounding on another machine does not change."""
+        """A mapping for JSON; numbers with six digits, so that rounding on other machines does not change them."""
         return asdict(self) | {"numbers": {name: float(f"{value:.6g}") for name, value in self.numbers.items()}}
 
 
 def verdict(everywhere: bool, somewhere: bool = True) -> str:
-    """`HOLDS` if it holds everywhere that was looked at, `IN_RANGE` if in a part that `found` states."""
+    """`HOLDS` if it holds everywhere that was examined, `IN_RANGE` if it holds in a part that `found` states."""
     return HOLDS if everywhere else IN_RANGE if somewhere else FAILS

@@ -18,20 +18,20 @@ ANGLES = (5, 10, 15, 20, 30)
 """Slenderness angles compared with the slender limit [deg]."""
 
 TIP_ANGLES = (0, 5, 10, 15, 20)
-"""Slenderness angles at which the tip of the loop is found [deg]; at 30 it has left practice under the sine."""
+"""Slenderness angles at which the tip of the overturning region is determined [deg]."""
 
 SMALL = 0.05
-"""Relative change that counts as small [-]; the paper gives no number."""
+"""Relative change that is considered small [-]; the paper gives no number."""
 
 BEFORE_TIP = {"sine": (1.0, 2.0, 3.0, 4.0), "cosine": (1.0, 1.5, 2.0, 2.5)}
-"""Frequency ratios well before the tip of the loop inside which blocks overturn after impacts [-]."""
+"""Frequency ratios well before the tip of the region of overturning after impacts [-]."""
 
 BEYOND = {"sine": (5.0, 6.0, 8.0), "cosine": (3.0, 4.0, 5.0)}
 """Frequency ratios around the tip and beyond it [-]."""
 
 
 def collapse(figure: xr.Dataset) -> list[Claim]:
-    """Figure 9: thresholds of two blocks, each integrated with its own dimensions, on one curve."""
+    """Figure 9: thresholds of two blocks, each integrated in SI units, on one curve."""
     above = figure.threshold_overturns_above.values
     as_stated = (figure.threshold_falls_above.values == above) & (figure.threshold_falls_below.values == 1 - above)
     sizes = " and ".join(f"{R:g}" for R in figure.half_diagonal.values)
@@ -42,7 +42,7 @@ def collapse(figure: xr.Dataset) -> list[Claim]:
             place="section 5, (5.3), figure 9",
             printed="overturning plots of geometrically similar blocks of different size collapse to one curve",
             found=f"blocks of R = {sizes} m at alpha = {np.degrees(figure.attrs['alpha']):.0f} degrees, integrated "
-            f"with their dimensions by (2.2), change their fate within a relative {step:.0e} of the one curve at "
+            f"with their dimensions by (2.2), change their outcome within a relative {step:.0e} of the one curve at "
             f"{int(as_stated.sum())} of {as_stated.size} thresholds",
             verdict=verdict(bool(as_stated.all()), somewhere=bool(as_stated.any())),
             numbers={"thresholds": as_stated.size, "on_the_curve": int(as_stated.sum()), "step": step},
@@ -51,7 +51,7 @@ def collapse(figure: xr.Dataset) -> list[Claim]:
 
 
 def dependence_on_alpha(restitution: float) -> list[Claim]:
-    """Thresholds and tips of figure 10 against those of the slender limit."""
+    """Thresholds and tips of figure 10 compared with those of the slender limit."""
     before = {pulse: _changes(pulse, BEFORE_TIP[pulse], restitution) for pulse in BEFORE_TIP}
     beyond = {pulse: _changes(pulse, BEYOND[pulse], restitution) for pulse in BEYOND}
     small = all(found[angle] < SMALL for found in before.values() for angle in ANGLES if angle <= 15)
@@ -130,7 +130,7 @@ def _listed(changes: Mapping[int, float]) -> str:
 
 
 def convergence(restitution: float) -> list[Claim]:
-    """How the thresholds under the sine tend to the closed forms of section 3 as alpha falls."""
+    """Convergence of the thresholds under the sine to the closed forms of section 3 as alpha decreases."""
     angles = (8.0, 4.0, 2.0)
     differences = np.array([list(_differences(angle, restitution)) for angle in angles])
     orders = np.log2(differences[:-1] / differences[1:])
@@ -139,8 +139,8 @@ def convergence(restitution: float) -> list[Claim]:
             key="slender-limit",
             place="section 5, figure 10",
             printed="as alpha decreases the curves of the sine converge to the closed forms for slender blocks",
-            found="the distance of the thresholds from (3.10), (3.18) and (3.20) with (3.21) falls with alpha to the "
-            f"power {orders.min():.3f} to {orders.max():.3f} between {angles[0]:g} and {angles[-1]:g} degrees; at "
+            found="the distance of the thresholds from (3.10), (3.18) and (3.20) with (3.21) decreases with alpha to "
+            f"the power {orders.min():.3f} to {orders.max():.3f} between {angles[0]:g} and {angles[-1]:g} degrees; at "
             f"{angles[-1]:g} degrees it is at most {100 * differences[-1].max():.2g} %",
             verdict=verdict(bool(np.all(np.abs(orders - 2) < 0.2)), somewhere=bool(np.all(orders > 0))),
             numbers={"lowest_order": orders.min(), "highest_order": orders.max(), "largest": differences[-1].max()},
@@ -160,18 +160,18 @@ def _differences(angle: float, restitution: float) -> Iterator[float]:
 
 
 def uplift(restitution: float) -> list[Claim]:
-    """What starts the rocking of a block that is not slender."""
+    """Condition of uplift of a block that is not slender."""
     angles = np.radians(np.arange(1, 81))
     step = 1e-12
 
     def lifts(acceleration: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether (2.2) turns a block at rest off its corner, a pulse to the right: about O, theta < 0."""
+        """Whether a block at rest uplifts by (2.2), for a pulse to the right: about O, theta < 0."""
         return np.sin(angles) - acceleration * np.cos(angles) < 0
 
     exact = ~lifts(np.tan(angles) * (1 - step)) & lifts(np.tan(angles) * (1 + step))
-    question = {"frequency_ratio": 3.0, "restitution": restitution, "alpha": angles}
+    groups = {"frequency_ratio": 3.0, "restitution": restitution, "alpha": angles}
     for pulse in BEFORE_TIP:
-        starts = [peak_response(pulse, slenderness=1 + sign * step, **question).outcome for sign in (-1, 1)]
+        starts = [peak_response(pulse, slenderness=1 + sign * step, **groups).outcome for sign in (-1, 1)]
         exact &= (starts[0] != Outcome.NO_UPLIFT) & (starts[1] == Outcome.NO_UPLIFT)
     slender = float(np.tan(angles[19]) / angles[19] - 1)
     return [
@@ -189,7 +189,7 @@ def uplift(restitution: float) -> list[Claim]:
 
 
 def expanded_equation() -> list[Claim]:
-    """The second line of (5.1) against (2.2)."""
+    """The second line of (5.1) compared with (2.2)."""
     alpha, theta, u = 0.3, -0.1, 0.2
     exact = np.sin(alpha + theta) - u * np.cos(alpha + theta)  # (2.2), theta < 0
 

@@ -51,7 +51,7 @@ def orientation() -> list[Claim]:
 
 
 def collapse(figure: xr.Dataset) -> list[Claim]:
-    """Figure 5 collapses to figure 6: two blocks, each integrated with its own dimensions."""
+    """Figure 5 collapses to figure 6: two blocks, each integrated in SI units."""
     rotation = figure.rotation.values
     peak = float(np.abs(rotation).max())
     between = float(np.abs(rotation[0] - rotation[1]).max()) / peak

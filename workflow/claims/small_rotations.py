@@ -1,4 +1,4 @@
-"""Claims of section 6: how nearly blocks of any slenderness are one in the groups of (6.1), and where it ends."""
+"""Claims of section 6: accuracy and limits of the groups of (6.1) for blocks of any slenderness."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SLENDERNESS = np.linspace(0.20, 0.98, 79)
 OMEGA = np.geomspace(1.0, 8.0, 60)
 
 PRACTICAL = 0.05
-"""Spread over alpha, relative to the slender limit, up to which peaks count as equal in practice [-]; ours."""
+"""Spread over alpha, relative to the slender limit, up to which peaks are considered equal [-]; chosen here."""
 
 BANDS = ((0.20, 0.35), (0.35, 0.50), (0.50, 0.65), (0.65, 0.80), (0.80, 1.00))
 
@@ -37,32 +37,32 @@ def _peaks(pulse: str, restitution: float) -> dict[str, Floats]:
     shared = {
         "4.11": (s * tangent, s),
         "6.1": (s, s / np.sinc(ALPHA / np.pi)),
-    }  # what (2.2) is asked, and theta's scale
+    }  # slenderness group of (2.2), and scale of theta
     return {
         number: scale
         * peak_response(
-            pulse, slenderness=asked, frequency_ratio=OMEGA[:, None], restitution=restitution, alpha=ALPHA
+            pulse, slenderness=group, frequency_ratio=OMEGA[:, None], restitution=restitution, alpha=ALPHA
         ).peak_rotation
-        for number, (asked, scale) in shared.items()
+        for number, (group, scale) in shared.items()
     }
 
 
 def _spreads(pulse: str, restitution: float) -> tuple[dict[str, Floats], NDArray[np.bool_]]:
-    """Spread over alpha relative to the slender limit (slenderness, omega), and where all blocks stand."""
+    """Spread over alpha relative to the slender limit (slenderness, omega), and where all blocks survive."""
     peaks = _peaks(pulse, restitution)
-    stands = np.all([np.isfinite(peak).all(axis=-1) for peak in peaks.values()], axis=0)
-    return {number: np.ptp(peak, axis=-1) / peak[..., 0] for number, peak in peaks.items()}, stands
+    survive = np.all([np.isfinite(peak).all(axis=-1) for peak in peaks.values()], axis=0)
+    return {number: np.ptp(peak, axis=-1) / peak[..., 0] for number, peak in peaks.items()}, survive
 
 
 def practical_similarity(pulses: Sequence[str], restitution: float) -> list[Claim]:
-    """(6.1) for g tan(alpha)/a_g from 0.5 to 1, and below, against (4.11)."""
+    """(6.1) for g tan(alpha)/a_g from 0.5 to 1, and below, compared with (4.11)."""
     rows, numbers = [], {}
     within, closer = {}, {}
     others = []
     for pulse in pulses:
-        spreads, stands = _spreads(pulse, restitution)
+        spreads, survive = _spreads(pulse, restitution)
         for low, high in ((0.2, 0.5), (0.5, 1.0)):
-            band = stands & ((low <= SLENDERNESS) & (high > SLENDERNESS))[:, None]
+            band = survive & ((low <= SLENDERNESS) & (high > SLENDERNESS))[:, None]
             name = f"{pulse}, {low:g} to {high:g}"
             new, old = spreads["6.1"][band], spreads["4.11"][band]
             within[name], closer[name] = float((new < PRACTICAL).mean()), float((new < old).mean())
@@ -106,23 +106,23 @@ def _percent(share: float) -> str:
 
 
 def _closer_below(pulse: str, limit: float, restitution: float) -> float:
-    spreads, stands = _spreads(pulse, restitution)
-    band = stands & (limit > SLENDERNESS)[:, None]
+    spreads, survive = _spreads(pulse, restitution)
+    band = survive & (limit > SLENDERNESS)[:, None]
     return float((spreads["6.1"][band] < spreads["4.11"][band]).mean())
 
 
 def larger_slenderness(pulses: Sequence[str], restitution: float) -> list[Claim]:
-    """Whether (6.1) works better as g tan(alpha)/a_g grows (figure 13), and as rotations are small (figure 10)."""
+    """Whether (6.1) is more accurate for large g tan(alpha)/a_g (figure 13) and for small rotations (figure 10)."""
     medians: dict[str, list[float]] = {}
     by_rotation: dict[str, list[float]] = {}
     sizes = ((0.0, 0.2), (0.2, 0.5), (0.5, 1.0))
     for pulse in pulses:
-        spreads, stands = _spreads(pulse, restitution)
+        spreads, survive = _spreads(pulse, restitution)
         spread = spreads["6.1"]
-        bands = [stands & ((low <= SLENDERNESS) & (high > SLENDERNESS))[:, None] for low, high in BANDS]
+        bands = [survive & ((low <= SLENDERNESS) & (high > SLENDERNESS))[:, None] for low, high in BANDS]
         medians[pulse] = [float(np.median(spread[band])) for band in bands]
         rotation = _peaks(pulse, restitution)["6.1"][..., 0] / SLENDERNESS[:, None]  # theta_max/alpha, slender
-        parts = [stands & (rotation > low) & (rotation <= high) for low, high in sizes]
+        parts = [survive & (rotation > low) & (rotation <= high) for low, high in sizes]
         by_rotation[pulse] = [float(np.median(spread[part])) for part in parts]
 
     def row(values: Sequence[float], ranges: Sequence[tuple[float, float]]) -> str:
@@ -186,7 +186,7 @@ def histories(figures: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def pure_rocking(pulses: Sequence[str], restitution: float) -> list[Claim]:
-    """Whether pure rocking itself is in doubt for angles beyond those of figure 11."""
+    """Whether pure rocking is doubtful for angles beyond those of figure 11."""
     angles = (10, 20, 30, 40)
     found = {angle: [one for pulse in pulses for one in _contacts(pulse, angle, restitution)] for angle in angles}
     doubtful = {
@@ -200,7 +200,7 @@ def pure_rocking(pulses: Sequence[str], restitution: float) -> list[Claim]:
             key="pure-rocking",
             place="section 6, below (6.1)",
             printed="for larger alpha than in figure 11, 20 degrees, pure rocking would likely break down",
-            found=f"of {len(found[10])} blocks that stand, share that needs a friction coefficient above "
+            found=f"of {len(found[10])} blocks that survive, share that needs a friction coefficient above "
             f"{PRACTICAL_FRICTION}, share that lifts off, median coefficient: "
             + ", ".join(
                 f"{100 * doubtful[a]:.0f} %, {100 * lifted[a]:.0f} %, {demand[a]:.2f} ({a} degrees)" for a in angles
@@ -214,13 +214,13 @@ def pure_rocking(pulses: Sequence[str], restitution: float) -> list[Claim]:
 
 
 def _contacts(pulse: str, angle: float, restitution: float) -> list[ContactExtremes]:
-    """Extremes of the contact of the blocks that stand, on a coarse grid of the groups."""
+    """Extremes of the contact of the blocks that survive, on a coarse grid of the groups."""
     s, omega = (grid.ravel() for grid in np.meshgrid(np.linspace(0.3, 0.95, 12), np.geomspace(1.0, 8.0, 12)))
     alpha = float(np.radians(angle))
-    stands = ~peak_response(
+    survive = ~peak_response(
         pulse, slenderness=s, frequency_ratio=omega, restitution=restitution, alpha=alpha
     ).overturned
     return [
         contact_extremes(build_motion(pulse, slenderness=a, frequency_ratio=w, restitution=restitution, alpha=alpha))
-        for a, w in zip(s[stands], omega[stands], strict=True)
+        for a, w in zip(s[survive], omega[survive], strict=True)
     ]

@@ -21,11 +21,11 @@ from rocking.model.response import Outcome
 from workflow.claims.claim import FAILS, Claim, verdict
 
 FAST = 8.0
-"""Frequency ratio from which omega counts as large [-]."""
+"""Frequency ratio from which omega is considered large [-]."""
 
 
 def closed_form(cubes: Sequence[xr.Dataset]) -> list[Claim]:
-    """(4.13) against the spectrum cubes of the sine."""
+    """(4.13) compared with the spectrum cubes of the sine."""
     exact, total = 0.0, 0
     later = dict.fromkeys(("after impact", "after pulse"), 0)
     fast = dict.fromkeys(("after pulse", "total"), 0)
@@ -86,7 +86,7 @@ def closed_form(cubes: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def no_real_root(restitution: Sequence[float]) -> list[Claim]:
-    """(4.13) has no real root exactly where (3.18) says that the block overturns."""
+    """(4.13) has no real root exactly where the block overturns by (3.18)."""
     eta = np.array(restitution)[:, None, None]
     omega = np.linspace(0.5, 12.0, 231)
     share = np.linspace(0.001, 0.999, 199)[:, None]
@@ -137,7 +137,7 @@ def leading_term() -> list[Claim]:
 
 
 def scale_law(cubes: Sequence[xr.Dataset]) -> list[Claim]:
-    """(4.16) measured on the spectra of the sine: how far peaks are from going with eta squared."""
+    """(4.16) on the spectra of the sine: deviation of the peaks from proportionality to eta squared."""
     cubes = sorted(cubes, key=lambda cube: float(cube.restitution))
     eta = np.array([float(cube.restitution) for cube in cubes])
     reference = float(eta[np.argmin(np.abs(eta - 0.9))])
@@ -174,7 +174,7 @@ def scale_law(cubes: Sequence[xr.Dataset]) -> list[Claim]:
             place="section 4a, figures 7 and 8",
             printed="as restitution decreases the largest rotation decreases",
             found=f"at {100 * falling.sum() / survives.sum():.1f} % of {int(survives.sum())} surviving nodes the peak "
-            f"never falls with rising eta; at {100 * slender:.1f} % of "
+            f"never decreases with increasing eta; at {100 * slender:.1f} % of "
             "those with 1/a < 0.85",
             verdict=verdict(bool(falling.sum() == survives.sum())),
             numbers={"share": float(falling.sum() / survives.sum()),
@@ -184,7 +184,7 @@ def scale_law(cubes: Sequence[xr.Dataset]) -> list[Claim]:
 
 
 def period() -> list[Claim]:
-    """The time between the first two impacts after the pulse shortens with restitution."""
+    """The time between the first two impacts after the pulse decreases with restitution."""
     blocks = [(s, omega) for s in (0.3, 0.45, 0.6) for omega in (6.0, 9.0, 12.0)]
     etas = np.round(np.arange(0.80, 0.97, 0.02), 2)
     shorter = 0

@@ -1,4 +1,4 @@
-"""Traced boundaries as lines to draw: where the final fate changes between standing and overturning."""
+"""Traced overturning boundaries as lines to draw."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from workflow.figures.style import plotted
 
 
 class Lines(NamedTuple):
-    """Polylines one after the other, a nan after each; all arrays of one shape."""
+    """Polylines one after the other, each followed by nan; arrays of the same shape."""
 
     amplitude: np.ndarray  # a = a_g/(g tan alpha) [-]
     frequency_ratio: np.ndarray  # omega [-]
 
 
-def fall_lines(curves: xr.Dataset) -> Lines:
-    """The curves with overturning on one side and standing on the other; none between two ways to fall."""
+def outcome_lines(curves: xr.Dataset) -> Lines:
+    """The curves between overturning and survival, without those between two ways of overturning."""
     between = curves.neighbour_outcome.values < Outcome.OVERTURNED_DIRECTLY
     rows = curves.row_size.values
     kept, ends = np.repeat(between, rows), np.cumsum(rows[between])
@@ -47,10 +47,10 @@ def line_variables(files: Sequence[Path], alphas: Sequence[float] | None = None)
     for k, path in enumerate(files):
         curves = read_dataset(path)
         for alpha in np.unique(curves.alpha) if alphas is None else alphas:
-            lines.append(fall_lines(curves_at(curves, float(alpha))))
+            lines.append(outcome_lines(curves_at(curves, float(alpha))))
             pulse.append(np.full(lines[-1].amplitude.size, k, dtype=np.int8))
             angle.append(np.full(lines[-1].amplitude.size, alpha))
-    names = ("amplitude a_g/(g tan alpha) at which the fate changes", "frequency ratio omega_g/p there")
+    names = ("amplitude a_g/(g tan alpha) at which the outcome changes", "frequency ratio omega_g/p there")
     amplitude, omega = (
         plotted("vertex", np.concatenate(parts), name, comment="missing between two lines")
         for parts, name in zip(zip(*lines, strict=True), names, strict=True)

@@ -1,8 +1,8 @@
-"""A block of given size and shape under a pulse of given strength and length, integrated in metres and seconds.
+"""Motion of a block of given size and shape under a pulse of given amplitude and period, integrated in SI units.
 
-Equation (3.2), or (2.2) for a block that is not slender, with its dimensions, step by step with SciPy's DOP853: slow,
-and independent of the solver of `rocking`, which works in the groups (3.6). So figures 5, 6 and 9 show self-similarity
-and do not assume it.
+Equation (3.2), or (2.2) for a block that is not slender, is integrated in dimensional form with SciPy's DOP853. This is
+slow and independent of the solver of `rocking`, which uses the groups (3.6): figures 5, 6 and 9 thus show
+self-similarity without assuming it.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from rocking.model.block import STANDARD_GRAVITY, Block
 Array = NDArray[np.float64]
 
 AT_REST = 1e-9
-"""Angular velocity in units of p alpha below which free rocking counts as over [-]."""
+"""Angular velocity in units of p alpha below which free rocking is considered to have ended [-]."""
 
-LONGEST = 60.0
-"""Time p t after the pulse by which a block that falls has fallen, however slowly it leaves its unstable rest [-]."""
+MAX_DURATION = 60.0
+"""Time p t after the pulse within which a block that overturns reaches the ground [-]."""
 
 
 @dataclass(frozen=True)
-class Shaken:
-    """A block and its pulse; `history` and `falls` integrate."""
+class DimensionalProblem:
+    """A block and its pulse in SI units; `history` and `overturns` integrate the motion."""
 
     block: Block
     pulse: str
@@ -42,7 +42,7 @@ class Shaken:
     @classmethod
     def with_groups(
         cls, pulse: str, block: Block, slenderness: float, frequency_ratio: float, restitution: float
-    ) -> Shaken:
+    ) -> DimensionalProblem:
         """The pulse that gives this slender block the groups 1/a = g alpha/a_g and omega = omega_g/p, (4.11)."""
         acceleration = STANDARD_GRAVITY * block.alpha / slenderness
         period = 2 * np.pi / (frequency_ratio * block.frequency_parameter)
@@ -69,10 +69,10 @@ class Shaken:
                 theta[inside], velocity[inside] = arc.sol(time[inside])
         return theta, velocity
 
-    def falls(self) -> bool:
-        """Whether a rigid block reaches |theta| = pi/2; it stands once it swung freely from one impact to the next."""
+    def overturns(self) -> bool:
+        """Whether a rigid block reaches |theta| = pi/2; it survives if it rocks freely from one impact to the next."""
         free = 0
-        for arc in self._arcs(self.pulse_end + LONGEST / self.block.frequency_parameter):
+        for arc in self._arcs(self.pulse_end + MAX_DURATION / self.block.frequency_parameter):
             if abs(arc.y[0, -1]) > 0.5 * np.pi - 1e-6:
                 return True
             free += arc.t[0] >= self.pulse_end
@@ -81,13 +81,13 @@ class Shaken:
         return False
 
     def _arcs(self, until: float, **options: Any) -> Iterator[Any]:
-        """The motion from uplift on in smooth pieces: to an impact, to the end of the pulse, to the ground."""
+        """The motion from uplift on, in pieces that end with an impact, with the pulse, or with overturning."""
         start, at_rest = self._uplift(), AT_REST * self.block.frequency_parameter * self.block.alpha
         state, sign = np.zeros(2), -float(np.sign(self.ground_acceleration(start)))
         while start < until:
-            # the ground acceleration may jump at the end of the pulse, so that no step may run across it
+            # the ground acceleration may jump at the end of the pulse: no step may cross it
             stop = self.pulse_end if start < self.pulse_end < until else until
-            events = [_impact(sign, start), *([_fallen] if self.rigid else [])]
+            events = [_impact(sign, start), *([_overturned] if self.rigid else [])]
             arc = solve_ivp(
                 self._rate, (start, stop), state, args=(sign,), method="DOP853", rtol=1e-11, atol=1e-14,
                 max_step=self.pulse_period / 50, events=events, **options,
@@ -98,9 +98,9 @@ class Shaken:
                 state[0], sign = 0.0, -sign
                 state[1] *= self.restitution
                 if start >= self.pulse_end and abs(state[1]) < at_rest:
-                    return  # the impacts of free rocking accumulate, and it rests
+                    return  # the impacts of free rocking accumulate: the block comes to rest
             elif arc.status == 1:
-                return  # on the ground
+                return  # overturned
             start = np.nextafter(start, np.inf)
 
     def _uplift(self) -> float:
@@ -119,14 +119,14 @@ class Shaken:
     def _rate(self, time: float, state: Array, sign: float) -> list[float]:
         p = self.block.frequency_parameter
         lean = sign * self.block.alpha - state[0]
-        pull = float(self.ground_acceleration(time)) / STANDARD_GRAVITY
+        ground = float(self.ground_acceleration(time)) / STANDARD_GRAVITY
         if self.rigid:
-            return [state[1], -p * p * (np.sin(lean) + pull * np.cos(lean))]  # (2.2)
-        return [state[1], -p * p * (lean + pull)]  # (3.2)
+            return [state[1], -p * p * (np.sin(lean) + ground * np.cos(lean))]  # (2.2)
+        return [state[1], -p * p * (lean + ground)]  # (3.2)
 
 
 def _impact(sign: float, start: float) -> Callable[[float, Array, float], float]:
-    """theta = 0, approached from the side of `sign`; the start of the arc does not count."""
+    """theta = 0, approached from the side of `sign`; the start of the arc is excluded."""
 
     def event(time: float, state: Array, _: float) -> float:
         return state[0] if time > start else sign
@@ -136,9 +136,9 @@ def _impact(sign: float, start: float) -> Callable[[float, Array, float], float]
     return event
 
 
-def _fallen(_time: float, state: Array, _sign: float) -> float:
-    """|theta| = pi/2: the block lies on its side."""
+def _overturned(_time: float, state: Array, _sign: float) -> float:
+    """|theta| = pi/2: the block has overturned."""
     return float(np.abs(state[0])) - 0.5 * np.pi
 
 
-_fallen.terminal = True  # type: ignore[attr-defined]  # SciPy reads it there
+_overturned.terminal = True  # type: ignore[attr-defined]  # SciPy reads it there

@@ -1,4 +1,4 @@
-"""Figure 2: the sequences of stages a block can go through under one sine, and a history of each way to overturn."""
+"""Figure 2: the response sequences of a block under one sine, and a history of each way of overturning."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 from rocking.history.time_history import time_history
 from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, plotted
 
-DURATION = 9.0  # of tau, after which every fate is plain
+DURATION = 9.0  # tau after which every outcome is visible
 SAMPLES = 451
 
 
 def data(*, pulse: str, restitution: float, cases: Mapping[str, Mapping[str, Any]]) -> xr.Dataset:
-    """Two histories of each case: amplitudes on either side of one at which the block begins to overturn.
+    """Two histories of each case: amplitudes on either side of an overturning threshold.
 
     Parameters
     ----------
@@ -121,8 +121,8 @@ def _tree(ax: Axes) -> None:
     ax.set_ylim(0, 1)
     placed = {}
     for key, (x, y, text) in BOXES.items():
-        fate = key.startswith("case")
-        colour = VERMILION if fate else GREY if key == "rest" else BLUE
+        overturns = key.startswith("case")
+        colour = VERMILION if overturns else GREY if key == "rest" else BLUE
         placed[key] = ax.annotate(
             text, (x, y), ha="center", va="center", fontsize=7, annotation_clip=False,
             bbox={"boxstyle": "round,pad=0.35", "facecolor": "white", "edgecolor": colour, "linewidth": 0.9},

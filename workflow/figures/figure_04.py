@@ -1,4 +1,4 @@
-"""Figure 4: overturning curves of the sine in closed form, the regions they bound, and the islands they miss."""
+"""Figure 4: overturning curves of the sine in closed form, their regions, and the islands that they do not contain."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
     """
     eta = np.array(restitution)
     tips = _tips(eta)
-    near = tips[:, None] * (1 - 0.05 * np.linspace(0.0, 1.0, 21) ** 2)  # the curves turn back there
+    near = tips[:, None] * (1 - 0.05 * np.linspace(0.0, 1.0, 21) ** 2)  # the curves have a turning point there
     omega = np.union1d(np.geomspace(0.2, 8.5, POINTS), near[near < 8.5])
     closed = overturning_amplitudes(omega, eta[:, None])
     islands = [_islands(path) for path in boundaries]
@@ -46,10 +46,12 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
                 "frequency_ratio", limit_amplitude(omega), "first impact at the end of the pulse", equation="3.31"
             ),
             "island_amplitude": plotted("point", np.concatenate([a for a, *_ in islands]), "boundary of an island"),
-            "island_frequency_ratio": plotted("point", np.concatenate([w for _, w, _ in islands]), "its omega"),
+            "island_frequency_ratio": plotted(
+                "point", np.concatenate([w for _, w, _ in islands]), "omega on the boundary of an island"
+            ),
             "island_impacts": plotted("point", np.concatenate([n for *_, n in islands]), "impacts before overturning"),
             "island_restitution": plotted(
-                "point", np.repeat(eta, [len(a) for a, *_ in islands]), "its coefficient of restitution"
+                "point", np.repeat(eta, [len(a) for a, *_ in islands]), "restitution of an island"
             ),
         },
         coords={
@@ -64,18 +66,18 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
 
 
 def _tips(eta: np.ndarray) -> np.ndarray:
-    """Frequency ratios just short of where the two branches of each restitution meet."""
+    """Frequency ratios just below those at which the two branches of each restitution meet."""
     low, high = np.full(eta.size, 2.0), np.full(eta.size, 60.0)
     during = case_1_1_end(eta)
-    for _ in range(40):  # overturning after one impact ends once and for all
+    for _ in range(40):  # there is no overturning after one impact beyond the tip
         middle = 0.5 * (low + high)
-        falls = np.isfinite(case_1_2_amplitudes(middle, eta).upper) | (middle < during)
-        low, high = np.where(falls, middle, low), np.where(falls, high, middle)
+        overturns = np.isfinite(case_1_2_amplitudes(middle, eta).upper) | (middle < during)
+        low, high = np.where(overturns, middle, low), np.where(overturns, high, middle)
     return low
 
 
 def _islands(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Amplitudes, frequency ratios and impacts of the points on curves that the closed forms miss."""
+    """Amplitudes, frequency ratios and impacts of the points on curves that the closed forms do not contain."""
     curves = curves_at(read_dataset(path), 0.0)
     rows = curves.row_size.values
     on_island = np.repeat(curves.island.values == 1, rows)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.model.block import STANDARD_GRAVITY, Block
-from workflow.figures.dimensional import Shaken
+from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import BLUE, VERMILION, WIDTH, panel_letters, plotted
 
 
@@ -23,7 +23,7 @@ def data(
     half_diagonal: Sequence[float],
     duration: float,
 ) -> xr.Dataset:
-    """Histories of two blocks whose groups (4.11) are equal, integrated each with its own dimensions.
+    """Histories of two blocks with equal groups (4.11), each integrated in SI units.
 
     Parameters
     ----------
@@ -38,10 +38,11 @@ def data(
         tau = p t at the end [-].
     """
     blocks = [Block.from_slenderness_angle(alpha, R) for alpha, R in zip(slenderness_angle, half_diagonal, strict=True)]
-    shaken = [Shaken.with_groups(pulse, block, slenderness, frequency_ratio, restitution) for block in blocks]
+    groups = slenderness, frequency_ratio, restitution
+    problems = [DimensionalProblem.with_groups(pulse, block, *groups) for block in blocks]
     times = np.array([np.linspace(0, duration / block.frequency_parameter, 1201) for block in blocks])
-    motions = [one.history(time) for one, time in zip(shaken, times, strict=True)]
-    ground = [one.ground_acceleration(time) / STANDARD_GRAVITY for one, time in zip(shaken, times, strict=True)]
+    motions = [one.history(time) for one, time in zip(problems, times, strict=True)]
+    ground = [one.ground_acceleration(time) / STANDARD_GRAVITY for one, time in zip(problems, times, strict=True)]
     dims = ("block", "sample")
 
     def each(values: Sequence[float], long_name: str, units: str = "1") -> xr.Variable:
@@ -55,13 +56,13 @@ def data(
             "alpha": each(slenderness_angle, "slenderness angle", "rad"),
             "half_diagonal": each(half_diagonal, "half diagonal R", "m"),
             "frequency_parameter": each([b.frequency_parameter for b in blocks], "frequency parameter p", "rad s-1"),
-            "peak_acceleration": each([s.peak_acceleration for s in shaken], "a_g", "m s-2"),
-            "pulse_period": each([s.pulse_period for s in shaken], "T_p", "s"),
+            "peak_acceleration": each([s.peak_acceleration for s in problems], "a_g", "m s-2"),
+            "pulse_period": each([s.pulse_period for s in problems], "T_p", "s"),
         },
-        coords={"time": plotted(dims, times, "elapsed", units="s")},
+        coords={"time": plotted(dims, times, "time since the start of the pulse", units="s")},
         attrs={
             "title": "Two rocking blocks of different size and shape with equal groups",
-            "summary": "Linearised motion (3.2) integrated with dimensions; 1/a, omega and eta are equal.",
+            "summary": "Linearised motion (3.2) integrated in SI units; 1/a, omega and eta are equal.",
             "pulse_name": pulse,
             "restitution": restitution,
             "slenderness": slenderness,

@@ -1,4 +1,4 @@
-"""Figure 6: the two histories of figure 5 in the groups of (4.1), where they are one curve."""
+"""Figure 6: the two histories of figure 5 in the groups of (4.1), in which they coincide."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, 
 
 
 def data(**settings: Any) -> xr.Dataset:
-    """The histories of figure 5 scaled, (4.1), beside the one that the solver of `rocking` finds from the groups.
+    """The histories of figure 5 scaled by (4.1), and the one that the solver of `rocking` computes from the groups.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def data(**settings: Any) -> xr.Dataset:
         attrs={
             **dimensional.attrs,
             "title": "Two rocking blocks with equal groups collapse to one curve",
-            "summary": "Figure 5 in the groups of (4.1), beside the response computed from the groups alone.",
+            "summary": "Figure 5 in the groups of (4.1), and the response computed from the groups alone.",
         },
     )
 

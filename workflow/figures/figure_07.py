@@ -1,4 +1,4 @@
-"""Figure 7: histories of one block for several coefficients of restitution, which act as damping."""
+"""Figure 7: histories of one block for several coefficients of restitution, the damping of the motion."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def data(
                 duration=duration,
                 samples=SAMPLES,
             )
-            # events are samples too and differ from one eta to the next: common times for one table
+            # samples include the events, which differ with eta: interpolated to common times
             rotation[i, j] = slenderness * np.interp(tau, history.tau, history.rotation)
             velocity[i, j] = slenderness * np.interp(tau, history.tau, history.angular_velocity)
     dims = ("pulse", "restitution", "tau")

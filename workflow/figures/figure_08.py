@@ -61,7 +61,7 @@ def data(
         },
         attrs={
             "title": "Self-similar rocking spectra",
-            "summary": "Peak rotation over the whole response, free rocking included; missing where it overturns.",
+            "summary": "Peak rotation over the whole response, free rocking included; missing if overturned.",
             "pulse_names": "sine cosine",
         },
     )

@@ -1,4 +1,4 @@
-"""Figure 9: overturning of two geometrically similar blocks, two curves with dimensions and one in groups."""
+"""Figure 9: overturning of two geometrically similar blocks, two curves in SI units and one in groups."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_bloc
 from rocking.model.block import STANDARD_GRAVITY, Block
 from rocking.solver.peak_response import peak_response
 from workflow.figures.boundary_lines import line_variables, lines_of
-from workflow.figures.dimensional import Shaken
+from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
 Floats = NDArray[np.float64]
@@ -27,13 +27,13 @@ HIGHEST = 12.0
 """Largest amplitude a shown [-], as in figure 4."""
 
 WIDEST = {"sine": 7.2, "cosine": 4.5}
-"""Largest frequency ratio shown, beyond the tip of the loop [-]."""
+"""Largest frequency ratio shown, beyond the tip of the overturning region [-]."""
 
 FEWEST, NODES = 0.2, 301
-"""Smallest frequency ratio shown, and nodes in each direction on which blocks are asked whether they come back [-]."""
+"""Smallest frequency ratio shown, and number of grid nodes in each direction for `recovers_from_alpha` [-]."""
 
 STEP = 1e-6
-"""Relative step off a threshold at which the block is integrated with its dimensions [-]."""
+"""Relative distance from a threshold at which the block is integrated in SI units [-]."""
 
 COLOURS = (BLUE, VERMILION)
 
@@ -46,7 +46,7 @@ def data(
     restitution: float,
     pulse_period: Sequence[float],
 ) -> xr.Dataset:
-    """The traced boundary, thresholds of each block in SI units with their proof, and where blocks come back.
+    """The traced boundary, thresholds of each block in SI units, and where blocks pass alpha and survive.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def data(
     ]
     slenderness = 1 / np.geomspace(HIGHEST, 1, NODES)
     frequency_ratio = np.geomspace(FEWEST, max(WIDEST.values()), NODES)
-    back = [brought_back(pulse, slenderness, frequency_ratio, restitution, alpha) for pulse in pulses]
+    recovered = [recovers_from_alpha(pulse, slenderness, frequency_ratio, restitution, alpha) for pulse in pulses]
     names = {
         "pulse": ("index of the pulse", "1"),
         "block": ("index of the block", "1"),
@@ -81,9 +81,9 @@ def data(
         "acceleration": ("threshold a_g", "m s-2"),
         "frequency_ratio": ("frequency ratio omega_g/p of the threshold", "1"),
         "amplitude": ("amplitude a_g/(g tan alpha) of the threshold", "1"),
-        "overturns_above": ("whether the block falls just above, by the groups", "1"),
-        "falls_below": ("whether it falls just below, integrated with dimensions", "1"),
-        "falls_above": ("whether it falls just above, integrated with dimensions", "1"),
+        "overturns_above": ("whether the block overturns just above, from the groups", "1"),
+        "falls_below": ("whether it overturns just below, integrated in SI units", "1"),
+        "falls_above": ("whether it overturns just above, integrated in SI units", "1"),
     }
     return xr.Dataset(
         {
@@ -94,8 +94,8 @@ def data(
             },
             "brought_back": plotted(
                 ("pulse", "slenderness", "frequency_ratio"),
-                np.array(back, dtype=np.int8),
-                "whether the block passes alpha and stands",
+                np.array(recovered, dtype=np.int8),
+                "whether the block passes alpha and survives",
             ),
             "frequency_parameter": plotted(
                 "block", [block.frequency_parameter for block in blocks], "frequency parameter p", units="rad s-1"
@@ -118,10 +118,10 @@ def data(
     )
 
 
-def brought_back(
+def recovers_from_alpha(
     pulse: str, slenderness: Floats, frequency_ratio: Floats, restitution: float, alpha: float
 ) -> NDArray[np.bool_]:
-    """Whether blocks on a grid pass alpha and stand: shape (slenderness, frequency_ratio)."""
+    """Whether blocks on a grid pass alpha and survive: shape (slenderness, frequency_ratio)."""
     found = peak_response(
         pulse, slenderness=slenderness[:, None], frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha
     )
@@ -129,7 +129,7 @@ def brought_back(
 
 
 def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float) -> Iterator[dict[str, Any]]:
-    """Peak accelerations at which the fate of a block changes, by its groups, and its fate beside them without.
+    """Peak accelerations at which the outcome of a block changes, from the groups, and outcomes integrated in SI units.
 
     Parameters
     ----------
@@ -155,7 +155,9 @@ def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float
         np.atleast_1d(problem.peak_acceleration), found.amplitude, found.overturns_above, strict=True
     ):
         below, beyond = (
-            Shaken(block, pulse, acceleration * (1 + step), pulse_period, restitution, rigid=True).falls()
+            DimensionalProblem(
+                block, pulse, acceleration * (1 + step), pulse_period, restitution, rigid=True
+            ).overturns()
             for step in (-STEP, STEP)
         )
         yield {
@@ -180,7 +182,7 @@ def draw(data: xr.Dataset) -> Figure:
         for colour, one in zip(COLOURS, p, strict=True):
             top.plot(lines.frequency_ratio * one / (2 * np.pi), lines.amplitude * uplift, color=colour, **style)
         bottom.plot(lines.frequency_ratio, lines.amplitude, color=BLACK, **style)
-        _brought_back(bottom, data, k)
+        _recovers_from_alpha(bottom, data, k)
         _markers(top, bottom, data, k)
         top.set_title(f"{pulse} pulse")
         top.set_xlabel(r"pulse frequency $1/T_p$ [Hz]")
@@ -201,15 +203,15 @@ def draw(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _brought_back(ax: Axes, data: xr.Dataset, pulse: int) -> None:
-    """Shade where the block passes alpha and stands."""
+def _recovers_from_alpha(ax: Axes, data: xr.Dataset, pulse: int) -> None:
+    """Shade the region in which the block passes alpha and survives."""
     omega, a = data.frequency_ratio.values, 1 / data.slenderness.values
     shaded = np.where(data.brought_back[pulse] == 1, 1.0, np.nan)
     ax.pcolormesh(omega, a, shaded, cmap="Greys", vmin=0, vmax=4, shading="nearest", rasterized=True, zorder=0)
 
 
 def _markers(top: Axes, bottom: Axes, data: xr.Dataset, pulse: int) -> None:
-    """Half-filled on the side on which the block with dimensions falls; a cross if it is not on one side alone."""
+    """Half-filled on the side on which the block overturns in SI units; a cross if both sides have the same outcome."""
     found = data.isel(threshold=data.threshold_pulse.values == pulse)
     for k in range(found.sizes["threshold"]):
         one = found.isel(threshold=k)
@@ -226,7 +228,7 @@ def _legend(figure: Figure, ax: Axes, data: xr.Dataset) -> None:
     for colour, R in zip(COLOURS, data.half_diagonal.values, strict=True):
         ax.plot([], [], color=colour, label=rf"$R={R:g}$ m")
     marker = {"color": GREY, "linestyle": "", "marker": "o", "markersize": 5, "markerfacecoloralt": "white"}
-    ax.plot([], [], fillstyle="top", label="integrated with dimensions: falls above", **marker)
-    ax.plot([], [], fillstyle="bottom", label="falls below", **marker)
-    ax.fill_between([], [], color="#D9D9D9", label=r"passes $\alpha$ and stands")
+    ax.plot([], [], fillstyle="top", label="integrated in SI units: overturns above", **marker)
+    ax.plot([], [], fillstyle="bottom", label="overturns below", **marker)
+    ax.fill_between([], [], color="#D9D9D9", label=r"passes $\alpha$ and survives")
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)

@@ -1,4 +1,4 @@
-"""Figure 10: overturning of blocks of several slenderness angles, which tends to that of slender blocks, figure 4."""
+"""Figure 10: overturning of blocks of several slenderness angles, with the limit of slender blocks of figure 4."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from workflow.figures.boundary_lines import line_variables, lines_of
 from workflow.figures.style import BLACK, WIDTH, panel_letters, plotted, shades
 
 WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 4.5)}
-"""Frequency ratios shown [-]; beyond them hardly anything overturns at the amplitudes shown."""
+"""Frequency ratios shown [-]; beyond them almost no block overturns at the amplitudes shown."""
 
 AMPLITUDES = (1.0, 12.0)
 """Amplitudes a shown [-], as in figure 4."""
@@ -42,7 +42,7 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
             "falls_from": plotted(
                 dims, closed.falls_from, "slender: overturns after one impact", equation="3.18, 3.20, 3.21"
             ),
-            "safe_again": plotted(dims, closed.safe_again, "slender: stands again", equation="3.18"),
+            "safe_again": plotted(dims, closed.safe_again, "slender: survives again", equation="3.18"),
             "direct": plotted(dims, closed.direct, "slender: overturns without impact", equation="3.10"),
         },
         coords={
@@ -51,7 +51,7 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
         },
         attrs={
             "title": "Overturning of blocks of several slenderness angles",
-            "summary": "Amplitudes a_g/(g tan alpha) at which the final fate changes, traced with the solver; "
+            "summary": "Amplitudes a_g/(g tan alpha) at which the final outcome changes, traced with the solver; "
             "alpha = 0 is the slender limit.",
             "pulse_names": " ".join(files),
             "restitution": restitution,

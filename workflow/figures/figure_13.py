@@ -1,4 +1,4 @@
-"""Figure 13: rocking spectra of blocks of several slenderness angles, nearly one curve in the groups of (6.1)."""
+"""Figure 13: rocking spectra of blocks of several slenderness angles, which nearly coincide in the groups of (6.1)."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def data(
 
 
 def scale_of(alpha: np.ndarray) -> np.ndarray:
-    """What takes (theta/alpha) (g tan(alpha)/a_g) to g theta/(a_g cos(alpha)), (6.1): alpha/sin(alpha), 1 at 0."""
+    """Factor from (theta/alpha) (g tan(alpha)/a_g) to g theta/(a_g cos(alpha)), (6.1): alpha/sin(alpha), 1 at 0."""
     return 1 / np.sinc(alpha / np.pi)
 
 

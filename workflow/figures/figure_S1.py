@@ -1,4 +1,4 @@
-"""Figure S1: the sine of the excitation and the ad hoc exponentials (3.27) that stand in for it around tau = 1."""
+"""Figure S1: the sine of the excitation and the ad hoc exponentials (3.27) that approximate it around tau = 1."""
 
 from __future__ import annotations
 

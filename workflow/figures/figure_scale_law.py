@@ -1,4 +1,4 @@
-"""Extra figure: how well peak rotation scales with eta squared, (4.16), over the control space of the sine."""
+"""Additional figure: accuracy of the scaling of peak rotation with eta squared, (4.16), for the sine."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: floa
     restitution : sequence
         eta [-].
     reference : float
-        The eta from which the law predicts the others [-].
+        The eta from which the law predicts the other peaks [-].
     """
     opened = [read_spectrum(path).sel(alpha=0.0) for path in cubes]
     eta = np.array(restitution)

@@ -1,4 +1,4 @@
-"""Figures 11 and 12: histories of blocks of different shape, in the groups for slender blocks and in those for any."""
+"""Figures 11 and 12: histories of blocks of different shape, in the groups of (4.11) and in those of (6.1)."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def data(
     shared = Groups(frequency_ratio, slenderness)
 
     def rotation(pulse: str, group_set: GroupSet, alpha: float) -> np.ndarray:
-        # the size of the block is in omega alone: any p gives the same history
+        # the size of the block enters omega only: any p gives the same history
         problem = problem_of_block(shared, group_set, alpha=alpha, frequency_parameter=1.0)
         found = time_history(
             pulse,
-            slenderness=float(groups_of(problem, GroupSet.RIGID).slenderness),  # g tan(alpha)/a_g, as (2.2) wants it
+            slenderness=float(groups_of(problem, GroupSet.RIGID).slenderness),  # g tan(alpha)/a_g, the group of (2.2)
             frequency_ratio=frequency_ratio,
             restitution=restitution,
             alpha=alpha,
@@ -56,11 +56,11 @@ def data(
             samples=SAMPLES,
         )
         scaled = scaled_rotation(alpha * found.rotation, problem, group_set)
-        return np.interp(tau, found.tau, scaled, right=np.nan)  # a block that falls has no more history
+        return np.interp(tau, found.tau, scaled, right=np.nan)  # the history of a block ends where it overturns
 
     def master(pulse: str) -> np.ndarray:
-        question = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
-        found = time_history(pulse, **question, duration=duration, samples=SAMPLES)
+        groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
+        found = time_history(pulse, **groups, duration=duration, samples=SAMPLES)
         return np.interp(tau, found.tau, slenderness * found.rotation, right=np.nan)
 
     blocks = np.array([[[rotation(p, group_set, a) for a in angles] for group_set in GROUP_SETS] for p in pulses])

@@ -1,4 +1,4 @@
-"""What all figures share: size, type, colours that stay apart for colour-blind eyes, and variables of plotted data."""
+"""Common settings of the figures: size, fonts, colours for colour-blind readers, and variables of plotted data."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ mpl.rcParams.update({
     "legend.frameon": False,
     "mathtext.fontset": "dejavusans",
     "savefig.dpi": 300,
-    "svg.hashsalt": "rocking",  # identifiers inside the file are the same on every run
+    "svg.hashsalt": "rocking",  # equal identifiers in the file on every run
     "figure.constrained_layout.use": True,
 })  # fmt: skip
 
 
 def shades(count: int) -> list[Any]:
-    """`count` colours from dark to light of a perceptually ordered map, without its palest end."""
+    """`count` colours from dark to light of a perceptually uniform map, without its lightest part."""
     return [mpl.colormaps["viridis"](x) for x in np.linspace(0.0, 0.85, count)]
 
 
@@ -52,5 +52,5 @@ def panel_letters(axes: Sequence[Axes]) -> None:
 
 
 def plotted(dims: str | Sequence[str], values: ArrayLike, long_name: str, **attributes: Any) -> xr.Variable:
-    """A variable of plotted data; dimensionless unless `units` says otherwise."""
+    """A variable of plotted data; dimensionless unless `units` is given."""
     return xr.Variable(dims, np.asarray(values), {**MODEL_RESULT, "long_name": long_name, **attributes})

@@ -1,8 +1,7 @@
-# Run time against error, cost against size, error against bytes: `snakemake bench`, or `make bench`. A job is one command
-# of `benchmarks`, and one runs at a time, with the machine to itself: what it prints stays in its log, its progress on
-# the screen.
+# The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
+# measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = ["tolerance", "growth", "grid-size", "first-answer", "service", "skips", "stages"]
+TIMED = ["tolerance", "growth", "grid-size", "first-call", "service", "ablations", "stages"]
 
 
 rule work_precision:
@@ -18,12 +17,12 @@ rule work_precision:
         diagram="|".join(DIAGRAMS),
     threads: workflow.cores
     params:
-        code=benchmark_code("work_precision"),
-        peers=installed_peers,
+        code=benchmark_code("cost/work_precision"),
+        baselines=installed_baselines,
     message:
         "Run time against error, {wildcards.diagram}"
     shell:
-        "python -m benchmarks.work_precision {wildcards.diagram} --out {output.record} >{log}"
+        "python -m benchmarks.cost.work_precision {wildcards.diagram} --out {output.record} >{log}"
 
 
 rule work_precision_figure:
@@ -57,11 +56,11 @@ rule tolerance:
         "logs/bench/tolerance.tsv"
     threads: workflow.cores
     params:
-        code=benchmark_code("tolerance"),
+        code=benchmark_code("accuracy/tolerance"),
     message:
-        "Error against the tolerance asked for"
+        "Error against the requested tolerance"
     shell:
-        "python -m benchmarks.tolerance --out {output.record} >{log}"
+        "python -m benchmarks.accuracy.tolerance --out {output.record} >{log}"
 
 
 rule growth:
@@ -74,11 +73,11 @@ rule growth:
         "logs/bench/growth.tsv"
     threads: workflow.cores
     params:
-        code=benchmark_code("growth"),
+        code=benchmark_code("cost/growth"),
     message:
-        "Cost as the work grows"
+        "Cost against the number of cells"
     shell:
-        "python -m benchmarks.growth --out {output.record} >{log}"
+        "python -m benchmarks.cost.growth --out {output.record} >{log}"
 
 
 rule grid_size:
@@ -93,27 +92,27 @@ rule grid_size:
         "logs/bench/grid-size.tsv"
     threads: workflow.cores
     params:
-        code=benchmark_code("grid_size"),
+        code=benchmark_code("accuracy/grid_size"),
     message:
         "Error of interpolation against the size of the grid"
     shell:
-        "python -m benchmarks.grid_size --out {output.record} >{log}"
+        "python -m benchmarks.accuracy.grid_size --out {output.record} >{log}"
 
 
-rule first_answer:
+rule first_call:
     output:
-        record="results/benchmarks/first-answer.json",
+        record="results/benchmarks/first-call.json",
     log:
-        "logs/bench/first-answer.log",
+        "logs/bench/first-call.log",
     benchmark:
-        "logs/bench/first-answer.tsv"
+        "logs/bench/first-call.tsv"
     threads: workflow.cores
     params:
-        code=benchmark_code("first_answer"),
+        code=benchmark_code("cost/first_call"),
     message:
-        "The first answer of a new process"
+        "First response of a new process"
     shell:
-        "python -m benchmarks.first_answer --out {output.record} >{log}"
+        "python -m benchmarks.cost.first_call --out {output.record} >{log}"
 
 
 rule service:
@@ -127,29 +126,29 @@ rule service:
         "logs/bench/service.tsv"
     threads: workflow.cores
     params:
-        code=benchmark_code("service"),
+        code=benchmark_code("service/performance"),
     message:
-        "Requests to the service"
+        "Load on the service"
     shell:
-        "python -m benchmarks.service --out {output.record} >{log}"
+        "python -m benchmarks.service.performance --out {output.record} >{log}"
 
 
-rule skips:
+rule ablations:
     input:
         manifest=rules.manifest.output.manifest,
     output:
-        record="results/benchmarks/skips.json",
+        record="results/benchmarks/ablations.json",
     log:
-        "logs/bench/skips.log",
+        "logs/bench/ablations.log",
     benchmark:
-        "logs/bench/skips.tsv"
+        "logs/bench/ablations.tsv"
     threads: workflow.cores
     params:
-        code=benchmark_code("skips"),
+        code=benchmark_code("ablations/suite"),
     message:
-        "Work that is not done"
+        "Ablations"
     shell:
-        "python -m benchmarks.skips --out {output.record} >{log}"
+        "python -m benchmarks.ablations.suite --out {output.record} >{log}"
 
 
 rule stages:
@@ -162,11 +161,11 @@ rule stages:
     benchmark:
         "logs/bench/stages.tsv"
     params:
-        code=benchmark_code("stages"),
+        code=benchmark_code("cost/stages"),
     message:
-        "Where the time of the reproduction goes"
+        "Time of the stages of the reproduction"
     shell:
-        "python -m benchmarks.stages --out {output.record} >{log}"
+        "python -m benchmarks.cost.stages --out {output.record} >{log}"
 
 
 rule bench:

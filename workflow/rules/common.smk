@@ -1,4 +1,4 @@
-# What all rules share: names of files, and the digests that tell Snakemake when a product is out of date.
+# Definitions for all rules: file names, and digests by which Snakemake detects products that are out of date.
 import os
 import sys
 from pathlib import Path
@@ -15,7 +15,7 @@ from workflow.run_lock import RUN_ID, RunningError, acquire
 
 from snakemake.exceptions import WorkflowError
 
-os.environ[RUN_ID] = str(os.getpid())  # its jobs end with this process
+os.environ[RUN_ID] = str(os.getpid())  # the jobs end with this process
 
 try:
     check(config)
@@ -41,15 +41,15 @@ def overturning_files(pulse, etas):
 
 
 def record_of(job):
-    """Where a job notes the digests of its products."""
+    """Path of the record with the digests of the products of a job."""
     return f"{records.FOLDER}/{job}.json"
 
 
 def provenance(rule_name, scripts, settings, products):
-    """Digests of the code and the settings behind a rule's products, which are noted for the manifest.
+    """Digests of the code and the settings behind a rule's products, which are listed in the manifest.
 
-    Snakemake sees a changed script, but not a changed module that the script imports: as a parameter, the digest of
-    the scripts and of all that they import makes it see both, and nothing that they do not import.
+    Snakemake detects a changed script, but not a changed module that the script imports. The digest of the scripts and
+    of all files that they import is therefore a parameter of the rule.
     """
     digests = {
         "code_sha256": code_digest(*(PROJECT / "workflow" / script for script in scripts)),
@@ -61,13 +61,13 @@ def provenance(rule_name, scripts, settings, products):
 
 
 def benchmark_code(*names):
-    """Digest of benchmarks and of all that they import, found when a job asks for it."""
+    """Digest of benchmarks and of all that they import, computed when a job needs it."""
     return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
 
 
-def installed_peers(wildcards):
-    """Versions of the optional integrators: another one is another measurement."""
+def installed_baselines(wildcards):
+    """Versions of the optional integrators: a measurement is repeated when one changes."""
     from benchmarks.measure import versions
-    from benchmarks.methods import OPTIONAL
+    from benchmarks.baselines.methods import OPTIONAL
 
     return versions(*OPTIONAL)

@@ -1,6 +1,6 @@
 # Spectrum cubes and overturning boundaries: one job per pulse makes the files of all its coefficients of restitution,
-# because starting Python and loading the compiled solver costs more than filling a cube. They go first: figures and
-# claims wait for them, and what does not wait fills the cores at the end.
+# because starting Python and loading the compiled solver takes longer than filling a cube. These jobs have priority, as
+# figures and claims depend on them.
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",

@@ -1,4 +1,4 @@
-# The claims of the paper against what was found, the manifest of all products, and the tests of the finished products.
+# The claims of the paper against the results, the manifest of all products, and the tests of the finished products.
 CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md"}
 
 

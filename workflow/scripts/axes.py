@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 
 def steps_between(breaks: Sequence[float], steps: Sequence[float]) -> list[int]:
-    """How many steps lead from each break to the next one, for a step of its own in each stretch.
+    """Number of steps from each break to the next one, with one step size for each interval.
 
     Raises
     ------
     ValueError
-        If there is not one step to each stretch, or a stretch is no multiple of its step.
+        If there is not one step for each interval, or an interval is not a multiple of its step.
     """
     if len(steps) != len(breaks) - 1:
         raise ValueError(f"{len(steps)} steps for {len(breaks) - 1} stretches between breaks {list(breaks)}")
@@ -26,7 +26,7 @@ def steps_between(breaks: Sequence[float], steps: Sequence[float]) -> list[int]:
 
 
 def stepped(breaks: Sequence[float], steps: Sequence[float]) -> NDArray[np.float64]:
-    """Values from the first break to the last one, evenly spaced in each stretch; errors as `steps_between`."""
+    """Values from the first break to the last one, evenly spaced in each interval; errors as `steps_between`."""
     axis = [np.array(breaks[:1], dtype=np.float64)]
     for (low, high), count in zip(pairwise(breaks), steps_between(breaks, steps), strict=True):
         axis.append(np.linspace(low, high, count + 1)[1:])

@@ -1,4 +1,4 @@
-"""Runs the tests of the finished products (workflow/checks) and keeps their verdicts."""
+"""Runs the tests of the finished products (workflow/checks) and writes their results."""
 
 import os
 import sys
@@ -11,7 +11,7 @@ from workflow.scripts.job import run
 
 
 class Verdicts:
-    """Collects the outcome of each test, without the times that would make two equal runs differ."""
+    """Collects the result of each test, without run times, so that equal runs give equal files."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []

@@ -38,7 +38,7 @@ def main(
     histories : sequence of paths
         Plotted data of figures 11 and 12.
     restitution : sequence
-        eta [-] at which the closed forms are compared among themselves.
+        eta [-] at which the closed forms are compared with each other.
     table, text : path
         Outputs.
     provenance : mapping
@@ -86,7 +86,7 @@ def as_markdown(claims: Sequence[Claim]) -> str:
         "",
         ", ".join(f"{verdict}: {count}" for verdict, count in sorted(counts.items())) + ".",
         "",
-        "| place | the paper says | found | verdict |",
+        "| place | paper | found | verdict |",
         "|---|---|---|---|",
         *(f"| {claim.place} | {claim.printed} | {claim.found} | {claim.verdict} |" for claim in claims),
     ]

@@ -20,19 +20,19 @@ def main(
     ours: Mapping[str, Any] | None = None,
     **inputs: Any,
 ) -> None:
-    """Compute the plotted data, save them, draw them, save the drawing twice.
+    """Compute and save the plotted data, draw them, and save the drawing in two formats.
 
     Parameters
     ----------
     figure : str
-        Module of the figure. Its `data` takes the input paths and the configured values by name and returns what is
-        plotted; its `draw` draws that and nothing else.
+        Module of the figure. Its `data` takes the input paths and the configured values by name and returns the
+        plotted data; its `draw` draws only these.
     svg, png, nc : path
         Outputs.
     provenance : mapping
         Digests of the code and settings.
     paper, ours : mapping, optional
-        Values that the paper prints, and values that it does not print and that we chose.
+        Values that the paper prints, and values chosen here because it does not.
     **inputs : path or list of paths
         Data sets to read.
     """
@@ -41,7 +41,7 @@ def main(
     chosen = {"values_chosen_here": ", ".join(ours)} if ours else {}
     write_dataset(describe(dataset, id=nc.stem, history=f"workflow.figures.{figure}", **chosen, **provenance), nc)
     drawing = module.draw(dataset)
-    # neither time nor version of the drawing library inside: the same data give the same bytes
+    # without time and library version: the same data give the same bytes
     drawing.savefig(svg, metadata={"Date": None, "Creator": None})
     drawing.savefig(png, metadata={"Software": None})
 

@@ -1,4 +1,4 @@
-"""The seam between Snakemake and our scripts: a job is one call of a plain function."""
+"""Adapter between Snakemake and the scripts: a job is one call of a plain function."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from workflow.run_lock import join_run
 
 
 def run(task: Callable[..., None], snakemake: Any) -> None:
-    """Call `task` with the named inputs, outputs and parameters of the job; what it prints goes to the job's log.
+    """Call `task` with the named inputs, outputs and parameters of the job; its output goes to the log of the job.
 
-    The output `record` is not the task's: it takes the digests of the others when the task is done.
+    The output `record` is not passed to the task: the digests of the other outputs are written to it afterwards.
 
     Parameters
     ----------
     task : callable
         Takes paths (or lists of paths) and plain values by name.
     snakemake : snakemake.iocontainers.Snakemake
-        The job, as Snakemake hands it to a script.
+        The job object that Snakemake provides to a script.
     """
     join_run()
     paths = {name: _paths(value) for part in (snakemake.input, snakemake.output) for name, value in part.items()}

@@ -17,14 +17,14 @@ def main(
     manifest: Path,
     code: str,
 ) -> None:
-    """Write the manifest; paths in it are relative to the folder that holds it, so that the folder can be moved.
+    """Write the manifest; paths in it are relative to the folder that holds it, so that it can be moved.
 
     Parameters
     ----------
     products : sequence of paths
         All products.
     records : sequence of paths
-        What the jobs noted of them.
+        Records of the jobs, with the digests of the products.
     sources : mapping
         For the path of each product its `rule`, `code_sha256` and `settings_sha256`.
     title : str

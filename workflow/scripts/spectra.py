@@ -1,4 +1,4 @@
-"""Makes the spectrum cubes of one pulse, one file for each coefficient of restitution."""
+"""Computes the spectrum cubes of one pulse, one file for each coefficient of restitution."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,9 +23,9 @@ def main(
     cubes: Sequence[Path],
     provenance: Mapping[str, str],
 ) -> None:
-    """Fill one cube per restitution [-] over the configured grid and write it to the path beside it in `cubes`.
+    """Fill one cube per restitution [-] over the configured grid and write it to the corresponding path of `cubes`.
 
-    Cells that the overturning boundaries cross, read from `boundaries`, are marked as not to be interpolated.
+    Cells that are crossed by the overturning boundaries, read from `boundaries`, are not interpolated.
     """
     columns = grid["frequency_ratio"]
     axes: dict[str, Any] = {

@@ -7,7 +7,6 @@ netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and requ
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import isfinite
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel
 from pydantic_core import to_json
 
+from rocking.datasets.csv_text import csv_rows, csv_text
 from rocking.datasets.cube import MODEL_RESULT, VARIABLES
 from rocking.model.fields import ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
@@ -64,8 +64,7 @@ def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) ->
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
     """Columns as CSV: numbers with all digits, empty for missing numbers, true and false."""
-    text = ",".join(columns) + "\n" + _rows(columns)
-    return Response(text, media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+    return Response(csv_text(columns), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
 
 def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
@@ -75,7 +74,7 @@ def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
         yield (",".join(columns) + "\n").encode()
         for start in range(0, _points(columns), ROWS):
             rows = {key: column[start : start + ROWS].tolist() for key, column in columns.items()}
-            yield _rows(rows).encode()
+            yield csv_rows(rows).encode()
 
     return _streamed(parts(), _points(columns), MEDIA_TYPES["csv"], _file(f"{name}.csv"))
 
@@ -128,20 +127,6 @@ def dataset_of(
     variables["error_bound"] = ("point", result.fields["error_bound"], bound)
     variables["source"] = ("point", (~result.from_cube).astype("i1"), {"long_name": "source", **source})
     return xr.Dataset(variables, attrs={"Conventions": "CF-1.11", **attributes})
-
-
-def _rows(columns: Mapping[str, list[Any]]) -> str:
-    """Lines of CSV; no cell needs quotes."""
-    lines = zip(*(map(_cell, column) for column in columns.values()), strict=True)
-    return "".join(f"{','.join(line)}\n" for line in lines)
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, float):
-        return repr(value) if isfinite(value) else ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return str(value)
 
 
 def _file(name: str) -> dict[str, str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import hashlib
 import os
 from functools import partial
 from typing import Any
@@ -14,6 +13,7 @@ from fastapi.responses import FileResponse
 from starlette.types import Message, Receive, Scope, Send
 
 from rocking.datasets.catalogue import DataFile, DatasetFile
+from rocking.datasets.checksum import sha256_of
 from rocking_api.http.caching import REVALIDATE, not_modified, validators
 from rocking_api.http.errors import problem_response
 
@@ -74,7 +74,7 @@ class VersionedFileResponse(FileResponse):
 
 
 def _check(file: DataFile, sha256: str) -> None:
-    if hashlib.sha256(file.content()).hexdigest() != sha256:
+    if sha256_of(file.content()) != sha256:
         raise RuntimeError(f"{file.name}: was written to while it was sent")
 
 

@@ -1,12 +1,12 @@
-"""Exact arcs of the slender block under a sum of sinusoids, (3.4), written so that they neither overflow nor cancel.
+"""Exact arcs of the slender block under a sum of sinusoids, (3.4), without overflow and cancellation.
 
-A flight is described in its own mirror image: z = sgn(theta) theta/alpha >= 0, w = dz/dtau, and by (3.1)
-z'' = z - q with q = 1 + F, F = sgn(theta) a f. From its start, where z = 0, the solution is carried as an *increment*
+A flight is described by z = sgn(theta) theta/alpha >= 0 and w = dz/dtau. By (3.1), z'' = z - q with q = 1 + F and
+F = sgn(theta) a f. From its start, where z = 0, the solution is written as an increment
 with cosh h - 1 and sinh h: the coefficients A, B of (3.4) would lose all digits on short flights. Close to a known
 state it is expanded in a Taylor series, which needs no transcendental function.
 
-`cosine` and `sine` stand for those of the angles w_k phi + d_k, shape (terms,), at the point in question; the record
-`flight` is laid out in `state.FLIGHT_STATE`.
+`cosine` and `sine` are those of the angles w_k phi + d_k, shape (terms,), at the point considered. The fields of the
+record `flight` are in `rocking.solver.state`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rocking.solver.excitation import term_count
 from rocking.solver.state import SERIES_LENGTH
 
 MAX_EXPONENT = 350.0
-"""e^350 settles the sign of any growing term that is not exactly zero, and its square does not overflow."""
+"""e^350 determines the sign of any growing term that is not exactly zero, and its square does not overflow."""
 
 SERIES_RADIUS = 0.68
 """Largest max(1, Omega) |delta| at which the series below is exact to rounding: 0.68^16/16! = 1e-16."""
@@ -26,7 +26,7 @@ SERIES_RADIUS = 0.68
 
 @kernel
 def cosh_minus_one_and_sinh(h: float) -> tuple[float, float]:
-    """cosh(h) - 1 and sinh(h) for h >= 0 without cancellation."""
+    """cosh(h) - 1 and sinh(h) for h >= 0, without cancellation."""
     if h < 0.5:
         x = h * h
         sinh = 1 / 362880 + x * (1 / 39916800 + x / 6227020800.0)
@@ -41,35 +41,35 @@ def cosh_minus_one_and_sinh(h: float) -> tuple[float, float]:
 
 @kernel
 def init_arc(flight: Record) -> None:
-    """Coefficients of the arc from the flight's start, once `force`, `w0`, `cosine0` and `sine0` are set."""
-    x0, y0, below, slope = -1.0, flight.w0, 0.0, flight.w0
+    """Coefficients of the arc from the start of the flight; `force`, `w0`, `cosine0` and `sine0` must be set."""
+    x0, y0, offset_z, offset_w = -1.0, flight.w0, 0.0, flight.w0
     for k in range(term_count(flight)):
-        share = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
-        flight.particular[k] = share
-        below -= share * flight.cosine0[k]
-        x0 -= share * flight.cosine0[k]
-        y0 += share * flight.rate[k] * flight.sine0[k]
-        slope += share * flight.rate[k] * flight.sine0[k]
-    flight.x0, flight.y0, flight.offset_z, flight.offset_w = x0, y0, below, slope
+        particular = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
+        flight.particular[k] = particular
+        offset_z -= particular * flight.cosine0[k]
+        x0 -= particular * flight.cosine0[k]
+        y0 += particular * flight.rate[k] * flight.sine0[k]
+        offset_w += particular * flight.rate[k] * flight.sine0[k]
+    flight.x0, flight.y0, flight.offset_z, flight.offset_w = x0, y0, offset_z, offset_w
 
 
 @kernel
 def arc_state(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) -> tuple[float, float]:
-    """State (z, w) a time h after the flight's start (z = 0, w = w0), where the angles have that cosine and sine.
+    """State (z, w) a time h after the start of the flight (z = 0, w = w0), with the cosines and sines of the angles.
 
     (3.4) with `particular` = F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
     """
-    moved, slope = flight.offset_z, flight.offset_w
+    moved, offset_w = flight.offset_z, flight.offset_w
     for k in range(term_count(flight)):
         moved += flight.particular[k] * cosine[k]
-        slope -= flight.particular[k] * flight.rate[k] * sine[k]
+        offset_w -= flight.particular[k] * flight.rate[k] * sine[k]
     cosh1, sinh = cosh_minus_one_and_sinh(h)
-    return moved + (flight.x0 * cosh1 + flight.y0 * sinh), slope + (flight.x0 * sinh + flight.y0 * cosh1)
+    return moved + (flight.x0 * cosh1 + flight.y0 * sinh), offset_w + (flight.x0 * sinh + flight.y0 * cosh1)
 
 
 @kernel
 def restoring_acceleration(flight: Record, cosine: FloatArray) -> float:
-    """q = 1 + F [-]: how strongly the block is pulled back towards the ground."""
+    """Restoring acceleration q = 1 + F [-]."""
     q = 1.0
     for k in range(term_count(flight)):
         q += flight.force[k] * cosine[k]
@@ -107,7 +107,7 @@ def expand_series(flight: Record, z: float, w: float, q: float, cosine: FloatArr
 
 @kernel
 def rotation(flight: Record, delta: float) -> float:
-    """z at `delta` from the point of expansion; pairs, fours, eights: a short chain of operations."""
+    """z at `delta` from the point of expansion, by Estrin's scheme."""
     c = flight.coef
     d2 = delta * delta
     d4 = d2 * d2
@@ -120,7 +120,7 @@ def rotation(flight: Record, delta: float) -> float:
 
 @kernel
 def velocity(flight: Record, delta: float) -> float:
-    """w = dz/dtau there."""
+    """w = dz/dtau at `delta`."""
     c = flight.coef
     d2 = delta * delta
     d4 = d2 * d2
@@ -133,7 +133,7 @@ def velocity(flight: Record, delta: float) -> float:
 
 @kernel
 def acceleration(flight: Record, delta: float) -> float:
-    """z'' there."""
+    """z'' at `delta`."""
     c = flight.coef
     d2 = delta * delta
     d4 = d2 * d2
@@ -146,7 +146,7 @@ def acceleration(flight: Record, delta: float) -> float:
 
 @kernel
 def jerk(flight: Record, delta: float) -> float:
-    """z''' there, to some digits only: it scales corrections."""
+    """z''' at `delta` to a few digits, sufficient for the scale of corrections."""
     c = flight.coef
     low = 6.0 * c[3] + delta * (24.0 * c[4] + delta * (60.0 * c[5] + delta * 120.0 * c[6]))
     return low + delta**4 * (210.0 * c[7] + delta * 336.0 * c[8])

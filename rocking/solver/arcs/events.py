@@ -1,4 +1,4 @@
-"""What a flight of the slender block meets: its peaks, its impact, or the end of the pulse."""
+"""Events of a flight of the slender block: peaks, impact, end of the pulse."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def peak_in_run(
     z_last: float,
     w_last: float,
 ) -> tuple[float, float, float]:
-    """Largest and last peak of z in a run of intervals `first` to `last` - 1 with q >= 0, cut where f' = 0.
+    """Largest and last peak of z in a run of intervals `first` to `last` - 1 with q >= 0, divided where f' = 0.
 
-    Returns the largest z (or 0), and time and z of the last peak (or the run's start).
+    Returns the largest z (or 0), and time and z of the last peak (or of the start of the run).
     """
     start, omega = flight.phase, flight.omega
     largest, h_peak, z_peak = 0.0, h_first, z_first
@@ -46,14 +46,14 @@ def peak_in_run(
             z_right, w_right = state_at(flight, h_right, flight.interval_cosine[right], flight.interval_sine[right])
         lo, hi = h_left, h_right
         w_lo, w_hi = w_left, w_right
-        rising_pull = flight.sign * flight.interval_slope[left] >= 0.0
+        restoring_increases = flight.sign * flight.interval_slope[left] >= 0.0
         q_left = flight.q0 if h_left == 0.0 else restoring_acceleration(flight, flight.interval_cosine[left])
         q_right = restoring_acceleration(flight, flight.interval_cosine[right])
         d_left, d_right = z_left - q_left, z_right - q_right
-        if w_lo > 0.0 and w_hi >= 0.0 and not rising_pull and d_left < 0.0 < d_right:
-            # w'' >= w > 0: w may dip below zero and return
+        if w_lo > 0.0 and w_hi >= 0.0 and not restoring_increases and d_left < 0.0 < d_right:
+            # w'' >= w > 0: w may become negative and positive again
             hi, _, w_hi = locate_root(flight, 2, False, lo, hi, 0.5 * (lo + hi))
-        elif w_lo <= 0.0 and w_hi < 0.0 and rising_pull and d_right < 0.0 < d_left:
+        elif w_lo <= 0.0 and w_hi < 0.0 and restoring_increases and d_right < 0.0 < d_left:
             lo, _, w_lo = locate_root(flight, 2, True, lo, hi, 0.5 * (lo + hi))
         if w_lo > 0.0 > w_hi:
             if lo == h_left and hi == h_right:
@@ -70,10 +70,10 @@ def peak_in_run(
 def long_flight(flight: Record) -> tuple[int, float, float, float, float]:
     """Follow one flight from its start to its impact or to the end of the pulse.
 
-    Returns what ended it (`IMPACT`; `PULSE_END` also where the fate is known earlier), time and velocity w there,
-    z at the end of the pulse, and the largest z on the way, the latter only if the block can still return.
-    Beyond z + w = `limit` = 1 + a no ground acceleration of this pulse brings the block back, since
-    (z + w)' = (z + w) - q and q <= limit.
+    Returns what ended it (`IMPACT`; `PULSE_END` also where overturning is certain earlier), time and velocity w there,
+    z at the end of the pulse, and the largest z, the latter only if the block can still return. Beyond
+    z + w = `limit` = 1 + a no ground acceleration of this pulse prevents overturning, since (z + w)' = (z + w) - q and
+    q <= limit.
     """
     start, omega = flight.phase, flight.omega
     z_left, w_left, h_left = 0.0, flight.w0, 0.0
@@ -82,17 +82,17 @@ def long_flight(flight: Record) -> tuple[int, float, float, float, float]:
     largest = 0.0
     left, count = flight.interval, flight.interval_count
     while left < count:
-        pushed = flight.interval_level[left] * sign < 0.0
+        destabilised = flight.interval_level[left] * sign < 0.0
         right = left + 1
-        while right < count and (flight.interval_level[right] * sign < 0.0) == pushed:
+        while right < count and (flight.interval_level[right] * sign < 0.0) == destabilised:
             right += 1
         h_right = (flight.interval_phase[right] - start) / omega
-        if pushed and (not known or w_left >= 0.0) and right < count:
-            known = False  # convex and rising: neither impact nor peak, and w > 0 at the end
+        if destabilised and (not known or w_left >= 0.0) and right < count:
+            known = False  # convex and increasing: neither impact nor peak, and w > 0 at the end
             left, h_left = right, h_right
             continue
         z_right, w_right = state_at(flight, h_right, flight.interval_cosine[right], flight.interval_sine[right])
-        if pushed:
+        if destabilised:
             if known and w_left < 0.0:
                 lo, hi, z_hi, w_hi = h_left, h_right, z_right, w_right
                 if z_hi > 0.0 and w_hi > 0.0:
@@ -118,9 +118,9 @@ def long_flight(flight: Record) -> tuple[int, float, float, float, float]:
 
 @kernel
 def short_flight(flight: Record, longest: float, peak: float) -> tuple[float, float, float]:
-    """A flight so short that the series at its start holds it all: time of impact (-1 if it does not), w there, peak.
+    """A flight within the radius of the series at its start: time of impact (-1 if outside), w there, peak.
 
-    The impact is the first zero of z/h; the peak is only sought if it can pass `peak`.
+    The impact is the first zero of z/h; the peak is computed only if it can exceed `peak`.
     """
     w0, q0 = flight.w0, flight.q0
     reach = min(SERIES_RADIUS / flight.max_rate, longest)

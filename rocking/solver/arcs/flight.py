@@ -1,4 +1,4 @@
-"""One flight of the slender block, from the ground back to the ground: its state at any time, its zeros."""
+"""A flight of the slender block between two impacts: its state at any time and its zeros."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ def set_angles(flight: Record, phase: float, cosine: FloatArray, sine: FloatArra
 
 @kernel
 def start_arc(flight: Record) -> None:
-    """Prepare the flight that begins at `phase`, where `cosine0` and `sine0` are set already."""
+    """Set the coefficients of the flight that starts at `phase`; `cosine0` and `sine0` must be set."""
     for k in range(term_count(flight)):
         flight.force[k] = flight.sign * flight.a * flight.amplitude[k]
     flight.q0 = (
         0.0 if flight.starts_at_uplift == 1 else restoring_acceleration(flight, flight.cosine0)
-    )  # exactly, at uplift through |a f| = 1
+    )  # exactly 0 at uplift through |a f| = 1
     init_arc(flight)
 
 
 @kernel
 def state_at(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) -> tuple[float, float]:
-    """(z, w) a time h after the start, where the angles have that cosine and sine."""
-    if flight.max_rate * h <= SERIES_RADIUS:  # the arc would cancel
+    """(z, w) a time h after the start, with the cosines and sines of the angles there."""
+    if flight.max_rate * h <= SERIES_RADIUS:  # the arc would lose digits by cancellation
         expand_series(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
         return rotation(flight, h), velocity(flight, h)
     return arc_state(flight, h, cosine, sine)
@@ -50,7 +50,7 @@ def state_at(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) -> 
 
 @kernel
 def series_root(flight: Record, order: int) -> float:
-    """Where the local series of z (order 0), w (1) or z'' (2) vanishes, by its reversion to third order."""
+    """Zero of the local series of z (order 0), w (1) or z'' (2), by series reversion to third order."""
     c = flight.coef
     if order == 0:
         f0, f1, f2, f3 = c[0], c[1], c[2], c[3]
@@ -67,25 +67,25 @@ def series_root(flight: Record, order: int) -> float:
 def locate_root(
     flight: Record, order: int, falling: bool, lo: float, hi: float, guess: float
 ) -> tuple[float, float, float]:
-    """The one zero between times `lo` and `hi` of z (order 0), w (1) or z'' (2), which falls or rises through it.
+    """The only zero between times `lo` and `hi` of z (order 0), w (1) or z'' (2), decreasing if `falling`.
 
-    Exact arc, then Halley's method on the local series; the bracket shrinks at every arc, so that it cannot fail.
-    Returns the time after the flight's start, and z and w there.
+    Exact arc, then Halley's method on the local series. The bracket shrinks with every arc, so the search converges.
+    Returns the time after the start of the flight, and z and w there.
     """
     h = guess
     reach = SERIES_RADIUS / flight.max_rate
     for attempt in range(200):
-        if h <= reach:  # the series at the start holds, where q is known without cancellation
+        if h <= reach:  # the series at the start is accurate: q is known there without cancellation
             expand_series(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
             centre, delta = 0.0, h
-            z, w, bend = rotation(flight, h), velocity(flight, h), acceleration(flight, h)
+            z, w, second = rotation(flight, h), velocity(flight, h), acceleration(flight, h)
         else:
             set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
             z, w = arc_state(flight, h, flight.cosine1, flight.sine1)
             expand_series(flight, z, w, restoring_acceleration(flight, flight.cosine1), flight.cosine1, flight.sine1)
             centre, delta = h, series_root(flight, order)
-            bend = 2.0 * flight.coef[2]
-        value = z if order == 0 else (w if order == 1 else bend)
+            second = 2.0 * flight.coef[2]
+        value = z if order == 0 else (w if order == 1 else second)
         if (value > 0.0) == falling:
             lo = h
         else:
@@ -93,33 +93,35 @@ def locate_root(
         for _ in range(6):
             if not abs(delta) <= reach:
                 break
-            near_z, near_w, bend = rotation(flight, delta), velocity(flight, delta), acceleration(flight, delta)
+            near_z, near_w, second = rotation(flight, delta), velocity(flight, delta), acceleration(flight, delta)
             third = jerk(flight, delta)
             if order == 0:
-                value, slope, curve = near_z, near_w, bend
+                value, slope, curve = near_z, near_w, second
             elif order == 1:
-                value, slope, curve = near_w, bend, third
+                value, slope, curve = near_w, second, third
             else:
-                value, slope, curve = bend, third, 0.0  # only the sign of w is used there
+                value, slope, curve = second, third, 0.0  # only the sign of w is used
             step = -value / slope
-            bow = 0.5 * curve / slope * step
-            step -= bow * step
-            if abs(step) <= 2e-5 * min(reach, centre + delta) and abs(step) * bow * bow <= 1e-16 * (centre + delta):
-                # the error left behind goes with the cube of the step, times the square of bow/step near a double zero:
-                # rounding
+            curvature_ratio = 0.5 * curve / slope * step
+            step -= curvature_ratio * step
+            if abs(step) <= 2e-5 * min(reach, centre + delta) and abs(
+                step
+            ) * curvature_ratio * curvature_ratio <= 1e-16 * (centre + delta):
+                # the remaining error is proportional to the cube of the step, times the square of
+                # curvature_ratio/step near a double zero: below rounding
                 root = centre + delta + step
                 if centre > 0.0 and root <= reach:
                     delta += step
-                    break  # from afar the first steps of a flight drown in rounding
+                    break  # an expansion far from the start loses the first part of a flight by cancellation
                 if lo - 4e-16 * hi <= root <= hi + 4e-16 * hi:
-                    rotated = near_z + step * (near_w + step * (0.5 * bend + step * third / 6.0))
-                    return root, rotated, near_w + step * (bend + 0.5 * step * third)
+                    rotated = near_z + step * (near_w + step * (0.5 * second + step * third / 6.0))
+                    return root, rotated, near_w + step * (second + 0.5 * step * third)
                 break
             delta += step
         if hi - lo <= 4e-16 * hi:
             return h, z, w
         follow = centre + delta
-        # where the growing exponential rules, local steps have length 1: on long arcs they alternate with halving
+        # where the growing exponential dominates, local steps have length 1; on long arcs they alternate with bisection
         local = lo < follow < hi and abs(delta) <= 8.0 * reach and (attempt < 8 or attempt % 2 == 0)
         h = follow if local else 0.5 * (lo + hi)
     return h, z, w
@@ -127,7 +129,7 @@ def locate_root(
 
 @kernel
 def hermite_root(f0: float, d0: float, f1: float, d1: float, length: float) -> float:
-    """A first guess of where the cubic through two values of opposite sign with their slopes vanishes, in [0, length].
+    """Initial guess of the zero in [0, length] of the cubic through two values of opposite sign with their slopes.
 
     One Newton step from the secant.
     """

@@ -1,8 +1,8 @@
-"""Many blocks: by arcs one after another, by Taylor steps `LANES` of them side by side.
+"""Many blocks: by exact arcs one after another, by Taylor steps `LANES` at a time.
 
-A lane takes the next question as soon as it is done with one. Questions in a row that differ in eta alone are one
-cell: its first flight is followed once. Slender blocks under one sinusoid have an entry of their own, `solve_by_arcs`:
-compiled for a single sinusoid, arcs take three quarters of the time.
+A SIMD lane takes the next cell as soon as its cell is finished. Consecutive cells that differ in eta only share the
+first flight, which is computed once. `solve_by_arcs` is a separate entry for slender blocks under one sinusoid:
+compiled for a single sinusoid, it takes three quarters of the time.
 """
 
 from __future__ import annotations
@@ -20,44 +20,44 @@ from rocking.solver.taylor.step import init_block, take_step
 
 
 @kernel
-def write_response(flight: Record, into: Record) -> None:
-    """Write down what became of a cell."""
-    into.outcome, into.chatter, into.impacts, into.peak_mode = (
+def write_response(flight: Record, response: Record) -> None:
+    """Write the response of a cell."""
+    response.outcome, response.chatter, response.impacts, response.peak_mode = (
         flight.outcome,
         flight.chatter,
         flight.impacts,
         flight.peak_mode,
     )
-    into.peak_rotation, into.uplift_time = flight.peak_rotation, flight.uplift_time
-    into.first_impact_time, into.first_impact_velocity = flight.first_impact_time, flight.first_impact_velocity
-    into.end_rotation, into.end_velocity = flight.end_rotation, flight.end_velocity
+    response.peak_rotation, response.uplift_time = flight.peak_rotation, flight.uplift_time
+    response.first_impact_time, response.first_impact_velocity = flight.first_impact_time, flight.first_impact_velocity
+    response.end_rotation, response.end_velocity = flight.end_rotation, flight.end_velocity
 
 
 @kernel
 def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> bool:
-    """Whether two questions differ in eta at most."""
+    """Whether two cells are equal except for eta."""
     return bool(slenderness[i] == slenderness[j] and omega[i] == omega[j] and alpha[i] == alpha[j])
 
 
 @kernel
 def follow_arcs(flight: Record, eta: float, stop: FloatArray) -> None:
-    """Follow a block by arcs to its end."""
+    """Follow a block by exact arcs to its final outcome."""
     while advance_by_arc(flight, eta) and not is_stopped(stop):
         pass
 
 
 @kernel
-def continue_with_next_eta(flight: Record, eta: FloatArray, stop: FloatArray, answers: Record) -> bool:
-    """Write down the answer of a cell that is done and go on with its next eta; False if that was the last.
+def continue_with_next_eta(flight: Record, eta: FloatArray, stop: FloatArray, responses: Record) -> bool:
+    """Write the response of a finished cell and continue with the next eta; False if there is none.
 
-    By Taylor steps it stops where the next flight begins, by arcs it runs to the end.
+    With Taylor steps it returns at the start of the next flight, with arcs it continues to the final outcome.
     """
     while True:
-        write_response(flight, answers[flight.cell])
+        write_response(flight, responses[flight.cell])
         if flight.cell == flight.last_cell:
             return False
         flight.cell += 1
-        if flight.first_flight_known == 0:  # it never took off, whatever eta
+        if flight.first_flight_known == 0:  # no uplift, whatever eta
             continue
         going = repeat_first_flight(flight, eta[flight.cell])
         if flight.by_arcs == 1:
@@ -69,7 +69,7 @@ def continue_with_next_eta(flight: Record, eta: FloatArray, stop: FloatArray, an
 
 @kernel
 def init_cell(flight: Record, first: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> int:
-    """Set up the cell of a question; the first question that belongs to another."""
+    """Initialise the state of the cell `first`; returns the first cell that differs in more than eta."""
     flight.cell, flight.last_cell = first, first
     while flight.last_cell + 1 < len(slenderness) and same_cell(
         flight.cell, flight.last_cell + 1, slenderness, omega, alpha
@@ -90,9 +90,9 @@ def next_cell(
     eta: FloatArray,
     alpha: FloatArray,
     stop: FloatArray,
-    answers: Record,
+    responses: Record,
 ) -> int:
-    """Put the next cell that needs Taylor steps into a lane and answer those before it; the first question after it."""
+    """Put the next cell that needs Taylor steps into a lane and solve those before it; returns the cell after it."""
     while following < len(slenderness) and not is_stopped(stop):
         following = init_cell(flight, following, slenderness, omega, alpha)
         if flight.by_arcs == 1:
@@ -101,7 +101,7 @@ def next_cell(
             init_block(steps, lane, flight.alpha, flight.omega)
             start_steps(flight, steps, lane)
             return following
-        continue_with_next_eta(flight, eta, stop, answers)
+        continue_with_next_eta(flight, eta, stop, responses)
     flight.cell = -1
     return following
 
@@ -114,14 +114,14 @@ def solve_by_arcs(
     alpha: FloatArray,
     flight: Record,
     stop: FloatArray,
-    answers: Record,
+    responses: Record,
 ) -> None:
     """`solve_batch` for slender blocks under one sinusoid: `alpha` is 0, `flight` a record `SINGLE_SINUSOID_STATE`."""
     following = 0
     while following < len(slenderness) and not is_stopped(stop):
         following = init_cell(flight, following, slenderness, omega, alpha)
         follow_arcs(flight, eta[flight.cell], stop)
-        continue_with_next_eta(flight, eta, stop, answers)
+        continue_with_next_eta(flight, eta, stop, responses)
 
 
 @entry
@@ -133,24 +133,24 @@ def solve_batch(
     flights: Record,
     steps: Record,
     stop: FloatArray,
-    answers: Record,
+    responses: Record,
 ) -> None:
-    """Follow blocks from rest to their final fate.
+    """Follow blocks from rest to their final outcome.
 
     Parameters
     ----------
     slenderness, omega, eta, alpha : float arrays (cells,)
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
     flights, steps
-        The pulse and scratch: an array (LANES,) of records as `state.pulse_state`, and `state.step_state`.
+        Solver state: an array (LANES,) of records of `pulse_state`, and `step_state`.
     stop : uint8 array (1,)
-        Once another thread sets it to 1, this returns within a flight or a Taylor step, with answers missing.
+        Once another thread sets it to 1, the function returns within a flight or a Taylor step; responses are missing.
     answers : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
     """
     following, busy, taken = 0, 0, np.zeros(LANES, dtype=np.int64)
     for lane in range(LANES):
-        following = next_cell(flights[lane], steps, lane, following, slenderness, omega, eta, alpha, stop, answers)
+        following = next_cell(flights[lane], steps, lane, following, slenderness, omega, eta, alpha, stop, responses)
         if flights[lane].cell >= 0:
             busy += 1
     while busy > 0 and not is_stopped(stop):
@@ -168,9 +168,9 @@ def solve_batch(
             taken[lane] = 0
             flight.length = flight.elapsed
             going = end_flight(flight, eta[flight.cell], ended, w, z, flight.largest_z) and start_flight(flight)
-            if going or continue_with_next_eta(flight, eta, stop, answers):
+            if going or continue_with_next_eta(flight, eta, stop, responses):
                 start_steps(flight, steps, lane)
                 continue
-            following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, stop, answers)
+            following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, stop, responses)
             if flight.cell < 0:
                 busy -= 1

@@ -1,4 +1,4 @@
-"""Chatter: impacts that accumulate at a finite time. Their sum is bounded, not followed."""
+"""Chatter: impacts that accumulate at a finite time. Their geometric series is bounded instead of followed."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ def ground_acceleration(flight: Record, phase: float) -> float:
 
 @kernel
 def chatter_ends_in_rest(flight: Record, w: float, eta: float, phase: float, end: float, peak: float) -> bool:
-    """Whether chatter from velocity w just after an impact at `phase` surely ends in rest before the phase `end`.
+    """Whether chatter from velocity w just after an impact at `phase` certainly ends in rest before the phase `end`.
 
-    f is monotone up to `end` and |a f| < 1 there. Near the ground -z'' lies within q +- k z with the pull
-    q = (sin(alpha)/alpha)(1 +- a f), one for each sign of rotation, and k = 1 + tan(alpha). On a window with q in
-    [q1, q2] a flight from w rises to z_m <= w^2/(2 (q1 - k z_m)), lasts at most 2 w/(q1 - k z_m) and lands with at
-    most w sqrt((q2 + k z_m)/(q1 - k z_m)); with the restitution this bounds a geometric series. True only if its
-    sum fits into the window and no flight can pass the peak so far.
+    f is monotone up to `end` and |a f| < 1 there. Near the ground -z'' lies within q +- k z with the restoring
+    acceleration q = (sin(alpha)/alpha)(1 +- a f), one for each sign of rotation, and k = 1 + tan(alpha). On a window
+    with q in [q1, q2] a flight from w rises to z_m <= w^2/(2 (q1 - k z_m)), lasts at most 2 w/(q1 - k z_m), and its
+    impact velocity is at most w sqrt((q2 + k z_m)/(q1 - k z_m)). With the restitution this bounds a geometric series.
+    True only if its sum fits into the window and no flight can exceed the peak so far.
     """
     scale = math.sin(flight.alpha) / flight.alpha if flight.alpha > 0.0 else 1.0
     stiffness = 1.0 + math.tan(flight.alpha)

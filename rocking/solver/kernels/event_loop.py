@@ -1,9 +1,9 @@
-"""One block from rest to its final fate, event by event: uplift, impact, rest, uplift again, peak, fate.
+"""The event loop of one block, from rest to the final outcome: uplift, flights, impacts, rest, peak, outcome.
 
-Between events the motion is one exact arc where there is one, that is for the slender block (3.1) under sinusoids
-(`slender_events`), and a chain of Taylor steps elsewhere (`taylor_flight`), with restitution (2.3) at impact. The cuts
-of the pulse (`cuts`) prove for every stretch whether it holds an impact; `free_rocking` decides after the pulse. The
-first flight does not depend on the restitution: it is kept, and continued for each.
+Between events the motion is an exact arc for the slender block (3.1) under sinusoids (`rocking.solver.arcs`), and a
+sequence of Taylor steps otherwise (`rocking.solver.taylor`), with restitution (2.3) at each impact. The intervals of
+the pulse (`rocking.solver.kernels.intervals`) decide for each stretch whether it holds an impact; after the pulse
+`free_outcome` decides. The first flight does not depend on the restitution: it is stored and reused for each eta.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from rocking.solver.state import IMPACT, OVERTURNS
 from rocking.solver.taylor.flight import flight_by_steps
 
 IMPACT_LIMIT = 200_000
-"""Impacts after which a block that neither rests nor overturns is declared at rest, and flagged as chattering."""
+"""Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
 
 MODES_PER_UPLIFT = 65536
-"""Modes kept for the lobes between one rest and the next."""
+"""Number of peak modes reserved for the motion between two uplifts from rest."""
 
 NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
@@ -33,7 +33,7 @@ NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 
 @kernel
 def init_state(slenderness: float, omega: float, alpha: float, flight: Record) -> None:
-    """Set up a cell: the empty answer, the cuts, rest before the first of them."""
+    """Initialise a cell: empty response, intervals, rest before the first of them."""
     flight.first_flight_known = 0
     flight.by_arcs = int(has_exact_arcs(flight, alpha))
     flight.outcome, flight.peak_rotation, flight.peak_mode = NO_UPLIFT, 0.0, -1
@@ -54,7 +54,7 @@ def init_state(slenderness: float, omega: float, alpha: float, flight: Record) -
 
 @kernel
 def next_uplift(flight: Record) -> bool:
-    """Go from rest to the next uplift; False if there is none."""
+    """Advance from rest to the next uplift; False if there is none."""
     while flight.interval < flight.interval_count and flight.interval_level[flight.interval] == 0.0:
         flight.interval += 1
     if flight.interval == flight.interval_count:
@@ -73,9 +73,9 @@ def next_uplift(flight: Record) -> bool:
 
 @kernel
 def update_peak(flight: Record, peak: float, impacts: int, free: int) -> None:
-    """Take a later peak if it is higher; of two that differ by rounding the mode of the earlier one stands.
+    """Update the largest peak. Of two peaks that differ by rounding the mode of the earlier one is kept.
 
-    The mode numbers the lobe by the impacts since the last uplift: rest forgets how many went before.
+    The mode counts the impacts since the last uplift from rest.
     """
     if peak > flight.peak_rotation * (1.0 + 1e-12):
         flight.peak_mode = MODES_PER_UPLIFT * (flight.uplifts - 1) + 2 * (impacts - flight.impacts_before_uplift) + free
@@ -83,10 +83,10 @@ def update_peak(flight: Record, peak: float, impacts: int, free: int) -> None:
 
 
 @kernel
-def final_outcome(flight: Record, z: float, w: float, eta: float, fallen: bool) -> None:
-    """Decide the fate from the state at the end of the pulse, or after a fall during it."""
+def final_outcome(flight: Record, z: float, w: float, eta: float, overturns: bool) -> None:
+    """Set the outcome from the state at the end of the pulse, or when overturning is certain during it."""
     flight.end_rotation, flight.end_velocity, flight.end_sign = z, w, flight.sign
-    escapes, peak, after = (1, 0.0, 0) if fallen else free_outcome(z, w, eta, flight.alpha)
+    escapes, peak, after = (1, 0.0, 0) if overturns else free_outcome(z, w, eta, flight.alpha)
     if escapes > 0:
         flight.outcome = DIRECTLY if escapes == 1 and flight.impacts == 0 else AFTER_IMPACT
         flight.impacts += escapes - 1
@@ -97,7 +97,7 @@ def final_outcome(flight: Record, z: float, w: float, eta: float, fallen: bool) 
 
 @kernel
 def on_impact(flight: Record, w: float, eta: float) -> None:
-    """An impact with velocity w < 0 ends the flight: what starts the next one, or rest."""
+    """Impact with velocity w < 0: set the start of the next flight, or rest."""
     phase = flight.phase + flight.omega * flight.length
     if flight.impacts == 0:
         flight.first_impact_time, flight.first_impact_velocity = flight.length, flight.sign * w
@@ -116,16 +116,16 @@ def on_impact(flight: Record, w: float, eta: float) -> None:
         ):
             flight.at_rest = flight.chatter = 1
     else:
-        # such an interval holds at most three impacts: in it no flight ends on the side to which the ground pushes
+        # such an interval holds at most three impacts: no flight in the direction of the destabilising force ends in it
         if flight.impacts > IMPACT_LIMIT + 3 * flight.interval_count:
             raise SearchError("impacts do not end")
-        if flight.next_w <= 0.0:  # eta = 0 while the ground already pushes: up again at once
+        if flight.next_w <= 0.0:  # eta = 0 in a destabilising interval: immediate uplift
             flight.next_sign, flight.next_w = -flight.interval_level[flight.interval], 0.0
 
 
 @kernel
 def start_flight(flight: Record) -> bool:
-    """Begin the next flight; False if there is none."""
+    """Start the next flight; False if there is none."""
     if flight.at_rest == 1 and not next_uplift(flight):
         return False
     flight.starts_at_uplift = int(flight.at_rest == 1 and flight.interval > 0)
@@ -137,7 +137,7 @@ def start_flight(flight: Record) -> bool:
 
 @kernel
 def end_flight(flight: Record, eta: float, ended: int, w: float, z: float, top: float) -> bool:
-    """End a flight of `flight.length` with w and z, and `top` on the way; False if it was the last."""
+    """End a flight of duration `flight.length` with w and z and the peak `top`; False if it was the last."""
     if flight.first_flight_known == 0:
         (
             flight.first_flight_known,
@@ -158,7 +158,7 @@ def end_flight(flight: Record, eta: float, ended: int, w: float, z: float, top: 
 
 @kernel
 def repeat_first_flight(flight: Record, eta: float) -> bool:
-    """End the first flight of the cell anew, for another eta; False if it was the last."""
+    """Reuse the first flight of the cell for another eta; False if it was the last."""
     flight.outcome, flight.peak_rotation, flight.peak_mode, flight.impacts, flight.chatter = SAFE, 0.0, -1, 0, 0
     flight.first_impact_time, flight.first_impact_velocity = math.nan, math.nan
     flight.length, flight.phase, flight.sign = (
@@ -174,12 +174,12 @@ def repeat_first_flight(flight: Record, eta: float) -> bool:
 
 @kernel
 def advance_by_arc(flight: Record, eta: float) -> bool:
-    """Follow the next flight of a slender block under sinusoids to its end; False if there is none, or no other."""
+    """Follow the next flight by an exact arc to its end; False if it is the last or there is none."""
     if not start_flight(flight):
         return False
-    to_cut = (flight.interval_phase[flight.interval + 1] - flight.phase) / flight.omega
+    time_to_interval_end = (flight.interval_phase[flight.interval + 1] - flight.phase) / flight.omega
     ended, z = IMPACT, 0.0
-    h, w, top = short_flight(flight, to_cut, flight.peak_rotation)
+    h, w, top = short_flight(flight, time_to_interval_end, flight.peak_rotation)
     if h < 0.0:
         ended, h, w, z, top = long_flight(flight)
     flight.length = h
@@ -188,7 +188,7 @@ def advance_by_arc(flight: Record, eta: float) -> bool:
 
 @kernel
 def advance(flight: Record, steps: Record, eta: float) -> bool:
-    """The same for any block and pulse."""
+    """The same for any block and excitation."""
     if flight.by_arcs == 1:
         return advance_by_arc(flight, eta)
     if not start_flight(flight):

@@ -1,14 +1,16 @@
-"""Cuts the pulse where events can change their nature, so that none can be missed.
+"""Division of the pulse into intervals on which events can be located with certainty.
 
-The cuts are the phases at which |a f| = 1 and at which f' = 0. Between two of them q = 1 + F keeps its sign and so does
-q'. By the maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with z >= 0 at the left end:
+The interval ends are the phases at which |a f| = 1 and at which f' = 0. Between two of them q = 1 + F keeps its sign,
+and so does q'. By the maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with z >= 0 at the
+left end:
 
 - q >= 0: z has no zero inside unless it is negative at the right end, and then exactly one;
 - q <= 0: z is convex where it is positive: no zero unless w < 0 at the left end, and then at most two with one minimum
   between; no maximum of z inside;
-- q' >= 0 or q' <= 0 settle the zeros of w, that is the peaks, in the same way.
+- q' >= 0 or q' <= 0 determine the zeros of w, which are the peaks, in the same way.
 
-Single sinusoids have closed forms for the cuts and for the cosine and sine there; other pulses use a bracketed Newton.
+Single sinusoids have closed forms for the interval ends and the cosine and sine there; other excitations use a
+bracketed Newton method.
 """
 
 from __future__ import annotations
@@ -34,7 +36,9 @@ def find_crossing(level: float, left: float, right: float, rising: bool, flight:
         follow = phi - (f - level) / slope if slope != 0.0 else left
         if not left < follow < right:
             follow = 0.5 * (left + right)
-        if abs(follow - phi) <= 4.5e-16 * abs(phi):  # two neighbouring doubles could alternate for ever
+        if abs(follow - phi) <= 4.5e-16 * abs(
+            phi
+        ):  # otherwise the iteration may alternate between two adjacent doubles
             return follow
         phi = follow
     return phi
@@ -42,7 +46,7 @@ def find_crossing(level: float, left: float, right: float, rising: bool, flight:
 
 @kernel
 def set_interval(flight: Record, index: int, phase: float, level: float, rise: float) -> None:
-    """Set a cut and what lies to its right."""
+    """Set the left end of an interval, the level and the sign of f' in it."""
     flight.interval_phase[index] = phase
     flight.interval_level[index] = level
     flight.interval_slope[index] = rise
@@ -53,9 +57,9 @@ def split_into_intervals(slenderness: float, flight: Record) -> int:
     """Fill `flight.interval_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
     terms = term_count(flight)
     single = is_unit_sinusoid(flight)
-    # half-width of the cap |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
+    # half-width of |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
-    cap = math.atan2(root, slenderness) if single else 0.0
+    half_width = math.atan2(root, slenderness) if single else 0.0
     count = 0
     for piece in range(flight.pieces):
         left, right = flight.end_phase[piece], flight.end_phase[piece + 1]
@@ -75,11 +79,11 @@ def split_into_intervals(slenderness: float, flight: Record) -> int:
                 continue
             level += rise
             if single:
-                upright = flight.half_period_cosine[piece]  # the cosine falls from +1 here, or rises from -1
+                cosine = flight.half_period_cosine[piece]  # the cosine decreases from +1 here, or increases from -1
                 value = target * flight.amplitude[0]
-                turned = cap if value * upright > 0.0 else math.pi - cap
-                set_interval(flight, count, flight.half_period_phase[piece] + turned, level, rise)
-                flight.interval_cosine[count, 0], flight.interval_sine[count, 0] = value, upright * root
+                distance = half_width if value * cosine > 0.0 else math.pi - half_width
+                set_interval(flight, count, flight.half_period_phase[piece] + distance, level, rise)
+                flight.interval_cosine[count, 0], flight.interval_sine[count, 0] = value, cosine * root
             else:
                 phi = find_crossing(target, left, right, rise > 0.0, flight)
                 set_interval(flight, count, phi, level, rise)

@@ -1,4 +1,4 @@
-"""Zeros of the series of one lane of a Taylor step: evaluated, excluded, polished."""
+"""Zeros of the series of one lane of a Taylor step: evaluation, exclusion, refinement."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from rocking._numba.compilation import Series, kernel
 from rocking.errors import SearchError
 
 MAX_INTERVALS = 10_000_000
-"""Most intervals that `first_crossing` looks at. A simple zero needs some 30, one of order n up to s^(2/n - 1), where
-s = 1e-9 is the smallest interval: 3e4 for n = 4, and 3e6 for n = 7."""
+"""Largest number of intervals in `first_crossing`. A simple zero needs about 30, one of order n up to s^(2/n - 1) with
+s = 1e-9 the smallest interval: 3e4 for n = 4, and 3e6 for n = 7."""
 
 
 @kernel
 def evaluate_series(series: Series, lane: int, top: int, h: float) -> float:
     """Value of the series of degree `top` at h."""
     square, last = h * h, top - top % 2
-    even, odd = 0.0, 0.0  # two short chains of operations instead of a long one
+    even, odd = 0.0, 0.0  # even and odd terms: two short dependency chains instead of a long one
     for i in range(0, last + 1, 2):
         n = last - i
         even = even * square + series[n, lane]
@@ -41,20 +41,20 @@ def value_and_slope(series: Series, lane: int, top: int, h: float) -> tuple[floa
 @kernel
 def second_derivative_bound(series: Series, lane: int, top: int, h: float) -> float:
     """Bound of the second derivative of the series of degree `top` on [0, h]."""
-    bend = 0.0
+    bound = 0.0
     for i in range(top - 1):
         n = top - i
-        bend = bend * h + abs(series[n, lane]) * (n * (n - 1.0))
-    return bend
+        bound = bound * h + abs(series[n, lane]) * (n * (n - 1.0))
+    return bound
 
 
 @kernel
 def refine_root(
     series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, deflated: bool, guess: float
 ) -> tuple[float, float]:
-    """The zero of a series that falls or rises through it between lo and hi, by Newton in a shrinking bracket; slope.
+    """The zero of a series between lo and hi, decreasing if `falling`, by bracketed Newton iteration; slope there.
 
-    `deflated` takes the series divided by h, to leave out its zero at the start of a flight.
+    `deflated` divides the series by h, which removes the zero at the start of a flight.
     """
     h = guess if lo < guess < hi else 0.5 * (lo + hi)
     before, rate = 0.0, 0.0
@@ -72,18 +72,18 @@ def refine_root(
             follow = 0.5 * (lo + hi)
         step = abs(follow - h)
         h = follow
-        if step * step * step <= 1e-16 * abs(h) * before * before:  # Newton's next step would be rounding
+        if step * step * step <= 1e-16 * abs(h) * before * before:  # the next Newton step would be below rounding
             break
         before = step
     return h, rate
 
 
 @kernel
-def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, bend: float) -> float:
-    """The first zero that the series crosses in that direction between lo and hi, or -1: exclusion, then Newton.
+def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, bound: float) -> float:
+    """The first zero between lo and hi with the given direction of crossing, or -1: interval exclusion, then Newton.
 
     On an interval of length l about m the series has no zero if |v(m)| > |v'(m)| l/2 + M l^2/8 and at most one if
-    |v'(m)| > M l/2, where M = `bend` bounds |v''| on the whole of [0, hi]; else the interval is halved.
+    |v'(m)| > M l/2, where M = `bound` bounds |v''| on the whole of [0, hi]; else the interval is halved.
     """
     left, size = lo, hi - lo
     smallest = 1e-9 * size
@@ -92,8 +92,8 @@ def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, fa
             return -1.0
         half = 0.5 * size
         value, rate = value_and_slope(series, lane, top, left + half)
-        clear = abs(value) > abs(rate) * half + 0.5 * bend * half * half
-        single = abs(rate) > bend * half
+        clear = abs(value) > abs(rate) * half + 0.5 * bound * half * half
+        single = abs(rate) > bound * half
         if clear or single or size <= smallest:
             right = left + size
             if not clear and (rate < 0.0) == falling:

@@ -1,9 +1,10 @@
-"""One flight by Taylor steps, in one of several lanes: any pulse, slender or rigid, no impact missed.
+"""A flight by Taylor steps in one lane: any excitation, slender or rigid, with certain detection of impacts.
 
-At z = 0 the acceleration is -(sin(alpha)/alpha)(1 + F). Where 1 + F > 0 the block is pulled back and z = 0 can only be
-crossed downwards, once: z < 0 at the end of the step is both necessary and sufficient for an impact. Where 1 + F <= 0
-the ground pushes, z'' >= 0 holds for all z >= 0 up to |theta| = pi/2, and z has at most one minimum and no maximum. So
-steps end where the push begins, and where it ends too unless the block rises: then it is safe until it is pulled back.
+At z = 0 the acceleration is -(sin(alpha)/alpha)(1 + F). Where 1 + F > 0 the acceleration is restoring and z = 0 can be
+crossed only downwards, once: z < 0 at the end of the step is both necessary and sufficient for an impact. Where
+1 + F <= 0 the block is destabilised: z'' >= 0 holds for all z >= 0 up to |theta| = pi/2, and z has at most one minimum
+and no maximum. Therefore steps end where a destabilising interval begins, and also where it ends unless z increases:
+then no impact is possible until the acceleration is restoring again.
 """
 
 from __future__ import annotations
@@ -17,19 +18,20 @@ from rocking.solver.taylor.events import evaluate_series, first_crossing, refine
 from rocking.solver.taylor.step import init_block, take_step
 
 MAX_STEPS = 1_000_000
-"""Most Taylor steps of one flight: a hundred times what is needed. A step takes a fair share of 1/max(1, rate); a pulse
-of 84 pieces lasts 264/rate, and where that is long the growing exponential ends the flight within about 50."""
+"""Largest number of Taylor steps of one flight, a hundred times what is needed. The step size is of the order of
+1/max(1, rate); a pulse of 84 pieces lasts 264/rate, and where that is long the growing exponential ends the flight
+within about 50 steps."""
 
 
 @kernel
 def is_destabilised(flight: Record, interval: int) -> bool:
-    """Whether 1 + F <= 0 between the cuts `interval` and `interval` + 1."""
+    """Whether 1 + F <= 0 in the interval."""
     return flight.interval_level[interval] * flight.sign < 0.0
 
 
 @kernel
 def next_segment(flight: Record, steps: Record, lane: int) -> None:
-    """Find where the steps of this lane must end next."""
+    """Set the phase at which the steps of this lane must end next."""
     until, count = flight.interval, flight.interval_count
     flight.restoring_phase = steps.phase[lane]
     if steps.w0[lane] >= 0.0:
@@ -46,7 +48,7 @@ def next_segment(flight: Record, steps: Record, lane: int) -> None:
 
 @kernel
 def start_steps(flight: Record, steps: Record, lane: int) -> None:
-    """Put the start of a flight into a lane."""
+    """Set a lane to the start of a flight."""
     flight.elapsed, flight.largest_z = 0.0, 0.0
     steps.phase[lane], steps.z0[lane], steps.w0[lane] = flight.phase, 0.0, flight.w0
     steps.starts_at_uplift[lane] = flight.starts_at_uplift
@@ -55,16 +57,16 @@ def start_steps(flight: Record, steps: Record, lane: int) -> None:
 
 
 @kernel
-def impact_in_step(steps: Record, lane: int, pushed: bool, grounded: bool) -> float:
-    """Time of the impact within the step, or -1; `grounded` where the flight starts with it."""
+def impact_in_step(steps: Record, lane: int, destabilised: bool, starts_at_ground: bool) -> float:
+    """Time of the impact within the step, or -1; `starts_at_ground` if the step starts at z = 0."""
     z, rate, order = steps.z, steps.rate, steps.order
     h, z1, w0, w1 = steps.h[lane], steps.z1[lane], steps.w0[lane], steps.w1[lane]
-    if not pushed:
+    if not destabilised:
         if z1 > 0.0:
             return -1.0
-        # z = 0 at the start leaves the zero of a parabola, else that of a falling curve as its end shows it
-        guess = 2.0 * w0 * h / (w0 - w1) if grounded else h - z1 / w1
-        return refine_root(z, lane, order, 0.0, h, True, grounded, guess)[0]
+        # initial guess: the zero of a parabola from z = 0, otherwise a Newton step from the end of the step
+        guess = 2.0 * w0 * h / (w0 - w1) if starts_at_ground else h - z1 / w1
+        return refine_root(z, lane, order, 0.0, h, True, starts_at_ground, guess)[0]
     if w0 >= 0.0:
         return -1.0
     if z1 <= 0.0:
@@ -78,29 +80,29 @@ def impact_in_step(steps: Record, lane: int, pushed: bool, grounded: bool) -> fl
 
 @kernel
 def highest_peak(steps: Record, lane: int, start: float, h: float, z1: float, w1: float, known: float) -> float:
-    """Largest peak of z on [start, h] if it can pass `known`, else 0; z and w are `z1` and `w1` at h."""
+    """Largest peak of z on [start, h] if it can exceed `known`, else 0; z and w are `z1` and `w1` at h."""
     if start >= h:
         return 0.0
-    w0, bend = steps.w0[lane], steps.second_derivative_bound[lane]
-    bow = 0.125 * bend * h * h  # w stays this close to its chord
-    if w0 * w1 > 0.0 and min(abs(w0), abs(w1)) > bow:
+    w0, bound = steps.w0[lane], steps.second_derivative_bound[lane]
+    sagitta = 0.125 * bound * h * h  # largest distance of w from its chord
+    if w0 * w1 > 0.0 and min(abs(w0), abs(w1)) > sagitta:
         return 0.0
-    fastest = max(abs(w0), abs(w1)) + bow
-    if 0.5 * (steps.z0[lane] + z1 + fastest * h) <= known:
+    max_speed = max(abs(w0), abs(w1)) + sagitta
+    if 0.5 * (steps.z0[lane] + z1 + max_speed * h) <= known:
         return 0.0
     start = max(start, 0.0)
     if w0 >= 0.0 > w1:
         top, slope = refine_root(steps.rate, lane, steps.order - 1, start, h, True, False, h * w0 / (w0 - w1))
         reach = max(top - start, h - top)
-        if 2.0 * abs(slope) <= bend * reach:  # the bound of the whole step, too large for an early impact
-            bend = second_derivative_bound(steps.rate, lane, steps.order - 1, h)
-        if 2.0 * abs(slope) > bend * reach:  # |w - slope (t - top)| <= bend (t - top)^2/2
+        if 2.0 * abs(slope) <= bound * reach:  # the bound of the whole step is too large for an early impact
+            bound = second_derivative_bound(steps.rate, lane, steps.order - 1, h)
+        if 2.0 * abs(slope) > bound * reach:  # |w - slope (t - top)| <= bend (t - top)^2/2
             return evaluate_series(steps.z, lane, steps.order, top)
     largest = 0.0
-    for _ in range(4 * steps.order):  # w has fewer zeros than its degree; one may be met again for rounding
+    for _ in range(4 * steps.order):  # w has fewer zeros than its degree; rounding may repeat one
         if start >= h:
             return largest
-        top = first_crossing(steps.rate, lane, steps.order - 1, start, h, True, bend)
+        top = first_crossing(steps.rate, lane, steps.order - 1, start, h, True, bound)
         if top < 0.0:
             return largest
         largest = max(largest, evaluate_series(steps.z, lane, steps.order, top))
@@ -110,29 +112,29 @@ def highest_peak(steps: Record, lane: int, start: float, h: float, z1: float, w1
 
 @kernel
 def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, float]:
-    """See what the step just taken in a lane has met, and prepare the next one if the flight goes on.
+    """Process the events of the last step of a lane, and prepare the next step if the flight continues.
 
     Returns
     -------
-    what ended the flight, or `IN_FLIGHT`; velocity w and rotation z then. `flight` has the time since its start and the
-    largest z on the way.
+    what ended the flight, or `IN_FLIGHT`; velocity w and rotation z there. `flight` holds the time since its start and
+    the largest z.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
-    pushed = flight.destabilised == 1
-    impact = impact_in_step(steps, lane, pushed, flight.elapsed == 0.0)
+    destabilised = flight.destabilised == 1
+    impact = impact_in_step(steps, lane, destabilised, flight.elapsed == 0.0)
     if impact >= 0.0:
         h, z, w = impact, 0.0, evaluate_series(steps.rate, lane, steps.order - 1, impact)
-    if not pushed:
+    if not destabilised:
         known = max(flight.peak_rotation, flight.largest_z)
-        pulled = (flight.restoring_phase - steps.phase[lane]) / steps.omega[lane]
-        flight.largest_z = max(flight.largest_z, highest_peak(steps, lane, pulled, h, z, w, known))
+        restoring_time = (flight.restoring_phase - steps.phase[lane]) / steps.omega[lane]
+        flight.largest_z = max(flight.largest_z, highest_peak(steps, lane, restoring_time, h, z, w, known))
     flight.elapsed += h
     if impact >= 0.0:
         return IMPACT, w, z
     if flight.alpha > 0.0:
         if max(z, flight.largest_z) >= 0.5 * math.pi / flight.alpha:
             return OVERTURNS, w, z
-    elif z + w >= 1.0 + flight.a:  # see `slender_events.fly`
+    elif z + w >= 1.0 + flight.a:  # see `long_flight`
         return OVERTURNS, w, z
     steps.z0[lane], steps.w0[lane], steps.starts_at_uplift[lane] = z, w, 0.0
     if h < steps.limit[lane]:

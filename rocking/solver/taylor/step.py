@@ -1,12 +1,12 @@
-"""One Taylor step of `LANES` rocking blocks side by side, slender or rigid, under any pulse.
+"""One Taylor step of `LANES` rocking blocks, slender or rigid, under any excitation.
 
-In the mirror image of a flight, z = |theta|/alpha and w = dz/dtau, (2.2) reads
+With z = |theta|/alpha and w = dz/dtau, (2.2) reads
 
     z'' = -(sin(alpha)/alpha) (S + F C),  S = sin(alpha (1 - z))/sin(alpha),  C = cos(alpha (1 - z))/cos(alpha)
 
 with F = sgn(theta) a f. S and C follow from S' = -(alpha/tan(alpha)) C z' and C' = alpha tan(alpha) S z'; at z = 0 both
-are 1, so that uplift through F = -1 starts with no acceleration, exactly. As alpha goes to 0 this tends to (3.1), with
-S = 1 - z and C = 1, without a special form.
+are 1, so that the acceleration is exactly zero at uplift through F = -1. As alpha goes to 0 this tends to (3.1), with
+S = 1 - z and C = 1, without a separate form.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from rocking.solver.excitation import expand_excitation
 
 @kernel
 def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
-    """Put a block of slenderness angle `alpha` [rad] (0: slender) with frequency ratio `omega` into a lane."""
+    """Set a lane to a block of slenderness angle `alpha` [rad] (0: slender) and frequency ratio `omega`."""
     steps.omega[lane] = omega
     steps.slender[lane], steps.alpha[lane] = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
-    # by the same sine as S and C, so that these are exactly 1 at z = 0
+    # by the same function as S and C, so that these are exactly 1 at z = 0
     sines, cosines = sine_and_cosine(load(steps.alpha, 0))
     store(steps.sine_alpha, 0, sines)
     store(steps.cosine_alpha, 0, cosines)
@@ -41,13 +41,13 @@ def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
 def expand_motion(steps: Record) -> None:
     """Fill `z` and `rate` from z0, w0 and `f`."""
     z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
-    lifted, slender, z0, w0 = (
+    at_uplift, slender, z0, w0 = (
         load(steps.starts_at_uplift, 0),
         load(steps.slender, 0),
         load(steps.z0, 0),
         load(steps.w0, 0),
     )
-    store(f, 0, (1.0 - lifted) * load(f, 0) - lifted)  # at uplift |a f| = 1, exactly
+    store(f, 0, (1.0 - at_uplift) * load(f, 0) - at_uplift)  # |a f| = 1 exactly at uplift
     store(z, 0, z0)
     store(z, 1, w0)
     store(rate, 0, w0)
@@ -55,27 +55,27 @@ def expand_motion(steps: Record) -> None:
     sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
     store(s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
     store(c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
-    pull, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    factor, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
     for n in range(steps.order - 1):
-        pushed, sine, cosine = load(s, n), splat(0.0), splat(0.0)
+        restoring, sine, cosine = load(s, n), splat(0.0), splat(0.0)
         for j in range(n + 1):
             at_j, back = load(rate, j), load(c, n - j)
-            pushed += load(f, j) * back
+            restoring += load(f, j) * back
             sine += at_j * back
             cosine += at_j * load(s, n - j)
         reciprocal = 1.0 / (n + 1.0)
-        bent = pull * pushed * -reciprocal  # (2.2)
-        store(rate, n + 1, bent)
-        store(z, n + 2, bent * (1.0 / (n + 2.0)))
+        acceleration = factor * restoring * -reciprocal  # (2.2)
+        store(rate, n + 1, acceleration)
+        store(z, n + 2, acceleration * (1.0 / (n + 2.0)))
         store(s, n + 1, s_rate * sine * reciprocal)
         store(c, n + 1, c_rate * cosine * reciprocal)
 
 
 @kernel
 def choose_step_size(steps: Record) -> None:
-    """Set `h`, the largest step on which the last two terms keep to the precision, or `limit` if that is shorter.
+    """Set `h`, the largest step on which the last two terms meet the precision, at most `limit`.
 
-    Relative to the largest of the first four terms at the end of the step; all in rough binary logarithms.
+    The terms are compared with the largest of the first four at the end of the step, by approximate binary logarithms.
     """
     z, order = steps.z, steps.order
     shortest = splat(900.0)
@@ -91,20 +91,20 @@ def choose_step_size(steps: Record) -> None:
 
 @kernel
 def take_step(steps: Record) -> None:
-    """Expand about z0, w0 at `phase`; set the step's length, z and w at its end, and the bound of |w''| on it."""
+    """Expand about z0, w0 at `phase`; set the step size, z and w at the end, and the bound of |w''| on the step."""
     expand_excitation(steps)
     expand_motion(steps)
     choose_step_size(steps)
     z, rate, order = steps.z, steps.rate, steps.order
     h = load(steps.h, 0)
     rotation, velocity = load(z, order), load(rate, order - 1)
-    bend = absolute(velocity) * ((order - 1.0) * (order - 2.0))
+    bound = absolute(velocity) * ((order - 1.0) * (order - 2.0))
     for i in range(1, order):
         n = order - 1 - i
         rotation = rotation * h + load(z, n + 1)
         velocity = velocity * h + load(rate, n)
         if n > 1:
-            bend = bend * h + absolute(load(rate, n)) * (n * (n - 1.0))
+            bound = bound * h + absolute(load(rate, n)) * (n * (n - 1.0))
     store(steps.z1, 0, rotation * h + load(z, 0))
     store(steps.w1, 0, velocity)
-    store(steps.second_derivative_bound, 0, bend)
+    store(steps.second_derivative_bound, 0, bound)

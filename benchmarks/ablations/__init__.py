@@ -1,0 +1,1 @@
+"""Work and results of the package with one optimisation disabled at a time."""

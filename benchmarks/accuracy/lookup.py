@@ -1,0 +1,118 @@
+"""Check the error bounds of interpolated responses: `python -m benchmarks.accuracy.lookup` after `make reproduce`.
+
+Random points over the whole range of the cubes of a pulse are evaluated by interpolation and by the solver. Reported
+are the share that the cubes answer, wrong outcomes, errors above the bound of the response, and the time per point.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.lookup.cube import Cube
+from rocking.lookup.open import open_cube
+from rocking.lookup.points import Points
+from rocking.solver.peak_response import peak_response
+
+KINDS = {
+    "on slices": (False, False),
+    "between restitutions": (True, False),
+    "between angles": (False, True),
+    "between both": (True, True),
+}
+"""Whether restitution and slenderness angle of the points lie between those of the cubes."""
+
+CHUNK = 100_000
+"""Points solved in one call."""
+
+
+def random_points(cube: Cube, count: int, between: tuple[bool, bool], random: np.random.Generator) -> Points:
+    """Return random points, uniform in 1/a, log omega, eta and alpha, or at stored values of the latter two."""
+    first = cube.slice_at(0)
+    assert first is not None
+    low, high = np.log(first.frequency_ratio[[0, -1]])
+    levels = (cube.restitutions, first.alpha)
+    eta, alpha = (
+        random.uniform(values[0], values[-1], count) if free else random.choice(values, count)
+        for values, free in zip(levels, between, strict=True)
+    )
+    slenderness = random.uniform(first.slenderness[0], first.slenderness[-1], count)
+    return Points(slenderness, np.exp(random.uniform(low, high, count)), eta, alpha)
+
+
+def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[str, float]:
+    """Compare the responses of the cubes with the solver."""
+    start = time.perf_counter()
+    known, found = cube.interpolate(points, tolerance)
+    seconds = time.perf_counter() - start
+    known_points = points[known]
+    exact = peak_response(cube.pulse, **vars(known_points))
+    surviving = ~found.overturned
+    error = np.abs(found.peak_rotation - exact.peak_rotation)[surviving]
+    return {
+        "answered": float(known.sum()),
+        "wrong_outcomes": float((found.outcome != exact.outcome).sum()),
+        "wrong_exceeded_alpha": float((found.exceeded_alpha != exact.exceeded_alpha).sum()),
+        "bounds_broken": float((error > found.error_bound[surviving]).sum()),
+        "largest_share_of_bound": float((error / found.error_bound[surviving]).max(initial=0.0)),
+        "seconds": seconds,
+    }
+
+
+def measure(folder: Path, count: int, tolerance: float, seed: int) -> dict[str, dict[str, float]]:
+    """Evaluate all kinds of points on the cubes of one pulse."""
+    cube = open_cube(folder)
+    record = {}
+    for kind, between in KINDS.items():
+        random = np.random.default_rng(seed)
+        parts = [
+            compare_with_solver(cube, random_points(cube, CHUNK, between, random), tolerance)
+            for _ in range(max(1, count // CHUNK))
+        ]
+        total = {name: sum(part[name] for part in parts) for name in parts[0]}
+        total_points = CHUNK * len(parts)
+        record[kind] = total | {
+            "points": total_points,
+            "share": total["answered"] / total_points,
+            "largest_share_of_bound": max(part["largest_share_of_bound"] for part in parts),
+            "microseconds": 1e6 * total["seconds"] / total_points,
+        }
+    return record
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--spectra", type=Path, default=Path("results/spectra"), help="folder with a folder per pulse")
+    parser.add_argument("--count", type=int, default=1_000_000, help="points of each kind and tolerance")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/lookup.json"))
+    options = parser.parse_args()
+    record: dict[str, Any] = {}
+    print(
+        f"{'':38}{'share':>8}{'outc.':>7}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
+        "   errors in outcome, exceeded_alpha and bounds; largest share of a bound"
+    )
+    for folder in sorted(path for path in options.spectra.iterdir() if path.is_dir()):
+        for tolerance in (1e-4, 1e-6):
+            found = measure(folder, options.count, tolerance, options.seed)
+            record.setdefault(folder.name, {})[str(tolerance)] = found
+            for kind, row in found.items():
+                print(
+                    f"{folder.name:10}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}{row['wrong_outcomes']:7.0f}"
+                    f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
+                    f"{row['microseconds']:7.2f}",
+                    flush=True,
+                )
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    options.out.write_text(json.dumps(record, indent=1) + "\n")
+    print(f"\nwritten to {options.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,104 @@
+"""Error of the peak rotation against the requested tolerance: `python -m benchmarks.accuracy.tolerance`.
+
+A thousand random cells of benchmarks/data, all pulses: rigid blocks of 0.01 to 1.2 rad, slender blocks under wavelets;
+omega 0.1 to 15, 1/a 0.02 to 0.98, eta 0.3 to 1. The error is |peak - exact|/exact where both survive. The condition
+number of a cell is the relative change of its peak over that of an input, the largest over all inputs. An error within
+tolerance times condition number is as small as the effect of a relative change of the inputs by the tolerance.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import rocking
+from benchmarks.cells import Cells, read_table
+from benchmarks.figures.tolerance import draw
+from benchmarks.measure import progress, relative_error, save, versions
+
+TOLERANCES = tuple(10.0**-k for k in range(4, 14))
+EPS = float(np.finfo(float).eps)
+
+
+def peaks(cells: Cells, tolerance: float | None) -> NDArray[np.float64]:
+    """Return peak rotations (cells,) by the package, nan where overturned; a tolerance of None is the smallest."""
+    found = np.empty(len(cells))
+    for pulse in np.unique(cells.pulse):
+        here = cells.pulse == pulse
+        found[here] = rocking.peak_response(
+            str(pulse),
+            slenderness=cells.slenderness[here],
+            frequency_ratio=cells.frequency_ratio[here],
+            restitution=cells.restitution[here],
+            alpha=cells.alpha[here],
+            tolerance=tolerance,
+        ).peak_rotation
+    return found
+
+
+def summary(cells: Cells, found: NDArray[np.float64], tolerance: float | None) -> dict[str, Any]:
+    """Return counts and quantiles at one tolerance; the smallest is compared with the resolution of doubles."""
+    error = relative_error(found, cells.peak_rotation)
+    allowed = EPS if tolerance is None else tolerance
+    explained = allowed * np.maximum(cells.peak_rotation_per_ulp / EPS, 1.0)
+    return {
+        "tolerance": tolerance,
+        "above": int(np.sum(error > allowed)),
+        "above_tenfold": int(np.sum(error > 10.0 * allowed)),
+        "above_and_unexplained": int(np.sum(error > explained)),
+        "above_tenfold_and_unexplained": int(np.sum(error > 10.0 * explained)),
+        "wrong_outcomes": int(np.sum(np.isnan(found) != np.isnan(cells.peak_rotation))),
+        "median_error": float(np.nanmedian(error)),
+        "error_99": float(np.nanquantile(error, 0.99)),
+        "largest_error": float(np.nanmax(error)),
+        "largest_over_explained": float(np.nanmax(error / explained)),
+    }
+
+
+def table(record: dict[str, Any]) -> str:
+    """Format the record as text."""
+    counts = ("above", "above_tenfold", "above_and_unexplained", "above_tenfold_and_unexplained", "wrong_outcomes")
+    errors = ("median_error", "error_99", "largest_error", "largest_over_explained")
+    titles = ("above", "10 x", "unexpl.", "10 x", "outcomes", "error", "99 %", "largest", "/ expl.")
+    lines = [f"{'tolerance':>10}" + "".join(f"{title:>9}" for title in titles)]
+    for row in record["tolerances"]:
+        tolerance = "tightest" if row["tolerance"] is None else f"{row['tolerance']:.0e}"
+        lines.append(
+            f"{tolerance:>10}"
+            + "".join(f"{row[key]:9d}" for key in counts)
+            + "".join(f"{row[key]:9.1e}" for key in errors)
+        )
+    lines.append(f"\n{record['cells']} cells, {record['surviving']} of them survive; tightest compared with {EPS:.1e}")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/tolerance.json"))
+    out = parser.parse_args().out
+    cells = read_table("random")
+    rows, errors = [], []
+    for tolerance in (*TOLERANCES, None):
+        progress("tightest" if tolerance is None else f"tolerance {tolerance:.0e}")
+        found = peaks(cells, tolerance)
+        rows.append(summary(cells, found, tolerance))
+        errors.append(relative_error(found, cells.peak_rotation))
+    record = {
+        "cells": len(cells),
+        "surviving": int(np.sum(~np.isnan(cells.peak_rotation))),
+        "tolerances": rows,
+        "versions": versions("numpy", "numba"),
+    }
+    save(record, out)
+    draw(np.array(TOLERANCES), np.array(errors[:-1]), out.with_suffix(".png"))
+    print(table(record))
+    print(f"\nwritten to {out} and {out.with_suffix('.png')}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Load and batch measurements of the HTTP service."""

@@ -1,0 +1,215 @@
+"""`peak_response`: shapes, order, threads, invalid arguments, and properties of every valid response."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rocking
+from rocking import PULSE_NAMES, Outcome, get_pulse
+from rocking.model.fields import RESPONSE_FIELDS
+from rocking.solver.peak_response import MAX_CHUNK, peak_response
+
+FIELDS = tuple(field.name for field in RESPONSE_FIELDS)
+SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
+
+
+def assert_identical(first: rocking.Response, second: rocking.Response) -> None:
+    for name in FIELDS:
+        np.testing.assert_array_equal(getattr(first, name), getattr(second, name), err_msg=name)
+
+
+def cells(n: int, seed: int = 0):
+    rng = np.random.default_rng(seed)
+    return {
+        "slenderness": rng.uniform(0.01, 1.1, n),
+        "frequency_ratio": np.exp(rng.uniform(-3, 3, n)),
+        "restitution": rng.uniform(0, 1, n),
+    }
+
+
+def test_scalars_give_arrays_without_axes():
+    found = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+    assert found.shape == ()
+    for name in FIELDS:
+        assert getattr(found, name).shape == ()
+    assert not found.overturned
+    assert found.outcome == Outcome.SAFE
+
+
+def test_empty_arguments_give_an_empty_response():
+    found = peak_response("sine", slenderness=np.empty((0, 3)), frequency_ratio=2.0, restitution=0.9)
+    assert found.shape == (0, 3)
+    assert found.overturned.shape == (0, 3)
+
+
+def test_broadcasting():
+    slenderness, omega, eta = np.linspace(0.1, 0.9, 5), np.linspace(0.5, 6, 4)[:, None], np.array([[[0.8]], [[0.95]]])
+    found = peak_response("cosine", slenderness=slenderness, frequency_ratio=omega, restitution=eta)
+    assert found.shape == (2, 4, 5)
+    for i, j, k in np.ndindex(2, 4, 5):
+        index = i, j, k
+        one = peak_response("cosine", slenderness=slenderness[k], frequency_ratio=omega[j, 0], restitution=eta[i, 0, 0])
+        for name in FIELDS:
+            np.testing.assert_array_equal(getattr(found, name)[index], getattr(one, name))
+
+
+def test_any_memory_layout_and_number_type():
+    grid = np.linspace(0.1, 0.9, 12).reshape(3, 4)
+    plain = peak_response("sine", slenderness=grid, frequency_ratio=3.0, restitution=0.9)
+    for other in (np.asfortranarray(grid), np.repeat(grid, 2, axis=0)[::2], grid.tolist()):
+        assert_identical(peak_response("sine", slenderness=other, frequency_ratio=3, restitution=0.9), plain)
+    backwards = peak_response("sine", slenderness=grid[::-1], frequency_ratio=3.0, restitution=0.9)
+    np.testing.assert_array_equal(backwards.peak_rotation[::-1], plain.peak_rotation)
+    single = peak_response("sine", slenderness=np.float32(0.5), frequency_ratio=3, restitution=1)
+    assert_identical(single, peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=1.0))
+
+
+@pytest.mark.parametrize("alpha", [None, 0.3])
+def test_threads_and_order_change_nothing(alpha):
+    question = cells(2 * MAX_CHUNK + 17 if alpha is None else MAX_CHUNK + 17, seed=1)
+    one = peak_response("sine", **question, alpha=alpha, threads=1)
+    assert_identical(one, peak_response("sine", **question, alpha=alpha, threads=2))
+    assert_identical(one, peak_response("sine", **question, alpha=alpha))
+    order = np.random.default_rng(2).permutation(one.peak_rotation.size)
+    shuffled = peak_response("sine", **{name: value[order] for name, value in question.items()}, alpha=alpha)
+    for name in FIELDS:
+        np.testing.assert_array_equal(getattr(shuffled, name), getattr(one, name)[order])
+
+
+@pytest.mark.parametrize("pulse", PULSE_NAMES)
+def test_an_element_of_an_array_equals_the_scalar_response(pulse):
+    question = cells(12, seed=3)
+    for alpha in (None, 0.2):
+        many = peak_response(pulse, **question, alpha=alpha)
+        for i in range(12):
+            one = peak_response(pulse, **{name: float(value[i]) for name, value in question.items()}, alpha=alpha)
+            for name in FIELDS:
+                np.testing.assert_array_equal(getattr(many, name)[i], getattr(one, name))
+
+
+def test_alpha_may_mix_slender_and_rigid():
+    alpha = np.array([0.0, 0.1, 0.0, 0.4])
+    mixed = peak_response("sine", slenderness=0.7, frequency_ratio=4.0, restitution=0.9, alpha=alpha)
+    for i, angle in enumerate(alpha):
+        one = peak_response("sine", slenderness=0.7, frequency_ratio=4.0, restitution=0.9, alpha=angle)
+        for name in FIELDS:
+            np.testing.assert_array_equal(getattr(mixed, name)[i], getattr(one, name))
+    none = peak_response("sine", slenderness=0.7, frequency_ratio=4.0, restitution=0.9)
+    assert mixed.peak_rotation[0] == none.peak_rotation
+
+
+@pytest.mark.parametrize("pulse", SIGNED)
+@pytest.mark.parametrize("alpha", [None, 0.2])
+def test_a_block_without_uplift_has_no_peak(pulse, alpha):
+    found = peak_response(
+        pulse, slenderness=[1.0, 1.0 + 1e-15, 2.0, 1e6, 1e300], frequency_ratio=2.0, restitution=0.9, alpha=alpha
+    )
+    assert (found.outcome == Outcome.NO_UPLIFT).all()
+    assert (found.peak_rotation == 0).all()
+    assert (found.impacts == 0).all()
+    assert (found.peak_mode == -1).all()
+    assert not found.exceeded_alpha.any()
+    assert np.isnan(found.uplift_time).all()
+    assert np.isnan(found.first_impact_time).all()
+
+
+GOOD = {"slenderness": 0.5, "frequency_ratio": 3.0, "restitution": 0.9}
+
+
+@pytest.mark.parametrize(
+    ("argument", "values"),
+    [
+        ("slenderness", [math.nan, math.inf, -math.inf, 0.0, -0.0, -0.5]),
+        ("frequency_ratio", [math.nan, math.inf, 0.0, -1.0]),
+        ("restitution", [math.nan, math.inf, -1e-9, 1 + 1e-15, -1.0]),
+        ("alpha", [math.nan, -1e-9, math.pi / 2, 2.0, math.inf]),
+    ],
+)
+def test_errors_give_argument_value_and_range(argument, values):
+    for value in values:
+        with pytest.raises(rocking.InvalidArgumentError) as caught:
+            peak_response("sine", **{**GOOD, argument: value})
+        assert caught.value.parameter == argument
+        assert str(caught.value).startswith(f"`{argument}` = ")
+        assert "allowed: " in str(caught.value)
+        with pytest.raises(rocking.InvalidArgumentError, match=argument):  # one invalid entry among valid ones
+            peak_response("sine", **{**GOOD, argument: [0.5, value]})
+
+
+@pytest.mark.parametrize("value", ["many", [1.0, "x"], None, object()])
+def test_values_that_are_no_number_are_rejected(value):
+    with pytest.raises(rocking.InvalidArgumentError, match="slenderness"):
+        peak_response("sine", **{**GOOD, "slenderness": value})
+
+
+def test_shapes_that_do_not_broadcast_are_named():
+    with pytest.raises(rocking.InvalidArgumentError, match=r"\(2,\), \(3,\)"):
+        peak_response("sine", slenderness=[0.4, 0.5], frequency_ratio=[1.0, 2.0, 3.0], restitution=0.9)
+
+
+@pytest.mark.parametrize("name", ["", "-", "--sine", "Sine", "sin", "ricker2"])
+def test_unknown_pulses_are_rejected_with_the_list(name):
+    with pytest.raises(rocking.InvalidArgumentError, match="mavroeidis_papageorgiou"):
+        peak_response(name, **GOOD)
+
+
+def test_parameters_of_pulses_are_checked():
+    with pytest.raises(rocking.InvalidArgumentError, match="cycles"):
+        get_pulse("sine", cycles=2.0)
+    with pytest.raises(rocking.InvalidArgumentError, match="sharpness"):
+        get_pulse("mavroeidis_papageorgiou", sharpness=2.0)
+    for cycles in (1.0, 0.0, math.nan, 21.0):
+        with pytest.raises(rocking.InvalidArgumentError, match="cycles"):
+            get_pulse("mavroeidis_papageorgiou", cycles=cycles)
+
+
+@given(
+    pulse=st.sampled_from(SIGNED),
+    log_omega=st.floats(-3, 3),
+    log_slenderness=st.one_of(st.floats(-3, -1e-12), st.floats(-12, -1).map(lambda x: math.log10(1 - 10**x))),
+    eta=st.one_of(st.floats(0, 0.999), st.sampled_from([0.0, 1e-3, 0.99])),
+    alpha=st.one_of(st.none(), st.floats(-8, 0.17).map(lambda x: 10**x)),
+)
+@settings(max_examples=400)
+def test_every_valid_cell_has_a_consistent_response(pulse, log_omega, log_slenderness, eta, alpha):
+    found = peak_response(
+        pulse, slenderness=10**log_slenderness, frequency_ratio=10**log_omega, restitution=eta, alpha=alpha
+    )
+    peak, outcome, impacts = float(found.peak_rotation), Outcome(int(found.outcome)), int(found.impacts)
+    assert outcome != Outcome.NO_UPLIFT
+    assert found.overturned == math.isnan(peak)
+    assert math.isnan(peak) or 0 <= peak < math.inf
+    assert found.exceeded_alpha == (math.isnan(peak) or peak > 1)
+    assert (outcome == Outcome.OVERTURNED_DIRECTLY) <= (impacts == 0)
+    assert (outcome == Outcome.OVERTURNED_AFTER_IMPACT) <= (impacts > 0)
+    assert impacts >= 0
+    assert (found.peak_mode == -1) == (math.isnan(peak) or peak == 0)
+    duration = (get_pulse(pulse).end - get_pulse(pulse).start) / 10**log_omega
+    assert 0 <= found.uplift_time <= duration
+    if math.isfinite(found.first_impact_time):
+        assert impacts >= 1
+        assert 0 < found.first_impact_time <= (duration - found.uplift_time) * (1 + 1e-12) + 1e-300
+        assert found.first_impact_velocity != 0
+    elif impacts > 0:  # the only impact is that of free rocking which is followed by overturning
+        assert (outcome, impacts) == (Outcome.OVERTURNED_AFTER_IMPACT, 1)
+    assert not (found.chatter and impacts == 0)
+
+
+@pytest.mark.parametrize("alpha", [None, 0.35])
+def test_responses_do_not_depend_on_earlier_calls(alpha):
+    """The solver state is kept between calls, and its lanes hold the blocks of the last call."""
+    random = np.random.default_rng(9)
+    cells = {
+        "slenderness": random.uniform(0.05, 0.99, 60),
+        "frequency_ratio": np.exp(random.uniform(-1.0, 3.0, 60)),
+        "restitution": random.uniform(0.0, 1.0, 60),
+    }
+    for pulse in ("sine", "ricker", "-c2"):
+        together = peak_response(pulse, **cells, alpha=alpha, threads=1)
+        for k in random.permutation(60):
+            alone = peak_response(pulse, **{name: values[k] for name, values in cells.items()}, alpha=alpha)
+            for field in ("peak_rotation", "outcome", "impacts", "end_velocity", "first_impact_time"):
+                np.testing.assert_array_equal(getattr(alone, field), getattr(together, field)[k])
