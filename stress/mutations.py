@@ -129,7 +129,7 @@ AREAS = (
             *("rocking/lookup/*.py", "rocking/spectra/*.py", "rocking/interpolation/*.py"),
             "rocking/datasets/cube.py",
         ),
-        tests("interpolation", "sweep_gap", "lookup", "lookup_levels", "boundary_curves"),
+        tests("interpolation", "level_interval", "lookup", "lookup_levels", "boundary_curves"),
         (*tests("cube", "ablations"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
     ),
     Area("service", ("api/rocking_api/**/*.py",), ("tests/api/test_*.py",), ()),

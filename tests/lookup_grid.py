@@ -9,7 +9,7 @@ GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomsp
 
 
 def crossed(eta, alpha):
-    """Return the cells that a boundary crosses."""
+    """Cells that a boundary crosses."""
     curves = overturning_boundary("sine", restitution=eta, alpha=alpha or None, nodes=101)
     curves["alpha"] = "curve", np.full(curves.sizes["curve"], alpha)
     return crossed_cells(curves, alpha, *GRID.values())

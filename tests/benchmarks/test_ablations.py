@@ -23,7 +23,7 @@ COUNTS_ONLY = 0
         (lambda: [grids.precision(32, COUNTS_ONLY)], {"all digits": 10}),
         (lambda: grids.shared_tracing(31, COUNTS_ONLY), {"first": 11, "boundaries": 11}),
         (lambda: grids.tracing(61, COUNTS_ONLY), {"points": 2}),
-        (lambda: grids.probes(COUNTS_ONLY), {"probes": 1.5, "between": 3}),
+        (lambda: grids.probes(COUNTS_ONLY), {"probes": 1.5, "between": 1.5}),
     ],
     ids=["motion", "first flights", "digits", "boundaries", "tracing", "cubes"],
 )

@@ -92,6 +92,13 @@ def test_the_documented_tree_is_the_real_one() -> None:
     assert documented_tree() == real | plain
 
 
+def test_the_documented_files_exist() -> None:
+    section = PAGE.split("## Files to change")[1]
+    paths = [name for name in re.findall(r"`([^` ]+)`", section) if "/" in name]
+    assert paths
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
 def test_every_module_of_the_package_has_a_layer() -> None:
     paths = [*(ROOT / "rocking").rglob("*.py"), *(ROOT / "api").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")]
     assert {path for path in paths if folder_of(path) is None} == {ROOT / "rocking/__init__.py"}
