@@ -7,7 +7,7 @@ from typing import get_type_hints
 import numpy as np
 import pytest
 import xarray as xr
-from rocking_api.models.responses import Columns, ResponseAnswer
+from rocking_api.models.responses import Columns, PointResponse
 
 import rocking
 from rocking.datasets.cube import VARIABLES
@@ -58,7 +58,7 @@ def test_files_store_the_declared_fields():
 
 
 def test_http_responses_have_the_declared_columns():
-    for model in (ResponseAnswer, Columns):
+    for model in (PointResponse, Columns):
         assert {field.name for field in COLUMN_FIELDS} <= set(model.model_fields)
         assert model.model_fields["peak_rotation"].description == fields.PEAK_ROTATION.description()
 
