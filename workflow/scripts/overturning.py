@@ -67,8 +67,9 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         curves.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
-        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}; attributes: `chord_error`, the largest distance of a chord from its curve, `thinnest_region`, the width in 1/a below "
-        "which regions are not resolved, `open_ends`, the ends of regions known to a grid step only.",
+        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}. "
+        "Largest distance of a chord from its curve: chord_error; width in 1/a below which regions are not resolved: "
+        "thinnest_region; ends of regions that are known to a step of the grid only: open_ends.",
         history="rocking.boundary.tracing.overturning_boundaries",
         id=f"overturning/{pulse}/eta-{restitution:.2f}",
     )
@@ -90,7 +91,7 @@ def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> d
         outcome == Outcome.OVERTURNED_DIRECTLY, 1 / closed.direct, np.where(impacts == 1, nearer, np.nan)
     )
     expected = expected if slender else np.full(s.size, np.nan)
-    island = np.where(traced.impacts.values > 1, 1, 0).astype(np.int8)
+    island = np.where(np.isin(traced.impacts.values, (0, 1)), 0, 1).astype(np.int8)
     return {
         "closed_form_slenderness": xr.Variable(
             "point",
