@@ -90,7 +90,7 @@ class Curve(BaseModel):
     """One boundary curve."""
 
     outcome: str = Field(description="outcome on the side where the block overturns")
-    impacts: int = Field(description="impacts before it overturns there; -1: more than 12, or impacts accumulate to rest")
+    impacts: int = Field(description="impacts before it overturns there; -1: more than 12, or not counted")
     slenderness: list[float] = Field(description="1/a [-]")
     frequency_ratio: list[float] = Field(description="omega_g/p [-]")
 
