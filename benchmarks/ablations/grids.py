@@ -16,11 +16,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from benchmarks.ablations.ablation import Ablation, measure_both
-from benchmarks.ablations.motion import RESTITUTION, RESTITUTIONS, control_plane
+from benchmarks.ablations.motion import RESTITUTION, control_plane
 from rocking.boundary import search as boundary_points
 from rocking.boundary.cells import crossed_cells
-from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
-from rocking.model.response import Outcome
+from rocking.boundary.tracing import overturning_boundary
 from rocking.solver import peak_response as solve
 from rocking.solver.peak_response import peak_response
 from rocking.spectra import cubes as sweep
@@ -76,37 +75,10 @@ def tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
         f"{math.sqrt(window / done):.1g}, traced they are good to {boundary_points.RESOLUTION:g}"
     )
     yield Ablation("cells far from a boundary: slender", "cells", done, round(window / FINE**2), note=note)
-    grid = nodes * nodes
     yield Ablation(
-        "points on the way to a boundary: slender", "cells", done - grid, without - grid, *times,
+        "points on the way to a boundary: slender", "cells", done, without, *times,
         note=f"{vertices} vertices, by the energy margin and by the outcome alone",
     )  # fmt: skip
-
-
-def shared_tracing(nodes: int, rounds: int) -> Iterator[Ablation]:
-    """Yield the boundaries of several restitutions, traced one by one and together."""
-    for angle in ANGLES:
-        window = {"alpha": angle or None, "nodes": nodes}
-
-        def together(window: dict[str, Any] = window) -> list[xr.Dataset]:
-            return overturning_boundaries(PULSE, restitution=RESTITUTIONS, **window)
-
-        def apart(window: dict[str, Any] = window) -> list[xr.Dataset]:
-            return [overturning_boundary(PULSE, restitution=eta, **window) for eta in RESTITUTIONS]
-
-        kind = "rigid" if angle else "slender"
-        changed = sum(not one.identical(other) for one, other in zip(together(), apart(), strict=True))
-        direct = [int(one.row_size[one.outcome == Outcome.OVERTURNED_DIRECTLY].sum()) for one in together()]
-        total = sum(one.sizes["point"] for one in together())
-        times = measure_both(f"boundaries by restitution, {kind}", together, apart, rounds)
-        yield Ablation(
-            f"first flights on the grids of boundaries: {kind}", "first flights", nodes**2,
-            nodes**2 * len(RESTITUTIONS), *times, changed, "time of the whole tracing",
-        )  # fmt: skip
-        yield Ablation(
-            f"boundaries without an impact: {kind}", "vertices", direct[0], sum(direct),
-            note=f"of {total:,d} vertices in all, for {len(RESTITUTIONS)} restitutions",
-        )  # fmt: skip
 
 
 def barred_cells() -> NDArray[np.bool_]:

@@ -33,7 +33,6 @@ def of_motion(rounds: int) -> Iterator[Ablation]:
 def of_grids(rounds: int) -> Iterator[Ablation]:
     """Yield the ablations of boundaries and cubes."""
     yield from grids.tracing(NODES, rounds)
-    yield from grids.shared_tracing(NODES, rounds)
     yield from grids.probes(rounds)
 
 

@@ -21,11 +21,10 @@ COUNTS_ONLY = 0
         (lambda: motion.motions(16, COUNTS_ONLY), {"free": 30, "chatter: slender": 1.5, "chatter: rigid": 1.5}),
         (lambda: motion.first_flights(12, COUNTS_ONLY), {"first": 11}),
         (lambda: [grids.precision(32, COUNTS_ONLY)], {"all digits": 10}),
-        (lambda: grids.shared_tracing(31, COUNTS_ONLY), {"first": 11, "boundaries": 11}),
-        (lambda: grids.tracing(61, COUNTS_ONLY), {"points": 2}),
+        (lambda: grids.tracing(61, COUNTS_ONLY), {"points": 1.5}),
         (lambda: grids.probes(COUNTS_ONLY), {"probes": 1.5, "between": 1.5}),
     ],
-    ids=["motion", "first flights", "digits", "boundaries", "tracing", "cubes"],
+    ids=["motion", "first flights", "digits", "tracing", "cubes"],
 )
 def test_an_optimisation_saves_work_and_changes_nothing(
     measure: Callable[[], Iterable[Ablation]], least: dict[str, float]

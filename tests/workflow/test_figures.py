@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 import yaml
 
-from rocking.boundary.curves import join_curves
+from rocking.boundary.curves import curves_at, join_curves
 from rocking.closed_form import overturning_amplitudes
 from rocking.datasets.cube import read_dataset, read_spectrum, write_dataset
 from rocking.model.block import Block
@@ -22,6 +22,8 @@ from workflow.figures.boundary_lines import Lines, lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
 
+CAPTIONS = (PROJECT / "docs/figures.md").read_text(encoding="utf-8")
+CONFIG = PROJECT / "workflow/config"
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
 
@@ -212,6 +214,44 @@ def test_blocks_of_figure_11_have_equal_groups() -> None:
     # theta = alpha times the peak; a_g/g = alpha/s and tan(alpha)/s
     expected = [by_alpha * s, by_tangent * alpha * s / np.sin(alpha)]
     np.testing.assert_allclose(np.abs(data.rotation.values[0, :, 0]).max(axis=-1), expected, rtol=1e-4)
+
+
+def test_caption_of_figure_10_states_the_regions_of_the_cosine(smoke_results: Path) -> None:
+    caption = " ".join(CAPTIONS.split("## Figure 10")[1].split("## Figure")[0].split())
+    curves = read_dataset(smoke_results / "overturning/cosine/eta-0.85.nc")
+    found = {}
+    for alpha in (0.0, np.radians(20.0)):
+        one = curves_at(curves, alpha)
+        impacts = np.repeat(one.impacts.values, one.row_size.values)
+        for n in (2, 4):
+            found[alpha, n] = one.frequency_ratio.values[impacts == n], 1 / one.slenderness.values[impacts == n]
+    loop, tongue = (found[0.0, 2][1] < 1.6), (found[0.0, 2][1] > 1.6)
+    assert f"after two impacts in a loop up to omega = {found[0.0, 2][0][loop].max():.1f}" in caption
+    up_to = found[0.0, 2][1][tongue].max(), found[np.radians(20.0), 2][1].max()
+    assert f"up to a = {up_to[0]:.1f} ({up_to[1]:.1f} at 20 degrees)" in caption
+    assert f"after four impacts up to omega = {found[0.0, 4][0].max():.1f}" in caption
+
+
+def test_caption_of_figure_13_states_the_largest_differences() -> None:
+    caption = " ".join(CAPTIONS.split("## Figure 13")[1].split("## Figure")[0].split())
+    settings = yaml.safe_load((CONFIG / "paper.yaml").read_text(encoding="utf-8"))
+    axis, shown = settings["grid"]["frequency_ratio"], settings["figures"]["figure-13"]["ours"]
+    omega = np.geomspace(axis["low"], axis["high"], axis["points"])
+    low, high = shown["frequency_ratio"]["low"], shown["frequency_ratio"]["high"]
+    omega = omega[(omega >= low) & (omega <= high)]
+    s, alpha = np.array(shown["slenderness"])[:, None], np.radians([5.0, 10.0, 15.0, 20.0])[:, None, None]
+    worst = {}
+    for pulse in ("sine", "cosine"):
+        groups = {"slenderness": s, "frequency_ratio": omega, "restitution": 0.85}
+        slender = peak_response(pulse, **groups).peak_rotation
+        rigid = peak_response(pulse, **groups, alpha=alpha).peak_rotation * alpha / np.sin(alpha)
+        difference = np.abs(rigid / slender - 1)
+        worst[pulse] = dict(zip(shown["slenderness"], 100 * np.nanmax(difference, axis=(0, 2)), strict=True))
+        assert np.nanmedian(difference[:, 1:], axis=(0, 2)).max() < 0.003
+    above = {pulse: max((found[k], k) for k in found if k >= 0.45) for pulse, found in worst.items()}
+    assert f"at most {above['sine'][0]:.1f} % under the sine (at {above['sine'][1]:.2f})" in caption
+    assert f"at most {above['cosine'][0]:.1f} % under the cosine (at {above['cosine'][1]:.2f})" in caption
+    assert f"At 0.30 they differ by up to {worst['sine'][0.3]:.0f} % and {worst['cosine'][0.3]:.1f} %" in caption
 
 
 def test_spectra_of_figure_13_are_rows_of_the_cubes_in_their_groups(smoke_results: Path) -> None:

@@ -1,0 +1,99 @@
+"""Boundary curves against thresholds on random lines omega = const: `python -m benchmarks.accuracy.boundary_lines`.
+
+Every threshold of `critical_amplitude` should lie on a curve of `overturning_boundary`, within its chord error, and at
+every crossing of a line with a curve the outcome should change. `critical_amplitude` does not use the curves. A
+threshold without a curve belongs to a region that the nodes did not show; `widest` is the distance to the next one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import rocking
+from rocking.boundary.tracer import END
+from rocking.model.response import Outcome
+
+Array = NDArray[np.float64]
+
+
+class Chords:
+    """The chords of boundary curves, in the plane of 1/a and log omega."""
+
+    def __init__(self, curves: xr.Dataset) -> None:
+        sizes = curves.row_size.values
+        points = np.stack([curves.slenderness.values, np.log(curves.frequency_ratio.values)])
+        first = np.delete(np.arange(points.shape[1]), np.cumsum(sizes) - 1)
+        self.start, self.end = points[:, first], points[:, first + 1]
+        self.to_safety = np.repeat(curves.neighbour_outcome.values <= Outcome.SAFE, sizes)[first]
+
+    def distance(self, x: float, y: float) -> float:
+        """Distance of a point from the nearest chord."""
+        chord, offset = self.end - self.start, np.array([[x], [y]]) - self.start
+        share = np.clip((offset * chord).sum(axis=0) / np.maximum((chord**2).sum(axis=0), 1e-300), 0.0, 1.0)
+        return float(np.hypot(*(offset - share * chord)).min())
+
+    def crossings(self, y: float) -> tuple[Array, Array]:
+        """1/a at which a line log omega = y crosses chords between overturning and survival, and their slopes."""
+        step = self.end[1] - self.start[1]
+        cut = np.flatnonzero(((self.start[1] - y) * (self.end[1] - y) < 0.0) & self.to_safety)
+        slope = (self.end[0] - self.start[0])[cut] / step[cut]
+        return self.start[0, cut] + slope * (y - self.start[1, cut]), slope
+
+
+def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution: float) -> dict[str, float]:
+    """Trace curves and compare them with thresholds on random lines."""
+    begin = time.process_time()
+    curves = rocking.overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=nodes)
+    seconds = time.process_time() - begin
+    chords = Chords(curves)
+    limit = curves.chord_error + 1.1 * END  # the end of a region is known to END
+    thresholds = unlisted = crossings = wrong = 0
+    widest = 0.0
+    groups = {"restitution": restitution, "alpha": alpha}
+    for y in np.random.default_rng(1).uniform(np.log(0.2), np.log(15.0), lines):
+        omega = float(np.exp(y))
+        found = (
+            1.0 / rocking.critical_amplitude(pulse, frequency_ratio=omega, **groups, highest_amplitude=50.0).amplitude
+        )
+        thresholds += found.size
+        for k, x in enumerate(found):
+            if chords.distance(x, y) > limit:
+                unlisted += 1
+                widest = max(widest, np.abs(np.delete(found, k) - x).min(initial=1.0))
+        x, slope = chords.crossings(y)
+        reach = 1.1 * curves.chord_error * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 2001)[:, None]
+        overturned = rocking.peak_response(
+            pulse, slenderness=np.clip(x + reach, 1e-3, 1.0), frequency_ratio=omega, **groups
+        ).overturned
+        crossings += x.size
+        wrong += int((overturned.all(axis=0) | ~overturned.any(axis=0)).sum())
+    sizes = curves.row_size.values
+    return {
+        "curves": sizes.size, "short": int((sizes < 6).sum()), "points": int(sizes.sum()), "seconds": seconds,
+        "chord_error": curves.chord_error, "thresholds": thresholds, "unlisted": unlisted, "widest": widest,
+        "crossings": crossings, "wrong": wrong,
+    }  # fmt: skip
+
+
+def main() -> None:
+    """Print one line for each pulse and angle."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--lines", type=int, default=400)
+    parser.add_argument("--restitution", type=float, default=0.85)
+    parser.add_argument("--nodes", type=int, default=301)
+    arguments = parser.parse_args()
+    for pulse in ("sine", "cosine"):
+        for degrees in (0.0, 10.0, 20.0, 30.0):
+            alpha = float(np.radians(degrees)) or None
+            found = compare(pulse, alpha, arguments.nodes, arguments.lines, arguments.restitution)
+            row = ", ".join(f"{name} {value:.3g}" for name, value in found.items())
+            print(f"{pulse} {degrees:g} deg: {row}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
