@@ -1,4 +1,4 @@
-"""Chords of boundary curves, halved until they are as near to the curves as is asked."""
+"""Chords of boundary curves, halved until their distance from the curves is small enough."""
 
 from __future__ import annotations
 

@@ -58,9 +58,10 @@ def overturning_boundary(
         Polylines in the contiguous ragged representation of CF: slenderness(point), frequency_ratio(point), each
         vertex good to `RESOLUTION` in 1/a; row_size(curve); outcome(curve), impacts(curve) of the overturning region
         that the curve bounds; neighbour_outcome(curve), neighbour_impacts(curve) on the other side (SAFE, 0, or
-        another way of overturning). An outline is cut into curves where its neighbour changes; outline(curve) numbers
-        it. `impacts` is -1 for overturning after more than `MANY_IMPACTS` impacts or after impacts that accumulate
-        to rest: that is one region. Attributes: chord_error [-], the largest distance of a chord from its curve,
+        another way of overturning). An outline is cut into curves where its neighbour changes, the point before the
+        cut being repeated; outline(curve) numbers it. `impacts` is -1 for overturning after more than `MANY_IMPACTS`
+        impacts or after impacts that accumulate to rest: that is one region. Attributes: chord_error [-], the largest
+        distance of a chord from its curve,
         measured at the middles of the chords; thinnest_region [-], the width in 1/a below which a region is not
         resolved and its two neighbours are taken to meet; unmeasured_chords, the number of chords at whose middle the
         curve was not found; open_ends, the number of ends of regions that are known to a step of the nodes only.
@@ -157,23 +158,27 @@ def _as_dataset(chains: Chains) -> xr.Dataset:
     new = np.ones(size, dtype=bool)
     new[1:] = (np.diff(chains.chain) != 0) | (np.diff(chains.neighbour) != 0)
     starts = np.flatnonzero(new)
+    # a curve that continues an outline begins with the last point before it, so that no chord is lost
+    repeated = starts[1:][np.diff(chains.chain)[starts[1:] - 1] == 0] - 1
+    points = np.sort(np.concatenate([np.arange(size), repeated]))
+    sizes = np.diff(np.append(starts, size)) + np.isin(starts - 1, repeated)
     own, neighbour = chains.own[starts], chains.neighbour[starts]
     outcomes, impacts = zip(*(decode_outcomes(code) for code in (own, neighbour)), strict=True)
     return xr.Dataset(
         {
             "slenderness": (
                 "point",
-                chains.slenderness,
+                chains.slenderness[points],
                 {"long_name": "dimensionless slenderness g tan(alpha)/a_g (3.6)", "units": "1"},
             ),
             "frequency_ratio": (
                 "point",
-                np.exp(chains.log_omega),
+                np.exp(chains.log_omega[points]),
                 {"long_name": "frequency ratio omega_g/p (3.6)", "units": "1"},
             ),
             "row_size": (
                 "curve",
-                np.diff([*starts, size]).astype(np.int32),
+                sizes.astype(np.int32),
                 {"long_name": "points", "units": "1", "sample_dimension": "point"},
             ),
             "outline": curve(chains.chain[starts].astype(np.int32), "number of the outline that holds the curve"),

@@ -54,7 +54,9 @@ def test_the_outcome_changes_at_every_vertex(pulse, alpha):
             pulse, slenderness=np.maximum(s + steps, 1e-6), frequency_ratio=omega, restitution=0.9, alpha=alpha
         )
     )
-    assert (beside == neighbour).any(axis=(0, 1)).mean() > 0.98
+    # but for the point that a curve repeats where it continues an outline
+    first = np.cumsum(boundary.row_size.values)[:-1][np.diff(boundary.outline.values) == 0]
+    assert np.delete((beside == neighbour).any(axis=(0, 1)), first).mean() > 0.98
 
 
 def test_sine_against_the_closed_forms():
@@ -95,8 +97,8 @@ def test_the_thin_safe_band_between_two_ways_of_overturning_is_seen(alpha):
         width = 1 / closed.safe_again - 1 / closed.direct
         assert 0 < np.nanmin(width) < 1e-4
         middle = 0.5 * (1 / closed.safe_again + 1 / closed.direct)
-        fates = rocking.peak_response("sine", slenderness=middle, frequency_ratio=omega, restitution=0.85)
-        assert not fates.overturned[np.isfinite(middle)].any()
+        response = rocking.peak_response("sine", slenderness=middle, frequency_ratio=omega, restitution=0.85)
+        assert not response.overturned[np.isfinite(middle)].any()
 
 
 @pytest.mark.parametrize("alpha", [None, np.radians(30.0)])

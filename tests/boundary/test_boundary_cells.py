@@ -1,4 +1,4 @@
-"""Cells that curves cross: every cell on the way of a chord, none far from it, whatever the spacing of the grid."""
+"""Cells that curves cross: every cell that a chord crosses, none far from it, whatever the spacing of the grid."""
 
 from itertools import pairwise
 
@@ -33,7 +33,7 @@ def indices(points):
     return cell, inside
 
 
-def cells_on_the_way(line):
+def cells_on_the_line(line):
     """Cells that hold one of very many points of a polyline."""
     share = np.linspace(0.0, 1.0, 200)[:, None]
     dense = np.concatenate([a + share * (b - a) for a, b in pairwise(line)])
@@ -63,14 +63,14 @@ def test_cells_of_a_curve(seed):
     rng = np.random.default_rng(seed)
     lines = [wavy_line(rng) for _ in range(2)]
     crossed = crossed_cells(curves(lines), 0.0, ROWS, COLUMNS)
-    held = [cells_on_the_way(line) for line in lines]
+    held = [cells_on_the_line(line) for line in lines]
     assert min(each.sum() for each in held) > 10
     for each in held:
         assert not (each & ~crossed).any()
-    assert not (crossed & ~grown(held[0] | held[1])).any()  # above all none on the way from one curve to the next
+    assert not (crossed & ~grown(held[0] | held[1])).any()  # in particular none between one curve and the next
 
 
-def test_a_curve_that_stays_within_a_cell_bars_that_cell_alone():
+def test_a_curve_within_one_cell_marks_this_cell_only():
     middle = [0.5 * (axis[5] + axis[6]) for axis in AXES]
     size = [axis[6] - axis[5] for axis in AXES]
     line = middle + 0.3 * np.array(size) * np.array([[-1, -1], [1, 1], [1, -1], [-1, -1]])

@@ -1,4 +1,4 @@
-"""Critical frequency ratios: the fate changes there and nowhere else, and they are the critical amplitudes turned."""
+"""Critical frequency ratios: the outcome changes there and nowhere else, and they agree with the critical amplitudes."""
 
 import math
 
@@ -16,22 +16,22 @@ WINDOW = (0.3, 20.0)
 @pytest.mark.parametrize("alpha", [None, 0.2])
 @pytest.mark.parametrize("pulse", ["sine", "-cosine", "ricker"])
 @pytest.mark.parametrize("slenderness", [0.15, 0.4, 0.7])
-def test_the_fate_changes_there_and_nowhere_else(pulse, slenderness, alpha):
+def test_the_outcome_changes_there_and_nowhere_else(pulse, slenderness, alpha):
     found = critical_frequency_ratio(pulse, slenderness=slenderness, restitution=0.85, window=WINDOW, alpha=alpha)
     assert found.frequency_ratio.size > 0
 
     def overturns(omega):
-        asked = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": 0.85, "alpha": alpha}
-        return peak_response(pulse, **asked).overturned
+        groups = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": 0.85, "alpha": alpha}
+        return peak_response(pulse, **groups).overturned
 
     below, above = (overturns(found.frequency_ratio * (1 + shift)) for shift in (-1e-10, 1e-10))
     np.testing.assert_array_equal(above, found.overturns_above)
     np.testing.assert_array_equal(below, ~found.overturns_above)
-    # between two thresholds, and outside of them all, there is one fate
+    # between two thresholds, and outside of them all, the outcome is the same
     omega = np.geomspace(*WINDOW, 3001)
     passed = np.searchsorted(found.frequency_ratio, omega)
-    fates = np.append(np.where(found.overturns_above, False, True), found.overturns_at_ends[1])
-    np.testing.assert_array_equal(overturns(omega), fates[passed])
+    expected = np.append(np.where(found.overturns_above, False, True), found.overturns_at_ends[1])
+    np.testing.assert_array_equal(overturns(omega), expected[passed])
     assert found.overturns_at_ends == tuple(overturns(np.array(WINDOW)).tolist())
 
 
@@ -43,7 +43,7 @@ def test_a_critical_amplitude_has_its_frequency_as_a_critical_frequency():
 
 
 def test_without_impact_a_cosine_overturns_below_the_closed_form():
-    # a = (1 + omega^2)/(1 - exp(-2 pi/omega)): from larger frequencies on the block stands, impacts apart
+    # a = (1 + omega^2)/(1 - exp(-2 pi/omega)): from larger frequencies on the block survives if eta = 0
     omega = 3.0
     a = (1 + omega**2) / -math.expm1(-2 * math.pi / omega)
     found = critical_frequency_ratio("cosine", slenderness=1 / a, restitution=0.0, window=(1.0, 9.0))
@@ -73,6 +73,6 @@ def test_a_wrong_window_is_named(window):
     ("name", "value"), [("slenderness", 0.0), ("restitution", 1.1), ("alpha", 2.0), ("slenderness", math.nan)]
 )
 def test_what_is_out_of_range_is_named(name, value):
-    asked = {"slenderness": 0.4, "restitution": 0.9, "alpha": None} | {name: value}
+    groups = {"slenderness": 0.4, "restitution": 0.9, "alpha": None} | {name: value}
     with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
-        critical_frequency_ratio("sine", window=WINDOW, **asked)
+        critical_frequency_ratio("sine", window=WINDOW, **groups)

@@ -23,7 +23,7 @@ from rocking.solver.peak_response import peak_response
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
 STEPS = (1e-6, 3e-6, 1e-7, 1e-8, 1e-10, 2 * RESOLUTION)
-"""How far off a boundary the fates on its two sides are looked up, in 1/a and in log omega [-]."""
+"""How far off a boundary the outcomes on its two sides are computed, in 1/a and in log omega [-]."""
 
 PRODUCTS = json.loads((RESULTS / "manifest.json").read_text(encoding="utf-8"))["products"]
 
@@ -74,11 +74,13 @@ def test_outcome_changes_across_each_boundary_as_its_file_states(name: str) -> N
     for alpha in np.unique(stored.alpha):
         curves = curves_at(stored, alpha)
         # after many impacts regions lie in layers, some thinner than a millionth and a few than the smallest step
-        left = np.arange(curves.sizes["point"])
-        agree = []
+        # a curve that continues an outline repeats a point of the curve before it
+        repeated = np.cumsum(curves.row_size.values)[:-1][np.diff(curves.outline.values) == 0]
+        points = np.delete(np.arange(curves.sizes["point"]), repeated)
+        left, agree = points, []
         for step in STEPS:
             left = left[~_as_stated(curves, left, step)]
-            agree.append(1.0 - left.size / curves.sizes["point"])
+            agree.append(1.0 - left.size / points.size)
         assert agree[0] > 0.7
         assert agree[-1] > 0.95
 
