@@ -1,4 +1,4 @@
-"""Critical frequency ratios: the outcome changes there and nowhere else, and they agree with the critical amplitudes."""
+"""Critical frequency ratios: the outcome changes there and nowhere else; they agree with critical amplitudes."""
 
 import math
 
