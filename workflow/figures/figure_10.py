@@ -95,7 +95,7 @@ def _panel(ax: Axes, data: xr.Dataset, pulse: int) -> None:
             lines.amplitude,
             color=colour,
             linewidth=1.4 if slender else 0.9,
-            marker="o",  # an island of one vertex has no line
+            marker="o",  # a region between two lines of the grid has no line
             markersize=0.9,
             markeredgewidth=0,
             zorder=3 if slender else 2,
