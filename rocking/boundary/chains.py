@@ -23,10 +23,8 @@ class Chains:
         Number of the chain.
     slenderness, log_omega : float arrays [-]
         The last point within the region along a line omega = const.
-    beyond : float array
-        1/a of the first point of the neighbour along that line [-].
     own, neighbour : int arrays
-        Region codes within and beyond.
+        Region codes of the region and of its neighbour.
     side : int array
         1 where the region lies at larger 1/a than its neighbour, else 0.
     width : float array
@@ -36,7 +34,6 @@ class Chains:
     chain: Index
     slenderness: Floats
     log_omega: Floats
-    beyond: Floats
     own: Codes
     neighbour: Codes
     side: NDArray[np.int64]
@@ -56,7 +53,7 @@ class Chains:
 def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
     """Follow the joins of one restitution from end to end; a closed chain ends with the point it begins with."""
     number: dict[tuple[int, int, int], int] = {}
-    points: list[tuple[float, float, float, int, int, int, float]] = []
+    points: list[tuple[float, float, int, int, int, float]] = []
     beside: list[list[int]] = []
     for join in joins:
         ends = []
@@ -90,30 +87,28 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
             chain.append(start)
         order += chain
         sizes.append(len(chain))
-    table = np.array([points[k] for k in order]).reshape(-1, 7).T
+    table = np.array([points[k] for k in order]).reshape(-1, 6).T
     return Chains(
         chain=np.repeat(np.arange(len(sizes)), sizes),
         slenderness=table[0],
         log_omega=table[1],
-        beyond=table[2],
-        own=table[3].astype(np.int64),
-        neighbour=table[4].astype(np.int64),
-        side=table[5].astype(np.int64),
-        width=table[6],
+        own=table[2].astype(np.int64),
+        neighbour=table[3].astype(np.int64),
+        side=table[4].astype(np.int64),
+        width=table[5],
     )
 
 
-def _point(column: Column, m: int, side: int) -> tuple[float, float, float, int, int, int, float]:
+def _point(column: Column, m: int, side: int) -> tuple[float, float, int, int, int, float]:
     if side:
         top = column.below[m + 1] if m + 1 < column.below.size else column.top
-        x, beyond, width = column.above[m], column.below[m], top - column.above[m]
+        x, width = column.above[m], top - column.above[m]
     else:
         bottom = column.above[m - 1] if m else column.bottom
-        x, beyond, width = column.below[m], column.above[m], column.below[m] - bottom
+        x, width = column.below[m], column.below[m] - bottom
     return (
         float(x),
         column.log_omega,
-        float(beyond),
         column.codes[m + side],
         column.codes[m + 1 - side],
         side,

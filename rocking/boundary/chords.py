@@ -101,10 +101,10 @@ def _middles(
         )
     k = np.flatnonzero(found)
     points = np.stack([chord[k], y[k], np.full(k.size, eta)], axis=1)
-    x, other = guess.copy(), guess.copy()
-    x[k], other[k] = refine_brackets(0, points, np.stack([inside[k], beyond[k]], axis=1), one.own[k], classify)
+    x = guess.copy()
+    x[k], _ = refine_brackets(0, points, np.stack([inside[k], beyond[k]], axis=1), one.own[k], classify)
     slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
-    middle = Chains(one.chain, x, y, other, one.own, one.neighbour, one.side, width)
+    middle = Chains(one.chain, x, y, one.own, one.neighbour, one.side, width)
     return middle, found, np.abs(x - chord) / np.hypot(1.0, slope)
 
 

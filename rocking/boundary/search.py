@@ -32,7 +32,7 @@ MOST_IMPACTS = 32
 """Overturning after more impacts than this is not told apart even on one line [-]."""
 
 UNCOUNTED = -1
-"""Region code of it, and the `impacts` of its curves."""
+"""Region code of overturning whose impacts are not counted, and the `impacts` of its curves."""
 
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
