@@ -38,5 +38,5 @@ def test_window():
     for low, high, name in ((0.0, 1.0, "frequency_ratio_min"), (2.0, 2.0, "frequency_ratio_max")):
         with pytest.raises(InvalidArgumentError, match=f"^`{name}` = "):
             check_window(FREQUENCY_RATIO, low, high)
-    with pytest.raises(InvalidArgumentError, match="^`last` = "):
+    with pytest.raises(InvalidArgumentError, match=r"^`last` = "):
         check_window(SLENDERNESS, 0.5, 0.4, ("first", "last"))
