@@ -121,7 +121,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         background.start_soon(_warn_without_cubes, service)
         yield
         background.cancel_scope.cancel()
-    service.executor.close()
+    for executor in (service.executor, service.parser):
+        executor.close()
 
 
 async def _load_kernels(service: Service, when_ready: Callable[[], None]) -> None:
