@@ -189,7 +189,7 @@ def test_boundary_in_three_formats():
         (["spectrum", "--pulse", "sine", "--slenderness", "0.4", "--restitution", "0.85", "--points", "1"],
          "--points", "[2,"),
         (["boundary", "--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-max", "0.1"],
-         "--frequency-ratio-max", "(0.2, inf)"),
+         "--frequency-ratio-max", "(0.2, 1e+09]"),
         (["serve", "--port", "99999"], "--port", "65535"),
         (["serve", "--results", ""], "--results", "the name of a folder"),
     ],
