@@ -30,7 +30,9 @@ def test_another_restitution_gives_other_curves(open_page):
     settle(page)
     before = pixels(page, "#map")
     page.locator("#eta").fill("0.9")
-    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.curves ?? '{}').restitution === 0.9")
+    page.wait_for_function(
+        "() => JSON.parse(document.getElementById('map').dataset.curves ?? '{}').restitution === 0.9"
+    )
     settle(page)
     assert query(page)["restitution"] == "0.9"
     changed = (pixels(page, "#map") != before).any(axis=-1).mean()
@@ -48,8 +50,8 @@ def test_a_click_opens_the_history_of_that_block(open_page):
     chosen = {name: float(query(page)[name]) for name in ("frequency_ratio", "slenderness")}
     assert chosen["frequency_ratio"] == pytest.approx(6.0, rel=0.01)
     assert chosen["slenderness"] == pytest.approx(0.4, abs=0.005)
-    truth = rocking.peak_response("sine", **chosen, restitution=0.85)
-    expect(page.locator("#map-readout")).to_contain_text(f"{float(truth.peak_rotation):.4f} α")
+    expected = rocking.peak_response("sine", **chosen, restitution=0.85)
+    expect(page.locator("#map-readout")).to_contain_text(f"{float(expected.peak_rotation):.4f} α")
     expect(page.locator("#motion-caption")).to_contain_text("It survives (comes to rest)")
     page.go_back()
     expect(page.locator("#rotation")).to_be_hidden()
