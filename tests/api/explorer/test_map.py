@@ -30,7 +30,9 @@ def test_another_restitution_gives_other_curves(open_page):
     settle(page)
     before = pixels(page, "map")
     page.locator("#eta").fill("0.9")
-    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.curves ?? '{}').restitution === 0.9")
+    page.wait_for_function(
+        "() => JSON.parse(document.getElementById('map').dataset.curves ?? '{}').restitution === 0.9"
+    )
     settle(page)
     assert query(page)["restitution"] == "0.9"
     changed = (pixels(page, "map") != before).any(axis=-1).mean()
