@@ -2,14 +2,12 @@
 _figures = config["figures"]
 FIGURE_INPUTS = {
     "figure-04": {"boundaries": overturning_files("sine", restitutions(config, "figure-04"))},
-    "figure-08": {pulse: spectrum_files(pulse, restitutions(config, "figure-08")) for pulse in ("sine", "cosine")},
     "figure-09": {
         "boundaries": [overturning_files(pulse, restitutions(config, "figure-09"))[0] for pulse in ("sine", "cosine")]
     },
     "figure-10": {
         pulse: overturning_files(pulse, restitutions(config, "figure-10"))[0] for pulse in ("sine", "cosine")
     },
-    "figure-13": {pulse: spectrum_files(pulse, restitutions(config, "figure-13"))[0] for pulse in ("sine", "cosine")},
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
