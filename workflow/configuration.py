@@ -33,6 +33,7 @@ DATA_OF_FIGURES = {
     "figure-04": ["sine"],
     "figure-09": ["sine", "cosine"],
     "figure-10": ["sine", "cosine"],
+    "figure-master-spectra": ["sine", "cosine"],
     "figure-scale-law": ["sine"],
 }
 """The pulses of the figures that are drawn from data sets."""
@@ -165,6 +166,12 @@ _TWO_BLOCKS = Annotated[
     AfterValidator(_pairs),
 ]
 _HISTORIES = {"pulses": PULSE_LIST, "restitution": ETA, "alpha_deg": ANGLES, "frequency_ratio": OMEGA}
+_AXIS = {"points": integer(4, 1000)}
+_MASTER = {
+    "alpha_deg": ANGLES,
+    "slenderness": _range(SLENDERNESS_OF_BOUNDARY, **_AXIS),
+    "frequency_ratio": _range(OMEGA, **_AXIS),
+}
 
 FIGURES = section(
     **{
@@ -208,6 +215,8 @@ FIGURES = section(
         ),
         "figure-S1": section(ours=section(slenderness=number(1e-4, 1), frequency_ratio=OMEGAS)),
         "figure-scale-law": section(ours=section(restitution=several(number(0.01, 1)), reference=ETA)),
+        "figure-master-spectra": section(ours=section(restitution=ETA, **_MASTER)),
+        "figure-master-housner": section(ours=section(**_MASTER)),
         "table-1": section(),
     }
 )
@@ -262,8 +271,11 @@ def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:
 
 def restitutions(config: Mapping[str, Any], figure: str) -> list[float]:
     """The restitutions of a figure as a list, also if there is only one."""
-    eta = chosen(config, figure)["restitution"]
-    return eta if isinstance(eta, list) else [eta]
+    return _listed(chosen(config, figure)["restitution"])
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
@@ -290,7 +302,7 @@ def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
             yield f"pulses = {config['pulses']}: {figure} needs {pulse}"
         for name, given, made in (
             ("restitution", restitutions(config, figure), config["restitution"]),
-            ("alpha_deg", [values.get("alpha_deg", 0)], config["grid"]["alpha_deg"]),
+            ("alpha_deg", _listed(values.get("alpha_deg", 0)), config["grid"]["alpha_deg"]),
         ):
             for value in set(given) - set(made):
                 yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"

@@ -149,6 +149,15 @@ def histories(spreads: list[list[float]]) -> list[xr.Dataset]:
     ]
 
 
+def master(spread: float) -> xr.Dataset:
+    """A map of master spectra that vary as much with alpha everywhere."""
+    return xr.Dataset(
+        {"spread": (("pulse", "slenderness", "frequency_ratio"), np.full((1, 2, 2), spread))},
+        coords={"alpha": [0.0, 0.5], "frequency_ratio": [1.0, 2.0]},
+        attrs={"pulse_names": "sine"},
+    )
+
+
 def two_histories() -> xr.Dataset:
     """Figure 6 with two blocks that differ by a thousandth."""
     tau = np.linspace(0, 1, 5)
@@ -228,6 +237,7 @@ MUST_FAIL: dict[str, Callable[[], list[Claim]]] = {
     "groups-for-all-cases": lambda: small_rotations.practical_similarity(spread()),
     "larger-slenderness": lambda: small_rotations.larger_slenderness(spread()),
     "small-rotations": lambda: small_rotations.larger_slenderness(spread()),
+    "twofold-effect": lambda: small_rotations.twofold_effect(master(0.1), master(0.1)),
     "histories": lambda: small_rotations.histories(histories([[0.3, 0.4], [0.4, 0.1]])),
     "pure-rocking": lambda: small_rotations.pure_rocking({20: [contact(0.3)], 30: [contact(0.5)], 40: [contact(0.6)]}),
 }
