@@ -178,7 +178,7 @@ def reactions_of(motion: Motion, impact_times: Floats, tau: Floats, rotation: Fl
     Parameters
     ----------
     motion : Motion
-    landings : float array (impacts,)
+    impact_times : float array (impacts,)
         Times of the impacts [tau], ascending.
     tau, rotation, velocity
         Ascending times and `Motion.sample` there.
