@@ -9,6 +9,7 @@ from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError
 from .excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from .excitation.pulses import get_pulse as get_pulse
+from .excitation.records.record import Record as Record
 from .history.time_history import time_history as time_history
 from .lookup.cube import Cube as Cube
 from .lookup.open import open_cube as open_cube
