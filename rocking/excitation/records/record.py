@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import InitVar, dataclass
+from dataclasses import dataclass
 from functools import cached_property
+from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import InvalidArgumentError, in_range, one_of
@@ -21,7 +22,8 @@ MAX_ACCELERATION = 1e6
 """Largest acceleration of a record [m/s2]; a larger value is a fill value or a wrong unit."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@final
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Record:
     """A recorded ground acceleration. Records are immutable; equal samples and steps make equal records.
 
@@ -51,24 +53,24 @@ class Record:
 
     acceleration: NDArray[np.float64]
     time_step: float
-    unit: InitVar[str]
-    name: str = ""
-    source: str = ""
+    name: str
+    source: str
 
-    def __post_init__(self, unit: str) -> None:
+    def __init__(self, acceleration: ArrayLike, time_step: float, unit: str, name: str = "", source: str = "") -> None:
         factor = UNITS[one_of("unit", unit, UNITS)]
         limit = MAX_ACCELERATION / factor
-        samples = in_range("acceleration", self.acceleration, -limit, limit, unit=unit)
+        samples = in_range("acceleration", acceleration, -limit, limit, unit=unit)
         if samples.ndim != 1 or samples.size < 2:
             raise InvalidArgumentError("acceleration", f"shape {samples.shape}", "one dimension, at least 2 samples")
         if not samples.any():
             raise InvalidArgumentError("acceleration", "all samples 0", "a motion that is not zero")
-        step = in_range("time_step", self.time_step, 0.0, np.inf, closed="neither", unit="s")
+        step = in_range("time_step", time_step, 0.0, np.inf, closed="neither", unit="s")
         if step.ndim:
-            raise InvalidArgumentError("time_step", self.time_step, "one number")
+            raise InvalidArgumentError("time_step", time_step, "one number")
         scaled = np.array(samples * factor)  # a copy, which the caller cannot change
         scaled.flags.writeable = False
-        for key, value in (("acceleration", scaled), ("time_step", float(step))):
+        given = {"acceleration": scaled, "time_step": float(step), "name": name, "source": source}
+        for key, value in given.items():
             object.__setattr__(self, key, value)
 
     def __repr__(self) -> str:
