@@ -51,15 +51,15 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     InvalidArgumentError
         If the hazard curve is not as described, or the data set holds no fitted curves.
     """
-    if not {"median", "dispersion", "model"} <= {*fragility.variables}:
+    if not {"median_intensity", "dispersion", "model"} <= {*fragility.variables}:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
-    x, rates = _checked(hazard_curve)
+    x, rates = check_hazard_curve(hazard_curve)
     weights, nodes = _quadrature(x, rates)
-    found = xr.full_like(fragility["median"], np.nan)
-    at_end = xr.full_like(fragility["median"], np.nan)
+    found = xr.full_like(fragility["median_intensity"], np.nan)
+    at_end = xr.full_like(fragility["median_intensity"], np.nan)
     for name in fragility["model"].values.tolist():
         own = {"model": name}
-        median, dispersion = (fragility[part].sel(own).values[..., None] for part in ("median", "dispersion"))
+        median, dispersion = (fragility[part].sel(own).values[..., None] for part in ("median_intensity", "dispersion"))
         found.loc[own] = curve_probability(name, nodes, median, dispersion) @ weights
         at_end.loc[own] = curve_probability(name, x[-1], median, dispersion)[..., 0]
     lower = found + at_end * rates[-1]
@@ -77,7 +77,14 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     )
 
 
-def _checked(hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> tuple[Array, Array]:
+def check_hazard_curve(hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> tuple[Array, Array]:
+    """Intensities and annual rates of a hazard curve, as `annual_rate` describes them.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If they are not.
+    """
     if isinstance(hazard_curve, xr.DataArray):
         if hazard_curve.dims != ("intensity",):
             raise InvalidArgumentError("hazard_curve", hazard_curve.dims, "the one dimension `intensity`")

@@ -13,7 +13,10 @@ from rocking.suites.hazard import annual_rate
 def curves(median, dispersion):
     """A data set with fitted curves, as `rocking.fragility` gives."""
     return xr.Dataset(
-        {name: ("model", np.array([value, value])) for name, value in (("median", median), ("dispersion", dispersion))},
+        {
+            name: ("model", np.array([value, value]))
+            for name, value in (("median_intensity", median), ("dispersion", dispersion))
+        },
         {"model": ["lognormal", "logistic"]},
         {"measure": "pga"},
     )
