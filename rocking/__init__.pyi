@@ -7,8 +7,10 @@ from .boundary.tracing import overturning_boundary as overturning_boundary
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError
+from .errors import RecordFileError as RecordFileError
 from .excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from .excitation.pulses import get_pulse as get_pulse
+from .excitation.records.readers.read_record import read_record as read_record
 from .excitation.records.record import Record as Record
 from .history.time_history import time_history as time_history
 from .lookup.cube import Cube as Cube
