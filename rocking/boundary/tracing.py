@@ -22,6 +22,7 @@ from rocking.boundary.tracer import END, Tracer
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.outcome_code import decode_outcomes
+from rocking.model.parameters import SLENDERNESS
 
 CHORD = 1e-4
 """Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
@@ -108,7 +109,7 @@ def overturning_boundaries(
     in_range("nodes", nodes, 16, 4001)
     low, high = (float(in_range("frequency_ratio", x, 0.0, np.inf, closed="neither")) for x in frequency_ratio)
     in_range("frequency_ratio[1]", high, low, np.inf, closed="neither")
-    bottom, top = (float(in_range("slenderness", x, 0.0, 1.0, closed="right")) for x in slenderness)
+    bottom, top = (float(in_range("slenderness", x, SLENDERNESS.lower, 1.0)) for x in slenderness)
     in_range("slenderness[1]", top, bottom, 1.0, closed="right")
     etas = np.atleast_1d(in_range("restitution", restitution, 0.0, 1.0))
     made = as_pulse(pulse)
