@@ -81,6 +81,9 @@ SLENDERNESS = Parameter(
 
 FREQUENCY_RATIO = Parameter("frequency_ratio", "omega_g/p", "-", 1e-9, 1e9, "both", "frequency ratio")
 
+FREQUENCY_PARAMETER = Parameter("frequency_parameter", "p", "rad/s", 1e-6, 1e6, "both", "frequency parameter")
+"""Of a block under a recorded motion, whose time is in seconds."""
+
 RESTITUTION = Parameter("restitution", "eta", "-", 0.0, 1.0, "both", "coefficient of restitution")
 
 ALPHA = Parameter("alpha", "alpha", "rad", 0.0, 1.57, "both", "slenderness angle (slender limit without)")

@@ -5,8 +5,9 @@ import math
 import pytest
 from rocking_api.routers import blocks
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.history.time_history import time_history
-from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking.model.block import Block
 from rocking.solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 

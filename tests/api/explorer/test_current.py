@@ -84,7 +84,7 @@ def test_every_frame_shows_the_map_of_the_controls(open_page, service):
     expect_drawn(page, "half_sine")
     assert time.monotonic() - started < 5.0
     page.locator("#eta").fill("0.9")
-    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.drawn).restitution === 0.9")
+    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.drawn ?? '{}').restitution === 0.9")
     service.seconds = 0.0
     settle(page)
     assert page.evaluate("stale") == []
