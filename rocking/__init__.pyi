@@ -20,5 +20,6 @@ from .model.block import Block as Block
 from .model.response import Outcome as Outcome
 from .model.response import Response as Response
 from .solver.peak_response import peak_response as peak_response
+from .solver.records.amplification import record_amplification as record_amplification
 from .solver.records.record_response import record_response as record_response
 from .version import __version__ as __version__
