@@ -22,4 +22,8 @@ from .model.response import Response as Response
 from .solver.peak_response import peak_response as peak_response
 from .solver.records.amplification import record_amplification as record_amplification
 from .solver.records.record_response import record_response as record_response
+from .suites.fragility import fragility as fragility
+from .suites.hazard import annual_rate as annual_rate
+from .suites.pulse_fit import PulseFit as PulseFit
+from .suites.pulse_fit import fit_pulse as fit_pulse
 from .version import __version__ as __version__

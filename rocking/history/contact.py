@@ -180,7 +180,7 @@ def reactions_of(
     Parameters
     ----------
     motion : Motion
-    landings : float array (impacts,)
+    impact_times : float array (impacts,)
         Times of the impacts [tau], ascending.
     tau, rotation, velocity
         Ascending times and `Motion.sample` there.
