@@ -7,8 +7,12 @@ from .boundary.tracing import overturning_boundary as overturning_boundary
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError
+from .errors import RecordFileError as RecordFileError
 from .excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from .excitation.pulses import get_pulse as get_pulse
+from .excitation.records.readers.read_record import read_record as read_record
+from .excitation.records.record import Record as Record
+from .history.record_history import record_history as record_history
 from .history.time_history import time_history as time_history
 from .lookup.cube import Cube as Cube
 from .lookup.open import open_cube as open_cube
@@ -16,4 +20,9 @@ from .model.block import Block as Block
 from .model.response import Outcome as Outcome
 from .model.response import Response as Response
 from .solver.peak_response import peak_response as peak_response
+from .solver.records.record_response import record_response as record_response
+from .suites.fragility import fragility as fragility
+from .suites.hazard import annual_rate as annual_rate
+from .suites.pulse_fit import PulseFit as PulseFit
+from .suites.pulse_fit import fit_pulse as fit_pulse
 from .version import __version__ as __version__

@@ -21,7 +21,12 @@ from rocking.boundary.search import Floats, Work, classifier, layer_code, region
 from rocking.boundary.tracer import END, Tracer
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.model.checks import check, check_window
 from rocking.model.outcome_code import decode_outcomes
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+
+UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
+"""Blocks that the pulse can uplift."""
 
 CHORD = 1e-4
 """Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
@@ -102,11 +107,9 @@ def overturning_boundaries(
 ) -> list[xr.Dataset]:
     """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit."""
     in_range("nodes", nodes, 16, 4001)
-    low, high = (float(in_range("frequency_ratio", x, 0.0, np.inf, closed="neither")) for x in frequency_ratio)
-    in_range("frequency_ratio[1]", high, low, np.inf, closed="neither")
-    bottom, top = (float(in_range("slenderness", x, 0.0, 1.0, closed="right")) for x in slenderness)
-    in_range("slenderness[1]", top, bottom, 1.0, closed="right")
-    etas = np.atleast_1d(in_range("restitution", restitution, 0.0, 1.0))
+    low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
+    bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
+    etas = np.atleast_1d(check(RESTITUTION, restitution))
     made = as_pulse(pulse)
     log_omega = np.linspace(np.log(low), np.log(high), int(nodes))
     rows = _rows(bottom, top, int(nodes), log_omega.size)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
-
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity [m/s2] (ISO 80000-3)."""
 
 
 @dataclass(frozen=True)

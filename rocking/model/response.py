@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking.errors import InvalidArgumentError
 from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS
 from rocking.model.outcome import Outcome
-from rocking.model.parameters import GROUPS
+from rocking.model.parameters import FREQUENCY_PARAMETER, GROUPS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,7 +132,7 @@ class Response:
             for one in (*RESPONSE_FIELDS, OVERTURNED)
         }
         coordinates: dict[str, Any] = {}
-        for group in GROUPS:
+        for group in (*GROUPS, FREQUENCY_PARAMETER):
             value = self.groups.get(group.name)
             if value is not None:
                 shape = (1,) * (len(self.shape) - value.ndim) + value.shape

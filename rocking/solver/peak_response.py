@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-import os
 import threading
-from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
-from itertools import repeat
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._numba.cancellation import StopFlag, check_stop, flag_array
+from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, in_range
@@ -23,6 +20,7 @@ from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
+from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
 from rocking.solver.state import (
     FULL_PRECISION,
@@ -41,10 +39,6 @@ TRUNCATION_FRACTION = 1e-4
 
 NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
-
-
-AVAILABLE_CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-"""Cores available to this process [-]."""
 
 
 class SolverState(threading.local):
@@ -162,26 +156,12 @@ def _solve_cells(
     cores = int(threads) if threads else AVAILABLE_CORES
     chunk_size = min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK)
 
-    def fill(start: int, flag: NDArray[np.uint8]) -> None:
-        part = slice(start, start + chunk_size)
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
         chunk = [cell[part] for cell in cells]
         if by_arcs:
             solve_by_arcs(*chunk, solver_state.single(pulse), flag, records[part])
         else:
             solve_batch(*chunk, *solver_state.of(pulse, precision), flag, records[part])
 
-    starts = range(0, size, chunk_size)
-    workers = min(cores, len(starts))
-    if workers <= 1:
-        for start in starts:
-            fill(start, flag_array(stop))
-            check_stop(stop)
-    else:
-        with (stop or StopFlag()).child() as own, ThreadPoolExecutor(workers) as pool:
-            try:
-                list(pool.map(fill, starts, repeat(own.array)))
-            except BaseException:  # includes KeyboardInterrupt: the pool waits for its threads
-                own.set()
-                raise
-        check_stop(stop)
+    fill_chunks(fill, size, chunk_size, cores, stop)
     return records

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
-from rocking.model.block import STANDARD_GRAVITY
 from rocking_api.models.params import Method, Params, PulseName, Tolerance, check_value
 from rocking_api.models.responses import VERSION, PointResponse
 
