@@ -20,6 +20,7 @@ from .lookup.open import open_cube as open_cube
 from .model.response import Outcome as Outcome
 from .model.response import Response as Response
 from .solver.peak_response import peak_response as peak_response
+from .solver.records.amplification import record_amplification as record_amplification
 from .solver.records.record_response import record_response as record_response
 from .suites.fragility import fragility as fragility
 from .suites.hazard import annual_rate as annual_rate
