@@ -10,6 +10,8 @@ from typing import Annotated
 
 import typer
 
+from rocking.cli.fragility import fragility
+from rocking.cli.record import record
 from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 app = typer.Typer(
@@ -138,6 +140,10 @@ def boundary(
         window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
         params = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
         output.boundary(params, window, output.output_format(json=json, csv=csv))
+
+
+app.command()(record)
+app.command()(fragility)
 
 
 @app.command()
