@@ -24,7 +24,7 @@ from pydantic import (
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import PULSE_NAMES
 from rocking.suites.configuration import suite_configuration
-from workflow.scripts.axes import stepped, steps_between
+from workflow.scripts.axes import steps_between
 
 NODES = 200_000_000
 """Largest number of nodes of the cubes, or of the boundary grids, of one pulse, which are in memory together."""
@@ -34,10 +34,9 @@ BYTES = 125
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
-    "figure-08": ["sine", "cosine"],
     "figure-09": ["sine", "cosine"],
     "figure-10": ["sine", "cosine"],
-    "figure-13": ["sine", "cosine"],
+    "figure-master-spectra": ["sine", "cosine"],
     "figure-scale-law": ["sine"],
 }
 """The pulses of the figures that are drawn from data sets."""
@@ -170,6 +169,12 @@ _TWO_BLOCKS = Annotated[
     AfterValidator(_pairs),
 ]
 _HISTORIES = {"pulses": PULSE_LIST, "restitution": ETA, "alpha_deg": ANGLES, "frequency_ratio": OMEGA}
+_AXIS = {"points": integer(4, 1000)}
+_MASTER = {
+    "alpha_deg": ANGLES,
+    "slenderness": _range(SLENDERNESS_OF_BOUNDARY, **_AXIS),
+    "frequency_ratio": _range(OMEGA, **_AXIS),
+}
 
 FIGURES = section(
     **{
@@ -208,10 +213,13 @@ FIGURES = section(
         "figure-11": section(ours=section(slenderness=SLENDERNESS, duration=DURATION, **_HISTORIES)),
         "figure-12": section(paper=section(slenderness=SLENDERNESS), ours=section(duration=DURATION, **_HISTORIES)),
         "figure-13": section(
-            paper=section(restitution=ETA), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
+            paper=section(restitution=ETA),
+            ours=section(slenderness=ROWS, alpha_deg=ANGLES, frequency_ratio=_range(OMEGA)),
         ),
         "figure-S1": section(ours=section(slenderness=number(1e-4, 1), frequency_ratio=OMEGAS)),
         "figure-scale-law": section(ours=section(restitution=several(number(0.01, 1)), reference=ETA)),
+        "figure-master-spectra": section(ours=section(restitution=ETA, **_MASTER)),
+        "figure-master-housner": section(ours=section(**_MASTER)),
         "table-1": section(),
     }
 )
@@ -287,8 +295,11 @@ def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:
 
 def restitutions(config: Mapping[str, Any], figure: str) -> list[float]:
     """The restitutions of a figure as a list, also if there is only one."""
-    eta = chosen(config, figure)["restitution"]
-    return eta if isinstance(eta, list) else [eta]
+    return _listed(chosen(config, figure)["restitution"])
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
@@ -309,25 +320,16 @@ def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
 
 def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
     """Figures that need data which the configuration does not compute."""
-    grid, columns = config["grid"], config["grid"]["frequency_ratio"]
-    rows = stepped(**grid["slenderness"])
     for figure, pulses in DATA_OF_FIGURES.items():
         values = chosen(config, figure)
         for pulse in set(pulses) - set(config["pulses"]):
             yield f"pulses = {config['pulses']}: {figure} needs {pulse}"
         for name, given, made in (
             ("restitution", restitutions(config, figure), config["restitution"]),
-            ("alpha_deg", [values.get("alpha_deg", 0)], grid["alpha_deg"]),
+            ("alpha_deg", _listed(values.get("alpha_deg", 0)), config["grid"]["alpha_deg"]),
         ):
             for value in set(given) - set(made):
                 yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"
-        for value in values.get("slenderness", []):
-            if abs(rows - value).min() > 1e-9:
-                yield f"figures.{figure}: slenderness = {value}; allowed: nodes of grid.slenderness"
-        shown = values.get("frequency_ratio", columns)
-        if not columns["low"] <= shown["low"] < shown["high"] <= columns["high"]:
-            window = f"{columns['low']:g} to {columns['high']:g}"
-            yield f"figures.{figure}: frequency_ratio = {shown}; allowed: within grid.frequency_ratio, {window}"
     law = chosen(config, "figure-scale-law")
     if law["reference"] not in law["restitution"]:
         yield f"figures.figure-scale-law: reference = {law['reference']}; allowed: one of its {law['restitution']}"

@@ -13,9 +13,9 @@ import typer
 from rocking.cli.fragility import fragility
 from rocking.cli.record import record
 from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking.version import __version__
 
 app = typer.Typer(
-    help="Rocking of free-standing rigid blocks under pulse ground motion.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -45,6 +45,21 @@ FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p."
 FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Csv = Annotated[bool, typer.Option("--csv", help="Print CSV.")]
+
+
+def _print_version(given: bool) -> None:
+    if given:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Rocking of free-standing rigid blocks under pulse ground motion."""
 
 
 @app.command()

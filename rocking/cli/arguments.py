@@ -13,6 +13,8 @@ import typer
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.groups import GroupSet, Problem, groups_of
 from rocking.model.block import Block
+from rocking.model.checks import check_window
+from rocking.model.parameters import FREQUENCY_RATIO
 
 
 @dataclass(frozen=True)
@@ -91,9 +93,8 @@ def read_params(
 
 
 def frequency_window(low: float, high: float) -> tuple[float, float]:
-    """A window of the frequency ratio [-], 0 < low < high."""
-    checked = float(in_range("frequency_ratio_min", low, 0.0, math.inf, closed="neither"))
-    return checked, float(in_range("frequency_ratio_max", high, checked, math.inf, closed="neither"))
+    """A window of the frequency ratio [-], low < high."""
+    return check_window(FREQUENCY_RATIO, low, high)
 
 
 def _positive(name: str, text: str | None, unit: str) -> float:

@@ -51,8 +51,21 @@ class Parameter:
         return f"{self.description}, {self.symbol} [{self.unit}]"
 
     def restricted(self, lower: float, upper: float) -> Parameter:
-        """The same parameter on a smaller closed range."""
-        return replace(self, lower=lower, upper=upper, closed="both")
+        """The same parameter on a smaller range, closed at its finite ends.
+
+        Raises
+        ------
+        ValueError
+            If the range is not a part of that of the parameter.
+        """
+        if not self.lower <= lower < upper <= self.upper:
+            raise ValueError(f"[{lower:g}, {upper:g}] is not a part of {self.interval}, the range of {self.name}")
+        return replace(self, lower=lower, upper=upper, closed="both" if math.isfinite(upper) else "left")
+
+    def in_degrees(self) -> Parameter:
+        """The same angle in degrees, with the ending `_deg` of its name."""
+        lower, upper = math.degrees(self.lower), math.degrees(self.upper)
+        return replace(self, name=f"{self.name}_deg", unit="deg", lower=lower, upper=upper)
 
 
 SLENDERNESS = Parameter(

@@ -72,6 +72,10 @@ class BoundedResponse:
         """The same responses in another shape."""
         return BoundedResponse(*(getattr(self, field.name).reshape(shape) for field in BOUNDED_FIELDS))
 
+    def __getitem__(self, index: Flags | NDArray[np.intp] | slice) -> BoundedResponse:
+        """The responses of a part of the points."""
+        return BoundedResponse(*(getattr(self, field.name)[index] for field in BOUNDED_FIELDS))
+
     def put(self, where: Flags | NDArray[np.intp], part: BoundedResponse) -> None:
         """Set the responses of a part of the points."""
         for field in BOUNDED_FIELDS:

@@ -184,7 +184,7 @@ def test_interpolation_is_of_fourth_order_where_linear_is_of_second(tmp_path: Pa
     for path, _ in grid_size.build_cubes(tmp_path, config, (0.125, 0.5)):
         known, found = open_cube(path).interpolate(points, math.inf)
         errors.append(np.full(exact.size, np.nan))
-        errors[-1][known] = np.abs(found.peak_rotation - exact[known])
+        errors[-1][known] = np.abs(found.peak_rotation - exact)[known]
     both = ~np.isnan(errors).any(axis=0)
     coarse, fine = (np.median(error[both]) for error in errors)
     assert math.log2(coarse / fine) > 7.0  # one fourth of the spacing: 8 at order 4

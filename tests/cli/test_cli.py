@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import rocking
 from rocking.boundary.tracing import overturning_boundary
 from rocking.cli.app import app
 from rocking.cli.units import si_value
@@ -188,7 +189,7 @@ def test_boundary_in_three_formats():
         (["spectrum", "--pulse", "sine", "--slenderness", "0.4", "--restitution", "0.85", "--points", "1"],
          "--points", "[2,"),
         (["boundary", "--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-max", "0.1"],
-         "--frequency-ratio-max", "(0.2, inf)"),
+         "--frequency-ratio-max", "(0.2, 1e+09]"),
         (["serve", "--port", "99999"], "--port", "65535"),
         (["serve", "--results", ""], "--results", "the name of a folder"),
     ],
@@ -230,13 +231,20 @@ def test_invalid_quantities_are_refused(text, unit):
     assert caught.value.parameter == "x"
 
 
-def test_help_imports_nothing_heavy():
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_help_and_version_import_nothing_heavy(option):
     code = (
         "import sys\n"
         "from typer.testing import CliRunner\n"
         "from rocking.cli.app import app\n"
-        "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
-        "print(*({'numba', 'scipy', 'xarray', 'pint', 'fastapi', 'uvicorn'} & set(sys.modules)))"
+        f"result = CliRunner().invoke(app, [{option!r}])\n"
+        "assert result.exit_code == 0\n"
+        "print(result.stdout)\n"
+        "print(*({'numba', 'numpy', 'scipy', 'xarray', 'pint', 'fastapi', 'uvicorn'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == ""
+    *printed, heavy = done.stdout.split("\n")[:-1]
+    assert heavy == ""
+    if option == "--version":
+        assert printed[0] == rocking.__version__
+        assert not any(printed[1:])

@@ -11,6 +11,7 @@ import argparse
 import random
 import sys
 import time
+import warnings
 
 import numpy as np
 
@@ -113,6 +114,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=60.0, help="processor time")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
+    warnings.simplefilter("error")
     dice = random.Random(options.seed)
     rounds, read = 0, 0
     while time.process_time() < options.seconds:

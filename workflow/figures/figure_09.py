@@ -17,7 +17,7 @@ from rocking.datasets.cube import read_dataset
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
 from rocking.model.block import STANDARD_GRAVITY, Block
 from rocking.solver.peak_response import peak_response
-from workflow.figures.boundary_lines import line_variables, lines_of
+from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
@@ -87,7 +87,7 @@ def data(
     }
     return xr.Dataset(
         {
-            **line_variables(boundaries, [alpha]),
+            **line_variables(lines_of_files(boundaries, [alpha])),
             **{
                 f"threshold_{name}": plotted("threshold", [row[name] for row in rows], text, units=units)
                 for name, (text, units) in names.items()

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from rocking.closed_form import overturning_amplitudes
 from rocking.datasets.cube import read_dataset
-from workflow.figures.boundary_lines import line_variables, lines_of
+from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.style import BLACK, WIDTH, panel_letters, plotted, shades
 
 WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 4.5)}
@@ -38,7 +38,7 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
     dims = "frequency_ratio"
     return xr.Dataset(
         {
-            **line_variables(list(files.values())),
+            **line_variables(lines_of_files(list(files.values()))),
             "falls_from": plotted(
                 dims, closed.falls_from, "slender: overturns after one impact", equation="3.18, 3.20, 3.21"
             ),

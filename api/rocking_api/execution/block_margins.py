@@ -8,7 +8,7 @@ from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking.boundary.frequency import FrequencyThresholds, critical_frequency_ratio
 from rocking.model.block import Block
 from rocking_api.models.blocks import BlockParams, Margins, PeriodThreshold, SizeThreshold
-from rocking_api.models.params import FREQUENCY_RATIO_RANGE, ResponseParams
+from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
 
 SEARCH_FACTOR = 10.0
 """Ratio of the largest period searched to that of the pulse, and its inverse [-]; sizes go with its square."""
@@ -28,8 +28,8 @@ def margins_of(
     """
     omega = dimensionless.frequency_ratio
     low, high = (
-        max(omega / SEARCH_FACTOR, FREQUENCY_RATIO_RANGE[0]),
-        min(omega * SEARCH_FACTOR, FREQUENCY_RATIO_RANGE[1]),
+        max(omega / SEARCH_FACTOR, FREQUENCY_RATIO.lower),
+        min(omega * SEARCH_FACTOR, FREQUENCY_RATIO.upper),
     )
     groups = {"slenderness": dimensionless.slenderness, "restitution": dimensionless.restitution, "alpha": block.alpha}
 

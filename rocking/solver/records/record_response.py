@@ -23,6 +23,8 @@ from rocking.solver.records.samples import motion_samples
 from rocking.solver.records.state import BLOCK_STATE, step_state
 from rocking.solver.state import RESPONSE_RECORD
 
+Array = NDArray[np.float64]
+
 MAX_INTERVAL = 50.0
 """Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
 
@@ -76,8 +78,6 @@ def record_response(
     StoppedError
         If `stop` was set.
     """
-    if not isinstance(motion, Record):
-        raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     if threads is not None:
         in_range("threads", threads, 1, math.inf)
     given = {
@@ -86,18 +86,7 @@ def record_response(
         "restitution": restitution,
         "alpha": alpha,
     }
-    checked = (
-        in_range(
-            "frequency_parameter",
-            frequency_parameter,
-            FREQUENCY_PARAMETER.lower,
-            min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step),
-            unit="rad/s",
-        ),
-        check(SLENDERNESS, slenderness),
-        check(RESTITUTION, restitution),
-        check_alpha(alpha),
-    )
+    checked = check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha)
     groups = broadcast(given, checked)
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in groups]
@@ -111,6 +100,36 @@ def record_response(
         pulse=motion.name,
         groups=dict(zip(given, checked, strict=True)),
         dims=dimensions_of(*given.values()),
+    )
+
+
+def check_record_groups(
+    motion: Record,
+    frequency_parameter: ArrayLike,
+    slenderness: ArrayLike,
+    restitution: ArrayLike,
+    alpha: ArrayLike | None,
+) -> tuple[Array, Array, Array, Array]:
+    """The groups of a response under a record as float64 arrays of their own shapes; alpha = None is 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `motion` is not a record, or a value is out of range.
+    """
+    if not isinstance(motion, Record):
+        raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
+    return (
+        in_range(
+            "frequency_parameter",
+            frequency_parameter,
+            FREQUENCY_PARAMETER.lower,
+            min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step),
+            unit="rad/s",
+        ),
+        check(SLENDERNESS, slenderness),
+        check(RESTITUTION, restitution),
+        check_alpha(alpha),
     )
 
 

@@ -27,6 +27,9 @@ from rocking.excitation.records.record import Record
 STEP_TOLERANCE = 0.02
 """Largest deviation of a time from the uniform grid, in steps [-]: times are often rounded to a few digits."""
 
+MAX_TIME = 1e12
+"""Largest time in a column of times [s]; times are often counted from an epoch."""
+
 MAX_HEADER = 200
 """Largest number of lines before the first row of numbers."""
 
@@ -203,6 +206,8 @@ def _uniform_step(file: TextFile, first: int, times: NDArray[np.float64]) -> flo
     """The step of times that are uniform; the error names the first line that is not."""
     if times.size < 2:
         raise file.error(first, "one row", "at least 2")
+    if not np.abs(times).max() <= MAX_TIME:
+        raise file.error(None, f"a time of {np.abs(times).max():g} s", f"times up to {MAX_TIME:g} s")
     step = float((times[-1] - times[0]) / (times.size - 1))
     grid = times[0] + step * np.arange(times.size)
     middle = float(np.median(np.diff(times)))
