@@ -26,7 +26,7 @@ SAMPLING_DIFFERENCE = 0.05
 DRIFT = 0.1
 """Velocity at the end of a record over its largest above which a warning is given [-]."""
 
-MAX_RESAMPLED = 2_000_000
+MAX_RESAMPLED = 400_000
 """Most samples of the refined record; a longer one is not compared."""
 
 
