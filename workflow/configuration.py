@@ -196,8 +196,9 @@ FIGURES = section(
         "figure-05": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
         "figure-06": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
         "figure-07": section(
-            paper=section(pulses=PULSE_LIST, restitution=ETAS),
-            ours=section(slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION),
+            ours=section(
+                pulses=PULSE_LIST, restitution=ETAS, slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION
+            ),
         ),
         "figure-08": section(
             paper=section(restitution=ETAS), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
