@@ -42,7 +42,7 @@ def option_errors() -> Iterator[None]:
 
 
 def _si_value(parameter: str, text: str, unit: str) -> float:
-    from rocking.cli.units import si_value  # the unit library is not needed for groups
+    from rocking.dimensional.units import si_value  # the unit library is not needed for groups
 
     return si_value(parameter, text, unit)
 

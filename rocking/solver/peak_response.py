@@ -121,11 +121,11 @@ def peak_response(
     accepted = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
     by_arcs = made.series.has_exact_arcs and not cells[3].any()  # exact: no terms to truncate
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
-    records = _solve_cells(made, cells, precision, threads, stop)
+    records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
         margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], cells[3])
         near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted)
-        records[near] = _solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
+        records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
     peak = found[PEAK_ROTATION.name]
     return Response(
@@ -137,20 +137,38 @@ def peak_response(
     )
 
 
-def _solve_cells(
+def solve_cells(
     pulse: AbstractPulse,
     cells: list[NDArray[np.float64]],
     precision: float,
     threads: int | None,
     stop: StopFlag | None,
 ) -> NDArray[np.void]:
-    """Response records (size,) of cells given by four arrays (size,), distributed over threads."""
+    """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+    cells : list of four float arrays (size,)
+        1/a, omega, eta and alpha (0: slender) of each cell, in range; each as `contiguous_array` gives it.
+    precision : float
+        Relative truncation error of a Taylor step [-].
+    threads : int or None
+        Number of threads, None: all cores.
+    stop : StopFlag or None
+        Cancels the work.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
     size = cells[0].size
     records = np.empty(size, RESPONSE_RECORD)
     single, rigid = has_one_sinusoid(pulse), bool(cells[3].any())
     if single and rigid and not cells[3].all():
         for kind in (cells[3] > 0.0, cells[3] == 0.0):
-            records[kind] = _solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
+            records[kind] = solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
         return records
     by_arcs = single and not rigid
     cores = int(threads) if threads else AVAILABLE_CORES

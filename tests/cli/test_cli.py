@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import rocking
 from rocking.boundary.tracing import overturning_boundary
 from rocking.cli.app import app
-from rocking.cli.units import si_value
+from rocking.dimensional.units import si_value
 from rocking.errors import InvalidArgumentError
 from rocking.history.time_history import time_history
 from rocking.model.block import Block
