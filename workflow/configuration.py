@@ -207,7 +207,7 @@ FIGURES = section(
             paper=section(alpha_deg=ANGLE, half_diagonal=several(METRES, 2, 2), restitution=ETA),
             ours=section(pulse_period=several(SECONDS)),
         ),
-        "figure-10": section(paper=section(restitution=ETA)),
+        "figure-10": section(paper=section(restitution=ETA), ours=section(alpha_deg=ANGLES)),
         "figure-11": section(ours=section(slenderness=SLENDERNESS, duration=DURATION, **_HISTORIES)),
         "figure-12": section(paper=section(slenderness=SLENDERNESS), ours=section(duration=DURATION, **_HISTORIES)),
         "figure-13": section(
