@@ -307,18 +307,22 @@ def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
 
 
 def number(value: float) -> float | None:
+    """The value; None, which JSON can hold, if it is not finite."""
     return value if math.isfinite(value) else None
 
 
 def print_json(result: Mapping[str, Any]) -> None:
+    """Print an object in one line."""
     typer.echo(json_writer.dumps(result, allow_nan=False))
 
 
 def print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
+    """Print a header and rows."""
     typer.echo(csv_text(columns), nl=False)
 
 
 def print_text(result: Mapping[str, Any]) -> None:
+    """Print a name and a value a line."""
     width = max(map(len, result))
     for name, value in result.items():
         if value is not None:
@@ -326,6 +330,7 @@ def print_text(result: Mapping[str, Any]) -> None:
 
 
 def print_table(columns: Mapping[str, Sequence[Any]]) -> None:
+    """Print aligned columns with their names."""
     rows = [list(columns), *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
     widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
     for row in rows:
