@@ -10,7 +10,9 @@ from typing import Annotated
 
 import typer
 
+from rocking.cli.fragility import fragility
 from rocking.cli.options import OutputOptions, ProblemOptions, SpectrumOptions, WindowOptions, with_options
+from rocking.cli.record import record
 from rocking.version import __version__
 
 app = typer.Typer(
@@ -116,6 +118,10 @@ def boundary(
     with arguments.option_errors():
         params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
         printing.boundary(params, window, printing.output_format(output))
+
+
+app.command()(record)
+app.command()(fragility)
 
 
 @app.command()

@@ -63,15 +63,15 @@ def response(params: Params, form: Form) -> None:
         sentence = contact.sentence
         result |= _contact(contact)
     if form == "json":
-        _print_json(result)
+        print_json(result)
     elif form == "csv":
-        _print_csv({name: [_csv_cell(value)] for name, value in result.items()})
+        print_csv({name: [_csv_cell(value)] for name, value in result.items()})
     else:
         typer.echo(sentence)
         warnings = result.pop("warnings", [])
         first = [name for name in _FIRST_LINES if name in result]
         ordered = {name: result[name] for name in (*first, *result)}  # what was asked in SI units first
-        _print_text({_label(name): _words(value) for name, value in ordered.items()})
+        print_text({_label(name): _words(value) for name, value in ordered.items()})
         for text in warnings:
             typer.echo(f"warning: {text}")
 
@@ -82,14 +82,14 @@ def responses(table: BlockTable, form: Form) -> None:
 
     columns = respond_table(table)
     if form == "json":
-        _print_json(columns)
+        print_json(columns)
     else:
-        _print_csv(columns)
+        print_csv(columns)
 
 
 def _contact(found: ContactExtremes) -> dict[str, Any]:
     return {
-        "friction_demand": _number(found.largest_friction_demand),
+        "friction_demand": number(found.largest_friction_demand),
         "lifts_off": found.lifts_off,
         "rocking_model_applies": found.rocking_applies,
     }
@@ -180,15 +180,15 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
         contact=contact,
     )
     names = ["tau", "rotation", "angular_velocity", "ground_acceleration", *(COLUMNS if contact else ())]
-    columns = {name: [_number(value) for value in motion[name].values.tolist()] for name in names}
+    columns = {name: [number(value) for value in motion[name].values.tolist()] for name in names}
     about = _groups(params) | {
         "outcome": str(motion.attrs["outcome"]),
         "overturned": bool(motion.attrs["overturned"]),
-        "peak_rotation": _number(float(motion.attrs["peak_rotation"])),
+        "peak_rotation": number(float(motion.attrs["peak_rotation"])),
         "impact_time": motion["impact_time"].values.tolist(),
     }
     if contact:
-        about |= {name: _number(float(motion.attrs[name])) for name in ATTRIBUTES}
+        about |= {name: number(float(motion.attrs[name])) for name in ATTRIBUTES}
         about |= {"lifts_off": bool(motion.attrs["lifts_off"]), "warnings": motion.attrs["warnings"] or None}
     shown = columns
     if params.problem is not None:
@@ -206,12 +206,12 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
         columns = columns | si
         about |= {"impact_time_s": moved["impact_time"].values.tolist()}
     if form == "csv":
-        _print_csv(columns)
+        print_csv(columns)
     elif form == "json":
-        _print_json(about | columns)
+        print_json(about | columns)
     else:
-        _print_text(about)
-        _print_table(shown)
+        print_text(about)
+        print_table(shown)
 
 
 def spectrum(params: Params, window: tuple[float, float], points: int, form: Form) -> None:
@@ -237,19 +237,19 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
         )
         columns |= {
             "period": period.tolist(),
-            "peak_rotation_deg": [_number(x) for x in np.degrees(curve["rotation"].values).tolist()],
-            "top_displacement": [_number(x) for x in curve["top_displacement"].values.tolist()],
+            "peak_rotation_deg": [number(x) for x in np.degrees(curve["rotation"].values).tolist()],
+            "top_displacement": [number(x) for x in curve["top_displacement"].values.tolist()],
         }
         about |= {"peak_acceleration": problem.peak_acceleration}
         names = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
         shown = {name: columns[name][::-1] for name in names}  # from the shortest period
     if form == "json":
-        _print_json(about | columns)
+        print_json(about | columns)
     elif form == "csv":
-        _print_csv(columns)
+        print_csv(columns)
     else:
-        _print_text(about)
-        _print_table(shown)
+        print_text(about)
+        print_table(shown)
 
 
 def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
@@ -275,11 +275,11 @@ def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
         columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
     if form == "json":
         about = {"pulse": params.pulse, "restitution": params.restitution, "alpha": params.alpha}
-        _print_json(about | columns)
+        print_json(about | columns)
     elif form == "csv":
-        _print_csv(columns)
+        print_csv(columns)
     else:
-        _print_table(columns)
+        print_table(columns)
 
 
 def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
@@ -300,32 +300,37 @@ def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
         if field is OUTCOME:
             values = [Outcome(code).name for code in values]
         elif field.dtype == "f8":
-            values = [_number(value) for value in values]
+            values = [number(value) for value in values]
         if field is not SOURCE:  # it is the solver
             columns[field.name] = values
     return columns
 
 
-def _number(value: float) -> float | None:
+def number(value: float) -> float | None:
+    """The value; None, which JSON can hold, if it is not finite."""
     return value if math.isfinite(value) else None
 
 
-def _print_json(result: Mapping[str, Any]) -> None:
+def print_json(result: Mapping[str, Any]) -> None:
+    """Print an object in one line."""
     typer.echo(json_writer.dumps(result, allow_nan=False))
 
 
-def _print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
+def print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
+    """Print a header and rows."""
     typer.echo(csv_text(columns), nl=False)
 
 
-def _print_text(result: Mapping[str, Any]) -> None:
+def print_text(result: Mapping[str, Any]) -> None:
+    """Print a name and a value a line."""
     width = max(map(len, result))
     for name, value in result.items():
         if value is not None:
             typer.echo(f"{name:<{width}}  {_text(value)}")
 
 
-def _print_table(columns: Mapping[str, Sequence[Any]]) -> None:
+def print_table(columns: Mapping[str, Sequence[Any]]) -> None:
+    """Print aligned columns with their names."""
     rows = [list(columns), *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
     widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
     for row in rows:
