@@ -152,7 +152,7 @@ def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Datase
         parts = [*chain(*(curves_of(pulse, [0.85], angle, **window) for angle in (0, 5, 10, 20)))]
         files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
         write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
-    return figure_10.data(**files, restitution=0.85)
+    return figure_10.data(**files, restitution=0.85, alpha_deg=[5, 10, 20])
 
 
 @pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.closed_form import overturning_amplitudes
-from rocking.datasets.cube import read_dataset
 from workflow.figures.boundary_lines import draw_lines, line_variables, lines_of, lines_of_files
 from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
 
@@ -32,8 +32,8 @@ DETAILS = {
 SLENDER = "#BDBDBD"
 
 
-def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
-    """Boundaries of both pulses at all angles traced, and the closed forms of the slender block under the sine.
+def data(*, sine: Path, cosine: Path, restitution: float, alpha_deg: Sequence[float]) -> xr.Dataset:
+    """Boundaries of both pulses at several angles, and the closed forms of the slender block under the sine.
 
     Parameters
     ----------
@@ -41,7 +41,10 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
         Traced boundaries of this restitution.
     restitution : float
         eta [-].
+    alpha_deg : sequence
+        Slenderness angles [deg] beside the slender limit; angles of the files.
     """
+    angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
     files = {"sine": sine, "cosine": cosine}
     low, high = WINDOWS["sine"]
     omega = np.geomspace(low, high, 801)
@@ -49,7 +52,7 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
     dims = "frequency_ratio"
     return xr.Dataset(
         {
-            **line_variables(lines_of_files(list(files.values()))),
+            **line_variables(lines_of_files(list(files.values()), angles)),
             "falls_from": plotted(
                 dims, closed.falls_from, "slender: overturns after one impact", equation="3.18, 3.20, 3.21"
             ),
@@ -57,7 +60,7 @@ def data(*, sine: Path, cosine: Path, restitution: float) -> xr.Dataset:
             "direct": plotted(dims, closed.direct, "slender: overturns without impact", equation="3.10"),
         },
         coords={
-            "alpha": plotted("alpha", np.unique(read_dataset(sine).alpha), "slenderness angle", units="rad"),
+            "alpha": plotted("alpha", angles, "slenderness angle", units="rad"),
             "frequency_ratio": plotted(dims, omega, "frequency ratio omega_g/p"),
         },
         attrs={
