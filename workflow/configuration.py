@@ -8,6 +8,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, pairwise
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import (
@@ -20,7 +21,9 @@ from pydantic import (
     model_validator,
 )
 
+from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import PULSE_NAMES
+from rocking.suites.configuration import suite_configuration
 from workflow.scripts.axes import steps_between
 
 NODES = 200_000_000
@@ -245,14 +248,24 @@ CONFIGURATION = section(
 )
 
 
-def check(config: Mapping[str, Any]) -> None:
+def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
     """Raise an error for a configuration that no run could finish.
+
+    Parameters
+    ----------
+    config : mapping
+        Of the data sets and figures of the paper; or of a suite of records, with the keys `title` and `suite`.
+    folder : path
+        Folder of the file of the configuration.
 
     Raises
     ------
     ConfigurationError
         One line for the first invalid value: key, value and what is allowed.
     """
+    if "suite" in config:
+        _check_suite(config, folder)
+        return
     try:
         CONFIGURATION.model_validate(config)
     except ValidationError as error:
@@ -262,6 +275,17 @@ def check(config: Mapping[str, Any]) -> None:
         raise ConfigurationError(f"{stated}: {first['msg'].removeprefix('Value error, ')}") from None
     for conflict in chain(_too_large(config), _not_made(config)):
         raise ConfigurationError(conflict)
+
+
+def _check_suite(config: Mapping[str, Any], folder: Path) -> None:
+    """The same for a suite, whose keys `rocking.suites.configuration` describes."""
+    if {*config} != {"title", "suite"} or not isinstance(config["title"], str):
+        raise ConfigurationError(f"configuration: keys {', '.join(config)}; allowed: title, a text, and suite")
+    try:
+        suite_configuration(config["suite"], folder).records.paths()
+    except InvalidArgumentError as error:
+        value = reprlib.repr(error.value)
+        raise ConfigurationError(f"suite.{error.parameter} = {value}: allowed: {error.allowed}") from None
 
 
 def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:

@@ -33,6 +33,7 @@ from rocking_api.routers import (
     metrics,
     overturning,
     pages,
+    records,
     response,
     spectrum,
 )
@@ -42,7 +43,7 @@ from rocking_api.settings import Settings
 LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
-    *(response, blocks, critical_amplitude, spectrum, control_map, overturning, history),
+    *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
     *(datasets, health, metrics, pages),
 )
 

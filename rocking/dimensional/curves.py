@@ -53,17 +53,22 @@ def block_history(
     InvalidArgumentError
         If a value is out of range.
     """
-    block, p = problem.block, problem.block.frequency_parameter
     if duration is not None:
         in_range("duration", duration, 0.0, math.inf, closed="neither", unit="s")
     found = time_history(
         problem.pulse,
         **problem.groups,
-        duration=None if duration is None else duration * p,
+        duration=None if duration is None else duration * problem.block.frequency_parameter,
         samples=samples,
         contact=contact,
         stop=stop,
     )
+    return in_si_units(found, problem)
+
+
+def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
+    """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
+    block, p = problem.block, problem.block.frequency_parameter
     scales = {
         "rotation": (block.alpha, "rad", "rotation theta"),
         "angular_velocity": (block.alpha * p, "rad s-1", "angular velocity theta'"),
@@ -184,15 +189,20 @@ def block_boundary(
         window = frequency_ratio_of(block, high), frequency_ratio_of(block, low)
     eta = restitution_of(block, restitution)
     found = overturning_boundary(pulse, restitution=eta, alpha=block.alpha, frequency_ratio=window, stop=stop)
-    return found.assign(
+    return add_si_axes(found, block)
+
+
+def add_si_axes(curves: xr.Dataset, block: Block) -> xr.Dataset:
+    """Boundary curves with peak_acceleration(point) [m/s2] and period(point) [s] of a block of their alpha."""
+    return curves.assign(
         peak_acceleration=(
             "point",
-            block.uplift_acceleration / found["slenderness"].values,
+            block.uplift_acceleration / curves["slenderness"].values,
             {"units": "m s-2", "long_name": "peak ground acceleration"},
         ),
         period=(
             "point",
-            period_of(block, 1.0) / found["frequency_ratio"].values,
+            period_of(block, 1.0) / curves["frequency_ratio"].values,
             {"units": "s", "long_name": "period of the pulse"},
         ),
     )

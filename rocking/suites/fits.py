@@ -48,19 +48,25 @@ LARGEST_SLOPE = 1e8
 class FitStatus(IntEnum):
     """Whether the outcomes determine a curve."""
 
-    sentence: str
+    FITTED = 0
+    SEPARATED = 1
+    NONE_REACHES = 2
+    ALL_REACH = 3
+    NO_TREND = 4
 
-    def __new__(cls, code: int, sentence: str) -> FitStatus:
-        member = int.__new__(cls, code)
-        member._value_ = code
-        member.sentence = sentence
-        return member
+    @property
+    def sentence(self) -> str:
+        """What it means."""
+        return _SENTENCES[self]
 
-    FITTED = 0, "the likelihood has a maximum"
-    SEPARATED = 1, "no record survives above a level at which another one does not: the curve is a step"
-    NONE_REACHES = 2, "no record reaches the limit state at any level: the median is above the highest level"
-    ALL_REACH = 3, "every record reaches the limit state at every level: the median is below the lowest level"
-    NO_TREND = 4, "the probability does not increase over the levels: there is no such curve"
+
+_SENTENCES = {
+    FitStatus.FITTED: "the likelihood has a maximum",
+    FitStatus.SEPARATED: "no record survives above a level at which another one does not: the curve is a step",
+    FitStatus.NONE_REACHES: "no record reaches the limit state at any level: the median is above the highest level",
+    FitStatus.ALL_REACH: "every record reaches the limit state at every level: the median is below the lowest level",
+    FitStatus.NO_TREND: "the probability does not increase over the levels: there is no such curve",
+}
 
 
 @dataclass(frozen=True)

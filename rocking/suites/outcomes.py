@@ -16,11 +16,10 @@ from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
-from rocking.model.checks import check
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
-from rocking.model.parameters import RESTITUTION
 from rocking.solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
+from rocking.suites.scales import restitution_of
 
 Array = NDArray[np.float64]
 
@@ -101,12 +100,7 @@ def check_suite(
     for motion in motions:
         if not math.isfinite(chosen.of(motion, bodies[0])):
             raise InvalidArgumentError("records", motion, f"records with a finite {chosen.meaning}")
-    if isinstance(restitution, str):
-        if restitution != "housner":
-            raise InvalidArgumentError("restitution", restitution, f"'housner' or a number in {RESTITUTION.interval}")
-        eta = np.array([body.inelastic_restitution for body in bodies])  # (2.4), 0 where that is negative
-    else:
-        eta = np.full(len(bodies), float(check(RESTITUTION, restitution)))
+    eta = np.array([restitution_of(body, restitution) for body in bodies])
     return Suite(motions, bodies, levels, chosen, eta)
 
 

@@ -21,7 +21,7 @@ from rocking.errors import InvalidArgumentError, one_of
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
-from rocking.solver.records.record_response import record_response
+from rocking.suites.scales import overturning_scale
 from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
 
 Array = NDArray[np.float64]
@@ -34,15 +34,6 @@ COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)
 
 HIGHEST_AMPLITUDE = 1000.0
 """Largest a = a_g/(g tan alpha) searched for overturning [-]."""
-
-SCAN_RATIO = 1.002
-"""Ratio of the scales of a record that are tried in turn [-]; overturning in a narrower range can be missed."""
-
-SCANNED = 200
-"""Scales of one call of the solver."""
-
-SCALE_TOLERANCE = 1e-6
-"""Relative width to which an overturning scale is bisected [-]."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -140,59 +131,12 @@ def fit_pulse(
     fits = [fit_velocity(record.velocity, record.time_step, name) for name in families]
     best = max(fits, key=lambda fit: fit.explained)
     pulse, peak = best.acceleration_pulse()
-    of_record = [overturning_scale(record, block, stop=stop) for block in compared]
+    of_record = []
+    for block in compared:
+        highest = HIGHEST_AMPLITUDE * block.uplift_acceleration / record.peak_acceleration
+        of_record.append(overturning_scale(record, block, highest=highest, stop=stop))
     of_pulse = [_overturning_acceleration(pulse, best.period, block, stop) / peak for block in compared]
     return PulseFit(pulse, best.period, peak, best, best.explained, compared, np.array(of_record), np.array(of_pulse))
-
-
-def overturning_scale(record: Record, block: Block, *, stop: StopFlag | None = None) -> float:
-    """Lowest factor of a record at which it overturns a block with the restitution (2.4), by (2.2).
-
-    Scales that differ by 0.2 % are tried in turn from that of uplift on, and the first pair between which the outcome
-    changes is bisected. A block that overturns in a narrower range of scales only is missed there.
-
-    Parameters
-    ----------
-    record : Record
-        Ground motion.
-    block : Block
-        Block.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
-
-    Returns
-    -------
-    float
-        [-]; nan if there is none up to a_g = 1000 g tan(alpha).
-    """
-    uplift = block.uplift_acceleration / record.peak_acceleration
-
-    def overturns(scales: Array) -> NDArray[np.bool_]:
-        return record_response(
-            record,
-            frequency_parameter=block.frequency_parameter,
-            slenderness=uplift / scales,
-            restitution=block.inelastic_restitution,
-            alpha=block.alpha,
-            stop=stop,
-        ).overturned
-
-    low = uplift
-    while low < HIGHEST_AMPLITUDE * uplift:
-        scales: Array = low * np.power(SCAN_RATIO, np.arange(1.0, SCANNED + 1.0))
-        found = overturns(scales)
-        if found.any():
-            high = float(scales[found.argmax()])
-            low = high / SCAN_RATIO
-            while high / low - 1.0 > SCALE_TOLERANCE:
-                between = np.geomspace(low, high, 18)[1:-1]
-                inside = overturns(between)
-                first = int(inside.argmax()) if inside.any() else between.size
-                edges = [low, *between.tolist(), high]
-                low, high = edges[first], edges[first + 1]
-            return high
-        low = float(scales[-1])
-    return math.nan
 
 
 def _overturning_acceleration(pulse: AbstractPulse, period: float, block: Block, stop: StopFlag | None) -> float:

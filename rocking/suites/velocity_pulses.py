@@ -126,7 +126,8 @@ class VelocityPulse:
     amplitude : float
         Of the velocity [m/s]; positive with a phase, of either sign without.
     explained : float
-        Share of the sum of squares of the velocity that the pulse takes away [-], [0, 1].
+        Share of the sum of squares of the velocity, zero before and after the record, that the pulse takes away [-],
+        [0, 1].
     """
 
     family: str
@@ -232,9 +233,15 @@ def _scan(velocity: Array, time_step: float, family: Family) -> Iterator[tuple[f
 
 
 def _refined(velocity: Array, time_step: float, family: Family, start: tuple[float, float, float]) -> VelocityPulse:
-    """The local minimum of the residual that belongs to a cell of the scan."""
+    """The local minimum of the residual that belongs to a cell of the scan.
+
+    The velocity is zero before and after the record, as in the scan: else a pulse could lie outside for the most part,
+    with any amplitude.
+    """
     period, centre, cycles = start
-    time = np.arange(velocity.size) * time_step
+    outside = min(velocity.size, math.ceil(2.0 * family.half_window(cycles) * period / (2.0 * math.pi * time_step)))
+    time = np.arange(-outside, velocity.size + outside) * time_step
+    padded = np.pad(velocity, outside)
     energy = float(velocity @ velocity)
 
     def residual_of(parameters: Array) -> Array:
@@ -244,14 +251,14 @@ def _refined(velocity: Array, time_step: float, family: Family, start: tuple[flo
         """The coefficients of the basis functions, and the residual."""
         own = float(parameters[2]) if family.has_cycles else math.nan
         basis = family.basis(2.0 * math.pi * math.exp(-parameters[0]) * (time - parameters[1] * period), own)
-        coefficients: Array = np.linalg.lstsq(basis.T, velocity, rcond=None)[0].astype(np.float64)
-        return coefficients, velocity - coefficients @ basis
+        coefficients: Array = np.linalg.lstsq(basis.T, padded, rcond=None)[0].astype(np.float64)
+        return coefficients, padded - coefficients @ basis
 
     shortest, longest = SHORTEST_PERIOD * time_step, 2.0 * velocity.size * time_step
     span = velocity.size * time_step / period
     first = np.array([math.log(period), centre / period, *([cycles] if family.has_cycles else [])])
-    low = np.array([math.log(shortest), -0.5 * span, MIN_CYCLES])[: first.size]
-    high = np.array([math.log(longest), 1.5 * span, MAX_CYCLES])[: first.size]
+    low = np.array([math.log(shortest), 0.0, MIN_CYCLES])[: first.size]
+    high = np.array([math.log(longest), span, MAX_CYCLES])[: first.size]
     found = least_squares(
         residual_of,
         np.clip(first, low + 1e-9, high - 1e-9),

@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from rocking.errors import InvalidArgumentError
-from rocking.suites.pulse_fit import overturning_scale
+from rocking.suites.scales import overturning_scale, scale_thresholds
 from tests.suites.motions import BLOCK, noise, sampled
 
 
@@ -80,6 +80,24 @@ def test_scale_of_a_sampled_pulse_is_its_critical_amplitude():
     )
     found = overturning_scale(record, BLOCK) * record.peak_acceleration / BLOCK.uplift_acceleration
     assert found == pytest.approx(exact.amplitude[0], rel=1e-3)
+
+
+def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
+    record = sampled("sine", 4.0, samples=8000)
+    exact = rocking.critical_amplitude(
+        "sine", frequency_ratio=4.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha, highest_amplitude=10.0
+    )
+    found = scale_thresholds(record, BLOCK)
+    np.testing.assert_allclose(
+        found.scale * record.peak_acceleration / BLOCK.uplift_acceleration, exact.amplitude, rtol=1e-4
+    )
+    assert found.overturns_above.tolist() == exact.overturns_above.tolist() == [True, False, True]
+    assert found.searched[1] == pytest.approx(10.0 * found.searched[0])
+
+
+def test_below_uplift_there_is_no_threshold():
+    record = sampled("sine", 4.0)
+    assert scale_thresholds(record, BLOCK, highest=0.5 * BLOCK.uplift_acceleration).scale.size == 0
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ def smoke(place: str = "", value: Any = None) -> dict[str, Any]:
 
 @pytest.mark.parametrize("path", CONFIGURATIONS, ids=lambda path: path.stem)
 def test_configurations_of_the_repository_are_accepted(path: Path) -> None:
-    check(yaml.safe_load(path.read_text()))
+    check(yaml.safe_load(path.read_text()), path.parent)
 
 
 @pytest.mark.parametrize(

@@ -73,3 +73,6 @@ rule check_results:
         "Testing the finished products"
     script:
         "../scripts/check_results.py"
+
+
+FINISHED += [*rules.manifest.input, *rules.manifest.output, *rules.check_results.output]
