@@ -161,10 +161,10 @@ class _KernelCompiler(_Compiler):
 class _Kernel(CPUDispatcher):
     """A kernel: inside entries code to be linked; from Python a function of its own, compiled when it is called."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        options = _OPTIONS | {"nopython": True, "no_cpython_wrapper": True}
-        super().__init__(py_func=function, targetoptions=options, pipeline_class=_KernelCompiler)
-        self._from_python = numba.njit(**_OPTIONS)(function)
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        inside = options | {"nopython": True, "no_cpython_wrapper": True}
+        super().__init__(py_func=function, targetoptions=inside, pipeline_class=_KernelCompiler)
+        self._from_python = numba.njit(**options)(function)
 
     def __call__(self, *args: Any) -> Any:
         return self._from_python(*args)
@@ -172,7 +172,7 @@ class _Kernel(CPUDispatcher):
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` for the entries that call it. Calls from Python compile it in each process."""
-    return _Kernel(function)
+    return _Kernel(function, _OPTIONS)
 
 
 def uncounted_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -181,8 +181,7 @@ def uncounted_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     numba counts the references to an array argument with atomic operations in each function that is not inlined: 10 ns
     a call, which matters for short functions.
     """
-    compiled: Callable[..., Any] = numba.njit(**_UNCOUNTED)(function)
-    return compiled
+    return _Kernel(function, _UNCOUNTED)
 
 
 def jitable(function: Callable[..., Any]) -> Callable[..., Any]:
