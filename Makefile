@@ -54,9 +54,12 @@ fuzz: .venv/project ## send 5,000 random requests to the service; three minutes 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),32) --seed $(or $(SEED),1)
 
+# Extra `seismic` is large and optional: it is not locked.
+LOCKED := service plot workflow dev
+
 lock: ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions)
 	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
-	$(UV) pip compile pyproject.toml --all-extras --python $(PYTHON) \
+	$(UV) pip compile pyproject.toml $(LOCKED:%=--extra %) --python $(PYTHON) \
 	    --generate-hashes --no-header --no-annotate --quiet $(UPGRADE) --output-file environment.lock
 
 environment: .venv/project ## make the environment .venv and compile the kernels

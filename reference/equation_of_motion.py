@@ -51,8 +51,8 @@ class Motion(NamedTuple):
         forcing = [factor * f for f in forcing]
         square = (step * step).mid()
         if self.alpha is None:
-            return _slender_series(z, (v * step).mid(), square, forcing, at_crossing)
-        return _rigid_series(z, (v * step).mid(), square, forcing, self.alpha, at_crossing)
+            return slender_series(z, (v * step).mid(), square, forcing, at_crossing)
+        return rigid_series(z, (v * step).mid(), square, forcing, self.alpha, at_crossing)
 
     def barrier_excess(self, z: arb, v: arb) -> arb:
         """Return the growing part of free rocking relative to the barrier: > 0 overturns; z + z' - 1 if slender."""
@@ -80,7 +80,7 @@ class Motion(NamedTuple):
         return 2 * (self.alpha * below / 2).sin() / self.alpha
 
 
-def _slender_series(z: arb, slope: arb, square: arb, forcing: list[arb], at_crossing: bool) -> list[arb]:
+def slender_series(z: arb, slope: arb, square: arb, forcing: list[arb], at_crossing: bool) -> list[arb]:
     """z_{k+2} (k+1)(k+2) = h^2 [z_k - (1 if k = 0) + push_k]."""
     series = [z, slope]
     for k, p in enumerate(forcing[:-1]):
@@ -91,7 +91,7 @@ def _slender_series(z: arb, slope: arb, square: arb, forcing: list[arb], at_cros
     return series
 
 
-def _rigid_series(z: arb, slope: arb, square: arb, forcing: list[arb], alpha: arb, at_crossing: bool) -> list[arb]:
+def rigid_series(z: arb, slope: arb, square: arb, forcing: list[arb], alpha: arb, at_crossing: bool) -> list[arb]:
     """The same with S = sin(alpha (1 - z))/alpha, C = cos(alpha (1 - z)): S' = -C z', C' = alpha^2 S z'."""
     series = [z, slope]
     sine, cosine = (alpha * (1 - z)).sin_cos()

@@ -190,3 +190,30 @@ def one_of(parameter: str, value: str, choices: Iterable[str]) -> str:
     if value not in names:
         raise InvalidArgumentError(parameter, value, "one of " + ", ".join(names))
     return value
+
+
+class RecordFileError(InvalidArgumentError):
+    """A file of a recorded motion that is damaged, ambiguous or of an unknown format.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file.
+    line : int or None
+        Number of the line, from 1; None for the whole file.
+    found : object
+        What was found there.
+    expected : str
+        What was expected.
+    """
+
+    def __init__(self, file: str, line: int | None, found: Any, expected: str) -> None:
+        super().__init__("record", found, expected)
+        self.file, self.line, self.expected = file, line, expected
+        text = str(found)
+        shown = text if len(text) <= 60 else f"{text[:60]}..."
+        place = file if line is None else f"{file}, line {line}"
+        self.args = (f"{place}: found {shown}; expected {expected}",)
+
+    def __reduce__(self) -> tuple[type[RecordFileError], tuple[Any, ...]]:
+        return type(self), (self.file, self.line, self.value, self.expected)

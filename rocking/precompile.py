@@ -12,10 +12,13 @@ import numpy as np
 
 from rocking._numba.compilation import cache_folder
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.excitation.records.record import Record
+from rocking.history.record_history import record_history
 from rocking.history.time_history import time_history
 from rocking.lookup.cube import Cube
 from rocking.lookup.cube_slice import slice_of
 from rocking.solver.peak_response import peak_response
+from rocking.solver.records.record_response import record_response
 from rocking.spectra.cubes import spectra
 
 COMPLETE_MARKER = "complete"
@@ -35,6 +38,9 @@ def load_kernels() -> None:
     block: dict[str, Any] = {"slenderness": 0.8, "frequency_ratio": 3.0, "restitution": 0.85}
     peak_response("sine", **block)
     peak_response("sine", **block, alpha=0.3)
+    motion = Record([0.0, 1.0, -1.0, 0.0], 0.1, unit="m/s2")
+    record_response(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85, alpha=[0.0, 0.3])
+    record_history(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85)
     time_history("sine", **block, samples=2)
     time_history("sine", **block, alpha=0.3, samples=2)
     axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}

@@ -8,6 +8,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, pairwise
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import (
@@ -20,8 +21,10 @@ from pydantic import (
     model_validator,
 )
 
+from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import PULSE_NAMES
-from workflow.scripts.axes import stepped, steps_between
+from rocking.suites.configuration import suite_configuration
+from workflow.scripts.axes import steps_between
 
 NODES = 200_000_000
 """Largest number of nodes of the cubes, or of the boundary grids, of one pulse, which are in memory together."""
@@ -31,10 +34,9 @@ BYTES = 125
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
-    "figure-08": ["sine", "cosine"],
     "figure-09": ["sine", "cosine"],
     "figure-10": ["sine", "cosine"],
-    "figure-13": ["sine", "cosine"],
+    "figure-master-spectra": ["sine", "cosine"],
     "figure-scale-law": ["sine"],
 }
 """The pulses of the figures that are drawn from data sets."""
@@ -167,6 +169,12 @@ _TWO_BLOCKS = Annotated[
     AfterValidator(_pairs),
 ]
 _HISTORIES = {"pulses": PULSE_LIST, "restitution": ETA, "alpha_deg": ANGLES, "frequency_ratio": OMEGA}
+_AXIS = {"points": integer(4, 1000)}
+_MASTER = {
+    "alpha_deg": ANGLES,
+    "slenderness": _range(SLENDERNESS_OF_BOUNDARY, **_AXIS),
+    "frequency_ratio": _range(OMEGA, **_AXIS),
+}
 
 FIGURES = section(
     **{
@@ -191,8 +199,9 @@ FIGURES = section(
         "figure-05": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
         "figure-06": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
         "figure-07": section(
-            paper=section(pulses=PULSE_LIST, restitution=ETAS),
-            ours=section(slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION),
+            ours=section(
+                pulses=PULSE_LIST, restitution=ETAS, slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION
+            ),
         ),
         "figure-08": section(
             paper=section(restitution=ETAS), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
@@ -201,14 +210,17 @@ FIGURES = section(
             paper=section(alpha_deg=ANGLE, half_diagonal=several(METRES, 2, 2), restitution=ETA),
             ours=section(pulse_period=several(SECONDS)),
         ),
-        "figure-10": section(paper=section(restitution=ETA)),
+        "figure-10": section(paper=section(restitution=ETA), ours=section(alpha_deg=ANGLES)),
         "figure-11": section(ours=section(slenderness=SLENDERNESS, duration=DURATION, **_HISTORIES)),
         "figure-12": section(paper=section(slenderness=SLENDERNESS), ours=section(duration=DURATION, **_HISTORIES)),
         "figure-13": section(
-            paper=section(restitution=ETA), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
+            paper=section(restitution=ETA),
+            ours=section(slenderness=ROWS, alpha_deg=ANGLES, frequency_ratio=_range(OMEGA)),
         ),
         "figure-S1": section(ours=section(slenderness=number(1e-4, 1), frequency_ratio=OMEGAS)),
         "figure-scale-law": section(ours=section(restitution=several(number(0.01, 1)), reference=ETA)),
+        "figure-master-spectra": section(ours=section(restitution=ETA, **_MASTER)),
+        "figure-master-housner": section(ours=section(**_MASTER)),
         "table-1": section(),
     }
 )
@@ -236,14 +248,24 @@ CONFIGURATION = section(
 )
 
 
-def check(config: Mapping[str, Any]) -> None:
+def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
     """Raise an error for a configuration that no run could finish.
+
+    Parameters
+    ----------
+    config : mapping
+        Of the data sets and figures of the paper; or of a suite of records, with the keys `title` and `suite`.
+    folder : path
+        Folder of the file of the configuration.
 
     Raises
     ------
     ConfigurationError
         One line for the first invalid value: key, value and what is allowed.
     """
+    if "suite" in config:
+        _check_suite(config, folder)
+        return
     try:
         CONFIGURATION.model_validate(config)
     except ValidationError as error:
@@ -255,6 +277,17 @@ def check(config: Mapping[str, Any]) -> None:
         raise ConfigurationError(conflict)
 
 
+def _check_suite(config: Mapping[str, Any], folder: Path) -> None:
+    """The same for a suite, whose keys `rocking.suites.configuration` describes."""
+    if {*config} != {"title", "suite"} or not isinstance(config["title"], str):
+        raise ConfigurationError(f"configuration: keys {', '.join(config)}; allowed: title, a text, and suite")
+    try:
+        suite_configuration(config["suite"], folder).records.paths()
+    except InvalidArgumentError as error:
+        value = reprlib.repr(error.value)
+        raise ConfigurationError(f"suite.{error.parameter} = {value}: allowed: {error.allowed}") from None
+
+
 def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:
     """All values of a figure, those of the paper and those chosen here."""
     values = config["figures"][figure]
@@ -263,8 +296,11 @@ def chosen(config: Mapping[str, Any], figure: str) -> dict[str, Any]:
 
 def restitutions(config: Mapping[str, Any], figure: str) -> list[float]:
     """The restitutions of a figure as a list, also if there is only one."""
-    eta = chosen(config, figure)["restitution"]
-    return eta if isinstance(eta, list) else [eta]
+    return _listed(chosen(config, figure)["restitution"])
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
@@ -285,25 +321,16 @@ def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
 
 def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
     """Figures that need data which the configuration does not compute."""
-    grid, columns = config["grid"], config["grid"]["frequency_ratio"]
-    rows = stepped(**grid["slenderness"])
     for figure, pulses in DATA_OF_FIGURES.items():
         values = chosen(config, figure)
         for pulse in set(pulses) - set(config["pulses"]):
             yield f"pulses = {config['pulses']}: {figure} needs {pulse}"
         for name, given, made in (
             ("restitution", restitutions(config, figure), config["restitution"]),
-            ("alpha_deg", [values.get("alpha_deg", 0)], grid["alpha_deg"]),
+            ("alpha_deg", _listed(values.get("alpha_deg", 0)), config["grid"]["alpha_deg"]),
         ):
             for value in set(given) - set(made):
                 yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"
-        for value in values.get("slenderness", []):
-            if abs(rows - value).min() > 1e-9:
-                yield f"figures.{figure}: slenderness = {value}; allowed: nodes of grid.slenderness"
-        shown = values.get("frequency_ratio", columns)
-        if not columns["low"] <= shown["low"] < shown["high"] <= columns["high"]:
-            window = f"{columns['low']:g} to {columns['high']:g}"
-            yield f"figures.{figure}: frequency_ratio = {shown}; allowed: within grid.frequency_ratio, {window}"
     law = chosen(config, "figure-scale-law")
     if law["reference"] not in law["restitution"]:
         yield f"figures.figure-scale-law: reference = {law['reference']}; allowed: one of its {law['restitution']}"

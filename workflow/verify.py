@@ -15,25 +15,44 @@ MANIFEST = "results/manifest.json"
 LISTS = {MANIFEST: "manifest.json", "results/checks.txt": "check_results.json"}
 """Products that the manifest cannot list, and the record of each."""
 
+SUITES = "results/suites/*/manifest.json"
+"""Manifests of the suites of records."""
+
 
 def problems(folder: Path) -> Iterator[str]:
-    """Descriptions of the differences from the manifest in `folder`, which contains `results`.
+    """Descriptions of the differences from the manifests in `folder`, which contains `results`.
 
-    If the manifest itself differs from its record, the products are compared with the records from which it was made.
+    There is one of the paper, which may be missing where only suites were made, and one of each suite. If a manifest
+    itself differs from its record, the products are compared with the records from which it was made.
     """
-    flaws = {name: [*_flaws_of_list(folder, name)] for name in LISTS}
+    suites = sorted(path.relative_to(folder).as_posix() for path in folder.glob(SUITES))
+    for name in suites:
+        flaws = [*_flaws_of_list(folder, name, name.removeprefix("results/"))]
+        yield from flaws or _flaws_of_products(folder, name)
+    if not suites or (folder / MANIFEST).exists() or (folder / FOLDER / LISTS[MANIFEST]).exists():
+        yield from _problems_of_paper(folder)
+
+
+def _problems_of_paper(folder: Path) -> Iterator[str]:
+    flaws = {name: [*_flaws_of_list(folder, name, record)] for name, record in LISTS.items()}
     yield from chain.from_iterable(flaws.values())
     if flaws[MANIFEST]:
         yield from chain.from_iterable(
             found for record, found in false_records(folder) if record.name not in LISTS.values()
         )
     else:
-        products = json.loads((folder / MANIFEST).read_bytes())["products"]
-        yield from differences(folder, {f"results/{name}": entry for name, entry in products.items()})
+        yield from _flaws_of_products(folder, MANIFEST)
 
 
-def _flaws_of_list(folder: Path, name: str) -> Iterator[str]:
-    record = folder / FOLDER / LISTS[name]
+def _flaws_of_products(folder: Path, manifest: str) -> Iterator[str]:
+    """Differences of the products that an intact manifest lists, relative to its own folder."""
+    products = json.loads((folder / manifest).read_bytes())["products"]
+    place = Path(manifest).parent.as_posix()
+    yield from differences(folder, {f"{place}/{name}": entry for name, entry in products.items()})
+
+
+def _flaws_of_list(folder: Path, name: str, record_name: str) -> Iterator[str]:
+    record = folder / FOLDER / record_name
     try:
         yield from differences(folder, {name: read_record(record)[name]})
     except (OSError, ValueError, KeyError):

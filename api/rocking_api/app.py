@@ -33,6 +33,7 @@ from rocking_api.routers import (
     metrics,
     overturning,
     pages,
+    records,
     response,
     spectrum,
 )
@@ -42,7 +43,7 @@ from rocking_api.settings import Settings
 LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
-    *(response, blocks, critical_amplitude, spectrum, control_map, overturning, history),
+    *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
     *(datasets, health, metrics, pages),
 )
 
@@ -83,6 +84,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         redoc_url=None,
         lifespan=_lifespan,
         responses=RESPONSES,
+        telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request
     )
     cubes = CubeCollection(settings.results)
     service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
@@ -120,7 +122,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         background.start_soon(_warn_without_cubes, service)
         yield
         background.cancel_scope.cancel()
-    service.executor.close()
+    for executor in (service.executor, service.parser):
+        executor.close()
 
 
 async def _load_kernels(service: Service, when_ready: Callable[[], None]) -> None:

@@ -10,6 +10,7 @@ import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
+from rocking._numba.cancellation import StopFlag
 from rocking.lookup.collection import CubeCollection
 from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.execution.batching import MicroBatcher
@@ -37,7 +38,7 @@ class Service:
     metrics: Metrics = field(init=False)
     dataset_checker: DatasetChecker = field(init=False)
     io_limiter: CapacityLimiter = field(init=False)
-    large_body_limiter: CapacityLimiter = field(init=False)
+    parser: BoundedExecutor = field(init=False)
     memory_budget: MemoryBudget = field(init=False)
 
     def __post_init__(self) -> None:
@@ -50,7 +51,7 @@ class Service:
         self.metrics = Metrics(self.executor)
         self.dataset_checker = DatasetChecker(self.cubes)
         self.io_limiter = CapacityLimiter(settings.max_workers)
-        self.large_body_limiter = CapacityLimiter(1)
+        self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
 
     async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
@@ -65,9 +66,13 @@ class Service:
         await self.kernels.wait()
         return await self.executor.run(work, request)
 
-    async def run_io(self, work: Callable[[], T], large: bool = False) -> T:
-        """Read files and parse bodies in a thread, independent of heavy work; large bodies one at a time."""
-        return await anyio.to_thread.run_sync(work, limiter=self.large_body_limiter if large else self.io_limiter)
+    async def run_parser(self, work: Work[T], request: Request, large: bool) -> T:
+        """Parse a body in a thread; large bodies one at a time, until the time limit or the client disconnects."""
+        return await (self.parser.run(work, request) if large else self.run_io(lambda: work(StopFlag())))
+
+    async def run_io(self, work: Callable[[], T]) -> T:
+        """Read files and parse small bodies in a thread, independent of heavy work."""
+        return await anyio.to_thread.run_sync(work, limiter=self.io_limiter)
 
 
 async def _service(request: Request) -> Service:  # async: FastAPI would run a plain function in a thread

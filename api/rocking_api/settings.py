@@ -25,6 +25,9 @@ class Settings(BaseSettings):
     )
     max_points: int = Field(default=1_000_000, ge=1, description="largest number of points of a batch")
     max_body_bytes: int = Field(default=64 * 1024 * 1024, ge=1, description="largest body of a request")
+    max_record_bytes: int = Field(
+        default=8 * 1024 * 1024, ge=1, description="largest file of a record in the body of a request"
+    )
     max_header_bytes: int = Field(default=32 * 1024, ge=1024, description="largest URL and headers of a request")
     max_samples: int = Field(
         default=100_000, ge=2, description="largest number of samples of a time history or spectrum"

@@ -37,14 +37,14 @@ FINE = 1e-6
 def cells_solved(call: Callable[[], Any]) -> int:
     """Return the number of cells that the solver integrates during a call."""
     count = 0
-    follow = solve._solve_cells
+    follow = solve.solve_cells
 
     def counting(pulse: Any, cells: list[NDArray[np.float64]], *rest: Any) -> NDArray[np.void]:
         nonlocal count
         count += cells[0].size
         return follow(pulse, cells, *rest)
 
-    with patch.object(solve, "_solve_cells", counting):
+    with patch.object(solve, "solve_cells", counting):
         call()
     return count
 

@@ -2,7 +2,8 @@
 
 Every threshold of `critical_amplitude` should lie on a curve of `overturning_boundary`, within its chord error, and at
 every crossing of a line with a curve the outcome should change. `critical_amplitude` does not use the curves. A
-threshold without a curve belongs to a region that the nodes did not show; `widest` is the distance to the next one.
+threshold without a curve belongs to a region that the nodes did not show, or to one below the stated resolution;
+`widest` is the largest distance from such a threshold to the next one, of the lines that have another one.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
     curves = rocking.overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=nodes)
     seconds = time.process_time() - begin
     chords = Chords(curves)
-    limit = curves.chord_error + 1.1 * END  # the end of a region is known to END
+    limit = curves.chord_error + 1.1 * END  # the end of a region is known to END, that of some to end_distance
     thresholds = unlisted = crossings = wrong = 0
     widest = 0.0
     groups = {"restitution": restitution, "alpha": alpha}
@@ -64,7 +65,9 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
         for k, x in enumerate(found):
             if chords.distance(x, y) > limit:
                 unlisted += 1
-                widest = max(widest, np.abs(np.delete(found, k) - x).min(initial=1.0))
+                others = np.delete(found, k)
+                if others.size:
+                    widest = max(widest, np.abs(others - x).min())
         x, slope = chords.crossings(y)
         reach = 1.1 * curves.chord_error * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 2001)[:, None]
         overturned = rocking.peak_response(
@@ -75,7 +78,8 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
     sizes = curves.row_size.values
     return {
         "curves": sizes.size, "short": int((sizes < 6).sum()), "points": int(sizes.sum()), "seconds": seconds,
-        "chord_error": curves.chord_error, "thresholds": thresholds, "unlisted": unlisted, "widest": widest,
+        "open_ends": curves.open_ends, "chord_error": curves.chord_error,
+        "thresholds": thresholds, "unlisted": unlisted, "widest": widest,
         "crossings": crossings, "wrong": wrong,
     }  # fmt: skip
 
@@ -86,9 +90,11 @@ def main() -> None:
     parser.add_argument("--lines", type=int, default=400)
     parser.add_argument("--restitution", type=float, default=0.85)
     parser.add_argument("--nodes", type=int, default=301)
+    parser.add_argument("--pulses", nargs="+", default=["sine", "cosine"])
+    parser.add_argument("--degrees", nargs="+", type=float, default=[0.0, 10.0, 20.0, 30.0])
     arguments = parser.parse_args()
-    for pulse in ("sine", "cosine"):
-        for degrees in (0.0, 10.0, 20.0, 30.0):
+    for pulse in arguments.pulses:
+        for degrees in arguments.degrees:
             alpha = float(np.radians(degrees)) or None
             found = compare(pulse, alpha, arguments.nodes, arguments.lines, arguments.restitution)
             row = ", ".join(f"{name} {value:.3g}" for name, value in found.items())

@@ -120,6 +120,7 @@ def compare_interpolations(path: Path, points: Points, exact: NDArray[np.float64
     cube = open_cube(path)
     known, answer = cube.interpolate(points, math.inf)
     package = np.full(exact.size, np.nan)
+    answer = answer[known]
     package[known] = answer.peak_rotation
     bound = np.where(np.isnan(answer.peak_rotation), 0.0, answer.error_bound)
     with xr.open_dataset(path) as data:

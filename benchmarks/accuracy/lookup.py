@@ -50,7 +50,7 @@ def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[st
     start = time.perf_counter()
     known, found = cube.interpolate(points, tolerance)
     seconds = time.perf_counter() - start
-    known_points = points[known]
+    known_points, found = points[known], found[known]
     exact = peak_response(cube.pulse, **vars(known_points))
     surviving = ~found.overturned
     error = np.abs(found.peak_rotation - exact.peak_rotation)[surviving]

@@ -55,6 +55,9 @@ _PACKAGE = Path(__file__).parents[1]
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 """Nopython mode, no interpreter lock, fused multiply-add allowed but no reordering."""
 
+_UNCOUNTED: dict[str, Any] = {**_OPTIONS, "_nrt": False}
+"""The same without reference counts of arrays."""
+
 
 class _SingleModuleLibrary(JITCodeLibrary):
     """A library in which the copies of other kernels have internal linkage."""
@@ -172,6 +175,16 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return _Kernel(function)
 
 
+def uncounted_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`kernel` without reference counts, for functions that do not create arrays.
+
+    numba counts the references to an array argument with atomic operations in each function that is not inlined: 10 ns
+    a call, which matters for short functions.
+    """
+    compiled: Callable[..., Any] = numba.njit(**_UNCOUNTED)(function)
+    return compiled
+
+
 def jitable(function: Callable[..., Any]) -> Callable[..., Any]:
     """Let kernels call `function`, which remains an ordinary function in Python."""
     made: Callable[..., Any] = register_jitable(error_model="numpy", fastmath={"contract"})(function)
@@ -183,8 +196,17 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
 
     It is called from Python, with arrays as `contiguous_array` returns them.
     """
+    return _cached(function, _OPTIONS)
+
+
+def uncounted_entry(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`entry` without reference counts, see `uncounted_kernel`."""
+    return _cached(function, _UNCOUNTED)
+
+
+def _cached(function: Callable[..., Any], options: dict[str, Any]) -> Callable[..., Any]:
     folder = cache_folder()
-    compile_ = numba.njit(pipeline_class=_EntryCompiler, cache=folder is not None, **_OPTIONS)
+    compile_ = numba.njit(pipeline_class=_EntryCompiler, cache=folder is not None, **options)
     config: Any = numba.config  # its attributes are made at run time
     before = config.CACHE_DIR
     config.CACHE_DIR = folder or before
@@ -234,7 +256,7 @@ def _is_writable(folder: Path) -> bool:
 def _digest(package: Path) -> str:
     """Digest of what compiled code depends on: processor, Python, numba, and the kernel files with their imports."""
     files = {path.relative_to(package): path.read_bytes() for path in package.rglob("*.py")}
-    compiled = re.compile(rb"^@(kernel|jitable|entry)$|numba\.extending", re.M)
+    compiled = re.compile(rb"^@(\w*kernel|jitable|\w*entry)$|numba\.extending", re.M)
     waiting = [path for path, text in files.items() if compiled.search(text)]
     seen: set[Path] = set()
     while waiting:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,9 +49,23 @@ class Chains:
             *(np.insert(getattr(self, each.name), before, getattr(points, each.name)) for each in fields(self))
         )
 
+    def divide(self, before: Index) -> Chains:
+        """With new chains that begin at some points."""
+        starts = np.diff(self.chain, prepend=-1) != 0
+        starts[before] = True
+        return replace(self, chain=np.cumsum(starts) - 1)
+
+    def without_points(self) -> Chains:
+        """Without the chains of one point."""
+        chains = self.take(np.flatnonzero(np.bincount(self.chain)[self.chain] > 1))
+        return chains.divide(np.empty(0, dtype=np.intp))
+
 
 def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
-    """Follow the joins of one restitution from end to end; a closed chain ends with the point it begins with."""
+    """Follow the joins of one restitution from end to end; a closed chain ends with the point it begins with.
+
+    Regions that lie on a single line are left out.
+    """
     number: dict[tuple[int, int, int], int] = {}
     points: list[tuple[float, float, int, int, int, float]] = []
     beside: list[list[int]] = []
@@ -85,6 +99,8 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
             chain.append(here)
         if len(beside[start]) == 2:
             chain.append(start)
+        if len({points[k][1] for k in chain}) == 1:
+            continue  # seen on one line only: shorter than the distance within which ends are known
         order += chain
         sizes.append(len(chain))
     table = np.array([points[k] for k in order]).reshape(-1, 6).T

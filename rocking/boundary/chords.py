@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
 from rocking.boundary.columns import Index
-from rocking.boundary.search import Classify, Codes, Floats, refine_brackets
+from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, refine_brackets
 
 SCAN = 31
 """Points by which a region is looked for at the middle of a chord [-]."""
@@ -26,6 +26,9 @@ def refine_chords(
     chains: Chains, eta: float, classify: Classify, *, largest: float, end: float
 ) -> tuple[Chains, float, int]:
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
+
+    Regions of many impacts lie side by side with equal codes, and a chord can join two of them. It is taken out: the
+    curve is not found at its middle.
 
     Parameters
     ----------
@@ -55,13 +58,16 @@ def refine_chords(
         )
         first = np.flatnonzero(todo)
         bend, spread = _bend(chains, first)
-        sure = np.abs(bend) + spread < SURE * largest
+        sure = (np.abs(bend) + spread < SURE * largest) & ~_uncounted(chains, first)
         error = max(error, float((np.abs(bend) + spread)[sure].max(initial=0.0)))
         first, bend = first[~sure], bend[~sure]
         if not first.size:
             break
         middle, found, distance = _middles(chains, first, bend, eta, classify)
-        unknown += int((~found).sum())
+        wrong = ~found & _uncounted(chains, first)
+        unknown += int((~found & ~wrong).sum())
+        chains = chains.divide(first[wrong] + 1)
+        middle.chain = chains.chain[first]
         close = ~found | (distance <= largest)
         error = max(error, float(distance[found & close].max(initial=0.0)))
         cut = first[~close]
@@ -69,7 +75,12 @@ def refine_chords(
         todo = np.zeros(chains.chain.size - 1, dtype=bool)
         place = cut + np.arange(cut.size)
         todo[place] = todo[place + 1] = True
-    return chains, error, unknown
+    return chains.without_points(), error, unknown
+
+
+def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:
+    """Whether chords bound a region of many impacts."""
+    return np.asarray(chains.own[first] == UNCOUNTED)
 
 
 def _middles(

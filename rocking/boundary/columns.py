@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.boundary.search import Classify, Codes, Floats, merge_nodes, refine_lines, without_layers
+from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, merge_nodes, refine_lines, without_layers
 
 THINNEST = 1e-6
 """Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
@@ -30,6 +30,10 @@ class Column:
         Region codes, see `region_code`.
     bottom, top : float
         1/a at the two ends [-].
+    middle : float array (thresholds,)
+        1/a of each threshold, halfway between its two regions [-].
+    kinds : list of (int, int) (thresholds,)
+        Region codes below and above each threshold.
     secant, step : float arrays (2, thresholds)
         Slope of the chord of the boundary curve that ends at each threshold, and its width in log omega: of the one
         from the left (row 0) and of the one from the right (row 1); nan where unknown.
@@ -46,25 +50,19 @@ class Column:
     codes: list[int]
     bottom: float
     top: float
+    middle: Floats = field(init=False)
     secant: Floats = field(init=False)
     step: Floats = field(init=False)
     curvature: Floats = field(init=False)
+    kinds: list[tuple[int, int]] = field(init=False)
     whole: Column = field(init=False)
     offset: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
         self.secant, self.step, self.curvature = np.full((3, 2, self.below.size), np.nan)
         self.whole = self
-
-    @property
-    def middle(self) -> Floats:
-        """1/a of each threshold, halfway between its two regions."""
-        return 0.5 * (self.below + self.above)
-
-    @property
-    def kinds(self) -> list[tuple[int, int]]:
-        """Region codes below and above each threshold."""
-        return [*zip(self.codes[:-1], self.codes[1:], strict=True)]
+        self.middle = 0.5 * (self.below + self.above)
+        self.kinds = [*zip(self.codes[:-1], self.codes[1:], strict=True)]
 
     def code_at(self, x: Floats) -> Codes:
         """Region code at points between the two ends."""
@@ -72,25 +70,9 @@ class Column:
 
     def slope(self, side: int) -> Floats:
         """Derivative of 1/a with respect to log omega at each threshold, known from one side; nan where unknown."""
-        return np.asarray(
-            self.secant[side] + 0.5 * (1 - 2 * side) * self.step[side] * np.nan_to_num(self.curvature[side])
-        )
-
-    def without_layers(self) -> Column:
-        """The column with regions of many impacts taken together, see `region_code`."""
-        codes = without_layers(np.asarray(self.codes))
-        kept = np.flatnonzero(np.diff(codes) != 0)
-        column = Column(
-            self.eta,
-            self.log_omega,
-            self.below[kept],
-            self.above[kept],
-            codes[np.append(kept, codes.size - 1)].tolist(),
-            self.bottom,
-            self.top,
-        )
-        column.secant, column.step, column.curvature = self.secant[:, kept], self.step[:, kept], self.curvature[:, kept]
-        return column
+        bend = 0.5 * (1 - 2 * side) * self.step[side] * self.curvature[side]
+        slope: Floats = self.secant[side] + np.where(np.isnan(bend), 0.0, bend)
+        return slope
 
     def between(self, first: int, last: int) -> Column:
         """The thresholds from `first` to before `last`, and the regions beside them."""
@@ -113,12 +95,15 @@ class Lines:
     points : float array (lines, 3)
         1/a (any), log omega and eta of each line.
     classify : Classify
-        The solver, with region codes.
+        The solver, with layer codes or region codes.
+    thinnest : float
+        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
     """
 
-    def __init__(self, points: Floats, classify: Classify) -> None:
+    def __init__(self, points: Floats, classify: Classify, thinnest: float) -> None:
         self.points = points
         self.classify = classify
+        self.thinnest = thinnest
         self.nodes: list[tuple[Floats, Codes]] = [(np.empty(0), np.empty(0, dtype=np.int64))] * len(points)
 
     def add(self, line: Index, x: Floats, codes: Codes) -> dict[int, Column]:
@@ -130,38 +115,49 @@ class Lines:
             np.concatenate([x, *(old[0] for old in known)]),
             np.concatenate([codes, *(old[1] for old in known)]),
         )
-        line, x, codes = refine_lines(0, self.points, line, x, codes, self.classify, THINNEST)
+        line, x, codes = refine_lines(0, self.points, line, x, codes, self.classify, THINNEST, 0.5 * self.thinnest)
         edge = (np.diff(line) != 0) | (np.diff(codes) != 0)
         kept = np.append(True, edge) | np.append(edge, True)  # the ends of every run
         line, x, codes = line[kept], x[kept], codes[kept]
         bounds = np.append(np.searchsorted(line, touched), line.size)
         for k, first, last in zip(touched, bounds[:-1], bounds[1:], strict=True):
             self.nodes[k] = x[first:last], codes[first:last]
-        return {int(k): column for k, column in zip(touched, _columns(self.points, line, x, codes), strict=True)}
+        return {int(k): column for k, column in zip(touched, self._columns(line, x, codes), strict=True)}
+
+    def _columns(self, line: Index, x: Floats, codes: Codes) -> list[Column]:
+        """A column for each line of some nodes, without the regions that are too thin."""
+        codes = without_layers(codes)
+        start, end = _runs(line, codes)
+        line, codes, low, high = line[start], codes[start], x[start], x[end]
+        for many in (False, True):  # first the safe bands between two regions of many impacts, then such regions
+            thinnest = np.full(codes.size, THINNEST)
+            uncounted = codes == UNCOUNTED
+            thinnest[uncounted if many else _between(uncounted)] = self.thinnest
+            edge = np.diff(line) != 0
+            kept = np.append(True, edge) | np.append(edge, True) | (high - low >= thinnest)
+            line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]
+            start, end = _runs(line, codes)
+            line, codes, low, high = line[start], codes[start], low[start], high[end]
+        first = np.flatnonzero(np.append(True, np.diff(line) != 0))
+        return [
+            Column(
+                float(self.points[line[a], 2]),
+                float(self.points[line[a], 1]),
+                high[a : b - 1],
+                low[a + 1 : b],
+                codes[a:b].tolist(),
+                float(low[a]),
+                float(high[b - 1]),
+            )
+            for a, b in zip(first, np.append(first[1:], line.size), strict=True)
+        ]
 
 
-def _columns(points: Floats, line: Index, x: Floats, codes: Codes) -> list[Column]:
-    """A column for each line of some nodes, regions thinner than `THINNEST` left out."""
-    start, end = _runs(line, codes)
-    line, codes, low, high = line[start], codes[start], x[start], x[end]
-    edge = np.diff(line) != 0
-    kept = np.append(True, edge) | np.append(edge, True) | (high - low >= THINNEST)
-    line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]
-    start, end = _runs(line, codes)
-    line, codes, low, high = line[start], codes[start], low[start], high[end]
-    first = np.flatnonzero(np.append(True, np.diff(line) != 0))
-    return [
-        Column(
-            float(points[line[a], 2]),
-            float(points[line[a], 1]),
-            high[a : b - 1],
-            low[a + 1 : b],
-            codes[a:b].tolist(),
-            float(low[a]),
-            float(high[b - 1]),
-        )
-        for a, b in zip(first, np.append(first[1:], line.size), strict=True)
-    ]
+def _between(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether both neighbours of an entry are set."""
+    found = np.zeros(flags.size, dtype=bool)
+    found[1:-1] = flags[:-2] & flags[2:]
+    return found
 
 
 def _runs(line: Index, codes: Codes) -> tuple[Index, Index]:

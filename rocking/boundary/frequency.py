@@ -17,7 +17,7 @@ from rocking.boundary.search import Floats, classifier, outcomes_along
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check
-from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 NODES_PER_DECADE = 1000
 """Nodes on which outcomes are first computed, before their changes are refined [-]."""
@@ -83,7 +83,7 @@ def critical_frequency_ratio(
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    point = float(slenderness), float(nodes[0]), float(check(RESTITUTION, restitution))
+    point = float(check(SLENDERNESS, slenderness)), float(nodes[0]), float(check(RESTITUTION, restitution))
     grid, codes = outcomes_along(1, point, nodes, classifier(made, alpha, stop))
     overturns = codes != 0
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])

@@ -106,8 +106,10 @@ def learn_smooth_slopes(columns: tuple[Column, Column, Column]) -> None:
 
 def _distance_to_next(x: Floats) -> Floats:
     """Distance of each threshold from the nearest other one of its column."""
-    gap = np.diff(x, prepend=-np.inf, append=np.inf)
-    return np.minimum(gap[:-1], gap[1:])
+    gap = np.full(x.size + 1, np.inf)
+    gap[1:-1] = x[1:] - x[:-1]
+    nearest: Floats = np.minimum(gap[:-1], gap[1:])
+    return nearest
 
 
 def _cheapest_match(

@@ -7,17 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import contiguous_array
 from rocking.excitation.pulses import AbstractPulse
-from rocking.model.outcome_code import impacts_of_code, outcome_codes
+from rocking.model.checks import check_alpha
+from rocking.model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import FREQUENCY_RATIO
-from rocking.model.response import Response
-from rocking.solver.peak_response import peak_response
+from rocking.solver.peak_response import solve_cells
+from rocking.solver.state import FULL_PRECISION
 
 RESOLUTION = 1e-12
 """Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
@@ -41,26 +44,43 @@ Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
 """From 1/a, log omega and eta, which broadcast, to the code of the outcome and its margin to another."""
 
 
-def outcome_code(response: Response) -> Codes:
+class Outcomes(Protocol):
+    """What the codes are made from: a `Response`, or records of the solver; arrays of one shape."""
+
+    @property
+    def outcome(self) -> NDArray[np.int8]:
+        """Code of `Outcome`."""
+
+    @property
+    def impacts(self) -> NDArray[np.int32]:
+        """Number of impacts."""
+
+    @property
+    def chatter(self) -> NDArray[np.bool_]:
+        """Whether impacts were replaced by their sum."""
+
+
+def outcome_code(found: Outcomes) -> Codes:
     """One integer for the outcome, see `rocking.model.outcome_code`."""
-    return outcome_codes(response.outcome, response.impacts)
+    return outcome_codes(found.outcome, found.impacts)
 
 
-def layer_code(response: Response) -> Codes:
+def layer_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after chatter or more than `MOST_IMPACTS` impacts.
 
     After chatter the count says when the solver replaced the remaining impacts by their sum, not what the block did.
     """
-    many = response.chatter | (response.impacts > MOST_IMPACTS)
-    return np.where(response.overturned & many, UNCOUNTED, outcome_code(response))
+    codes = outcome_code(found)
+    many = found.chatter | (found.impacts > MOST_IMPACTS)
+    return np.where((codes != SURVIVES) & many, UNCOUNTED, codes)
 
 
-def region_code(response: Response) -> Codes:
+def region_code(found: Outcomes) -> Codes:
     """`layer_code`, with the code `UNCOUNTED` for overturning after more than `MANY_IMPACTS` impacts too.
 
     After many impacts the regions of one count are layers thinner than any figure shows.
     """
-    return without_layers(layer_code(response))
+    return without_layers(layer_code(found))
 
 
 def without_layers(codes: Codes) -> Codes:
@@ -79,27 +99,44 @@ def classifier(
     pulse: AbstractPulse,
     alpha: float | None,
     stop: StopFlag | None = None,
-    code_of: Callable[[Response], Codes] = outcome_code,
+    code_of: Callable[[Outcomes], Codes] = outcome_code,
     work: Work | None = None,
 ) -> Classify:
-    """The solver as a `Classify`, which raises `StoppedError` once `stop` is set, and notes its work in `work`."""
+    """The solver as a `Classify`, which raises `StoppedError` once `stop` is set, and notes its work in `work`.
+
+    It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an angle out of range.
+    """
+    angle = float(check_alpha(alpha))
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         omega = np.clip(
             np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
         )  # rounding must not lead out of the range
-        found = peak_response(
-            pulse, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha, stop=stop
-        )
+        groups = np.broadcast_arrays(slenderness, omega, eta, angle)
+        cells = [contiguous_array(group).ravel() for group in groups]
+        records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
+        found: Any = records.view(np.recarray).reshape(groups[0].shape)
         if work is not None:
             work.done += found.impacts.size + int(found.impacts.sum(dtype=np.int64))
-        return code_of(found), outcome_margin(found.end_rotation, found.end_velocity, eta, np.asarray(alpha or 0.0))
+        return code_of(found), outcome_margin(found.end_rotation, found.end_velocity, groups[2], groups[3])
 
     return classify
 
 
-def refine_brackets(axis: int, points: Floats, ends: Floats, code: Codes, classify: Classify) -> tuple[Floats, Floats]:
-    """Shrink brackets along one axis of the control space to `RESOLUTION`.
+def refine_brackets(
+    axis: int,
+    points: Floats,
+    ends: Floats,
+    code: Codes,
+    classify: Classify,
+    resolution: Floats | float = RESOLUTION,
+) -> tuple[Floats, Floats]:
+    """Shrink brackets along one axis of the control space.
 
     Parameters
     ----------
@@ -112,11 +149,13 @@ def refine_brackets(axis: int, points: Floats, ends: Floats, code: Codes, classi
     code : int array (points,)
     classify : Classify
         The solver.
+    resolution : float or float array (points,)
+        Width of the final brackets [-].
 
     Returns
     -------
     inside, outside : float arrays (points,)
-        Coordinates at most `RESOLUTION` apart: the outcome is `code` at `inside` only.
+        Coordinates at most `resolution` apart: the outcome is `code` at `inside` only.
 
     Notes
     -----
@@ -139,6 +178,7 @@ def refine_brackets(axis: int, points: Floats, ends: Floats, code: Codes, classi
     fb, fa = np.split(both, 2)
     c, fc = a.copy(), fa.copy()
     share = np.full(len(code), 0.5)
+    least_width = np.broadcast_to(resolution, len(code))
     found = ends.copy()
     while active.size:
         x = a + share * (b - a)
@@ -149,10 +189,10 @@ def refine_brackets(axis: int, points: Floats, ends: Floats, code: Codes, classi
         a, fa = x, fx
         found[active] = np.where((fa > 0.0)[:, None], np.stack([a, b], axis=1), np.stack([b, a], axis=1))
         width = np.abs(b - a)
-        left = width > RESOLUTION
+        left = width > least_width[active]
         active, a, b, c, fa, fb, fc, width = (each[left] for each in (active, a, b, c, fa, fb, fc, width))
         share = _next_share(a, b, c, fa, fb, fc)
-        least = 0.5 * RESOLUTION / width
+        least = 0.5 * least_width[active] / width
         share = np.clip(share, least, 1.0 - least)
     return found[:, 0], found[:, 1]
 
@@ -174,6 +214,7 @@ def refine_lines(
     codes: Codes,
     classify: Classify,
     thinnest: float = RESOLUTION,
+    layers: float = RESOLUTION,
 ) -> tuple[Index, Floats, Codes]:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
 
@@ -187,6 +228,10 @@ def refine_lines(
         Line, coordinate and outcome of each node, in ascending order of line, then coordinate.
     classify : Classify
         The solver.
+    thinnest : float
+        Width below which a region between two others need not be found [-].
+    layers : float
+        Distance of the two nodes where two layers of one region meet, see `region_code` [-].
 
     Returns
     -------
@@ -196,9 +241,10 @@ def refine_lines(
     for _ in range(ROUNDS):
         change = (np.diff(codes) != 0) & (np.diff(line) == 0)
         width = np.diff(x)
-        exact = np.concatenate([[False], change & (width <= 2 * RESOLUTION), [False]])  # where a region is known to end
+        resolution = _resolution(codes[:-1], codes[1:], layers)
+        exact = np.concatenate([[False], change & (width <= 2 * resolution), [False]])  # where a region is known to end
         narrow = width <= thinnest
-        edge = change & (width > 2 * RESOLUTION) & ~(narrow & exact[:-2] & exact[2:])
+        edge = change & (width > 2 * resolution) & ~(narrow & exact[:-2] & exact[2:])
         if not edge.any():
             break
         added = [(line, x, codes)]
@@ -206,16 +252,19 @@ def refine_lines(
         # where the region at the lower end stops ...
         first = np.flatnonzero(edge & ~(narrow & exact[:-2]))
         own, on = codes[first], line[first]
-        inside, outside = refine_brackets(axis, points[on], np.stack([x[first], x[first + 1]], 1), own, classify)
+        ends = np.stack([x[first], x[first + 1]], 1)
+        inside, outside = refine_brackets(axis, points[on], ends, own, classify, resolution[first])
         added.append((on, inside, own))
         met = _codes_at(axis, points[on], outside, classify)
         added.append((on, outside, met))
         other = met != codes[first + 1]
         # ... and, where another one than that at the upper end begins there, where that at the upper end begins
-        last = np.append(first[other] + 1, np.flatnonzero(edge & narrow & exact[:-2]) + 1)
-        low = np.append(outside[other], x[last[other.sum() :] - 1])
+        after = np.flatnonzero(edge & narrow & exact[:-2])
+        last = np.append(first[other], after) + 1
+        low, below = np.append(outside[other], x[after]), np.append(met[other], codes[after])
         own, on = codes[last], line[last]
-        inside, outside = refine_brackets(axis, points[on], np.stack([x[last], low], 1), own, classify)
+        ends = np.stack([x[last], low], 1)
+        inside, outside = refine_brackets(axis, points[on], ends, own, classify, _resolution(below, own, layers))
         added.append((on, inside, own))
         added.append((on, outside, _codes_at(axis, points[on], outside, classify)))
         wide = outside - low > 2 * thinnest
@@ -224,6 +273,11 @@ def refine_lines(
         added += [(on, at, _codes_at(axis, points[on], at, classify)) for at in between]
         line, x, codes = merge_nodes(*(np.concatenate(each) for each in zip(*added, strict=True)))
     return line, x, codes
+
+
+def _resolution(below: Codes, above: Codes, layers: float) -> Floats:
+    """How near to each other the two nodes beside a change of outcome shall lie."""
+    return np.where(without_layers(below) == without_layers(above), layers, RESOLUTION)
 
 
 def _codes_at(axis: int, points: Floats, x: Floats, classify: Classify) -> Codes:

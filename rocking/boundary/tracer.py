@@ -9,7 +9,7 @@ until that place is known to `END`. The ends of equal regions in neighbouring co
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable
 from itertools import pairwise
 
@@ -17,8 +17,8 @@ import numpy as np
 
 from rocking.boundary.columns import THINNEST, Column, Lines
 from rocking.boundary.matching import Pairs, Side, join_sides, learn_slopes, learn_smooth_slopes, match_thresholds
-from rocking.boundary.search import UNCOUNTED, Classify, Floats, Work
-from rocking.model.outcome_code import impacts_of_code
+from rocking.boundary.search import UNCOUNTED, Classify, Floats, Work, without_layers
+from rocking.model.outcome_code import SURVIVES, impacts_of_code
 
 BATCH_SIZE = 500_000
 """Blocks that are solved in one call, about: a hundred megabytes [-]."""
@@ -32,11 +32,20 @@ FINER = 8
 PROBES = 81
 """Most nodes by which a region is searched for in one column [-]."""
 
-EFFORT = 1_000_000
+NEARLY_ELASTIC = 0.9
+"""Restitution above which regions of overturning after many impacts are resolved less finely than others [-].
+
+There they lie in ever more layers, on which blocks strike a hundred times: at 0.96 under the cosine, 301 nodes, the
+resolution of the others took 49 million impacts and blocks in all, this one takes 8 million.
+"""
+
+UNCOUNTED_THINNEST, UNCOUNTED_END = 1e-4, 1e-3
+"""Above `NEARLY_ELASTIC`, for regions of many impacts: in place of `THINNEST` and of `END` [-]."""
+
+EFFORT = 10_000_000
 """Impacts and blocks after which regions are no longer followed, and, as many later, steps no longer halved [-].
 
-At restitutions up to 0.9 the search ends before. Almost elastic blocks strike hundreds of times, and their regions lie
-in many layers: at 1.0 under the cosine the search would take a minute in place of seconds.
+It bounds the time for blocks that strike hundreds of times; `open_ends` counts what is left then.
 """
 
 SEARCHES = 4
@@ -55,8 +64,10 @@ class Tracer:
         Of the lines omega = const of the grid, ascending.
     joins : dict of lists
         By the index of the left column: pairs of ends of regions that follow each other on a curve.
-    open_ends : int
-        Places at which a region ends, divides or begins that are known to a step of the grid only.
+    thinnest : float
+        Width in 1/a below which a region of many impacts is not resolved [-].
+    end : float
+        Distance in log omega within which the end of such a region is known [-].
     """
 
     def __init__(
@@ -66,12 +77,13 @@ class Tracer:
         self.classify = classify
         self.classify_regions = classify_regions
         self.work = work
-        self.lines = Lines(self.points, classify)
+        elastic = eta > NEARLY_ELASTIC
+        self.thinnest, self.end = (UNCOUNTED_THINNEST, UNCOUNTED_END) if elastic else (THINNEST, END)
+        self.lines = Lines(self.points, classify, self.thinnest)
         self.columns: list[Column] = []
         self.panels = range(log_omega.size - 1)
         self.joins: dict[int, list[tuple[Side, Side]]] = {}
-        self.open_ends = 0
-        self._joined: dict[int, tuple[Column, Column]] = {}
+        self._open: Counter[int] = Counter()
         self._tried: set[tuple[int, int, float, int]] = set()
 
     def trace(self, rows: Floats) -> None:
@@ -92,6 +104,11 @@ class Tracer:
                 break
         else:
             self._join(changed, halved)
+
+    @property
+    def open_ends(self) -> int:
+        """Places at which a region ends, divides or begins that are known to a step of the grid only."""
+        return self._open.total()
 
     def _classify_grid(self, rows: Floats) -> None:
         """Columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
@@ -140,7 +157,7 @@ class Tracer:
         x = np.concatenate([x for xs in wanted.values() for x in xs])
         codes, _ = self.classify(x, *self.points[line, 1:].T)
         known = np.concatenate([self.columns[k].code_at(np.concatenate(xs)) for k, xs in wanted.items()])
-        new = np.isin(line, np.unique(line[codes != known]))
+        new = np.isin(line, np.unique(line[without_layers(codes) != known]))
         if not new.any():
             return set()
         before = {int(k): self.columns[k] for k in np.unique(line[new])}
@@ -155,8 +172,8 @@ class Tracer:
         """Join the regions of neighbouring columns; the pairs of columns between which one ends."""
         items: list[Item] = []
         for k in sorted(panels):
-            self.joins[k] = []
-            items.append((k, self._merged(k), self._merged(k + 1)))
+            self.joins[k], self._open[k] = [], 0
+            items.append((k, self.columns[k], self.columns[k + 1]))
         last: list[tuple[Column, Column, Pairs]] = []
         while items:
             halved: list[Item] = []
@@ -165,21 +182,15 @@ class Tracer:
                 learn_slopes(left, right, pairs)
                 self.joins[k] += [join for m, n in pairs for join in _sides(left, m, right, n)]
                 for part, other in _gaps(left, right, pairs):
-                    if right.log_omega - left.log_omega > END and self.work.done < most:
+                    end = self.end if {*part.codes, *other.codes} <= {SURVIVES, UNCOUNTED} else END
+                    if right.log_omega - left.log_omega > end and self.work.done < most:
                         halved.append((k, part, other))
                     else:
                         self.joins[k] += join_sides(part, other)
-                        self.open_ends += right.log_omega - left.log_omega > END
+                        self._open[k] += right.log_omega - left.log_omega > end
                         last.append((part, other, match_thresholds(part, other)))
             items = self._halve(halved)
         return last
-
-    def _merged(self, line: int) -> Column:
-        """The column of a line without layers, the same object each time."""
-        column = self.columns[line]
-        if line not in self._joined or self._joined[line][0] is not column:
-            self._joined[line] = column, column.without_layers()
-        return self._joined[line][1]
 
     def _halve(self, items: list[Item]) -> list[Item]:
         """A column halfway in each panel, and the two panels that it makes of it."""
@@ -190,20 +201,20 @@ class Tracer:
         line = np.repeat(np.arange(len(items)), [x.size for x in nodes])
         x = np.concatenate(nodes)
         codes, _ = self.classify_regions(x, *points[line, 1:].T)
-        columns = Lines(points, self.classify_regions).add(line, x, codes)
+        columns = Lines(points, self.classify_regions, self.thinnest).add(line, x, codes)
         halves: list[Item] = []
         for i, (k, left, right) in enumerate(items):
-            column = _bounded(columns[i], left.codes[0], left.codes[-1])
+            column = _bounded(columns[i], left, right)
             if column is None:
                 self.joins[k] += join_sides(left, right)
-                self.open_ends += 1
+                self._open[k] += 1
             else:
                 halves += [(k, left, column), (k, column, right)]
         return halves
 
     def _beyond(self, ends: list[tuple[Column, Column, Pairs]]) -> set[int]:
         """Look for regions that end at a column of the grid beyond it, now that their course is known well."""
-        of_column = {id(self._merged(k)): k for k in range(len(self.columns))}
+        of_column = {id(column): k for k, column in enumerate(self.columns)}
         wanted: dict[int, list[Floats]] = defaultdict(list)
         for left, right, pairs in ends:
             for column, x, _ in _probes(left, right, pairs):
@@ -284,11 +295,18 @@ def _nodes_between(left: Column, right: Column) -> Floats:
         ends = [column.bottom, *column.middle, column.top]
         nodes += [np.array([0.5 * (ends[0] + ends[1]), 0.5 * (ends[-1] + ends[-2])]) + sign * shift]
     x = np.unique(np.concatenate(nodes))
-    return x[(x > low) & (x < high)]
+    x = x[(x > low) & (x < high)]
+    # where the regions at an end differ, it is the edge of the window, and the column goes on to there
+    bottom, top = ([end] if left.codes[k] != right.codes[k] else [] for k, end in ((0, low), (-1, high)))
+    return np.concatenate([bottom, x, top])
 
 
-def _bounded(column: Column, first: int, last: int) -> Column | None:
-    """The part of a column from its first region of one code to its last of another, or None if it lacks them."""
+def _bounded(column: Column, left: Column, right: Column) -> Column | None:
+    """The part of a column halfway between two that has the same regions at its ends, or None if it lacks them.
+
+    The ends of the two columns differ only where they lie on the edge of the window; there the whole column counts.
+    """
+    first, last = (left.codes[k] if left.codes[k] == right.codes[k] else column.codes[k] for k in (0, -1))
     if first not in column.codes or last not in column.codes:
         return None
     start, end = column.codes.index(first), len(column.codes) - 1 - column.codes[::-1].index(last)

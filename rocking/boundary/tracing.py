@@ -21,7 +21,12 @@ from rocking.boundary.search import Floats, Work, classifier, layer_code, region
 from rocking.boundary.tracer import END, Tracer
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.model.checks import check, check_window
 from rocking.model.outcome_code import decode_outcomes
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+
+UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
+"""Blocks that the pulse can uplift."""
 
 CHORD = 1e-4
 """Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
@@ -63,8 +68,12 @@ def overturning_boundary(
         impacts or after impacts that accumulate to rest: that is one region. Attributes: chord_error [-], the largest
         distance of a chord from its curve,
         measured at the middles of the chords; thinnest_region [-], the width in 1/a below which a region is not
-        resolved and its two neighbours are taken to meet; unmeasured_chords, the number of chords at whose middle the
-        curve was not found; open_ends, the number of ends of regions that are known to a step of the nodes only.
+        resolved and its two neighbours are taken to meet; thinnest_uncounted_region [-], the same for regions whose
+        `impacts` are -1 and for safe bands between two of them; end_distance [-], the distance in log omega within
+        which the ends of these regions are known, and below which they are not resolved (`END` for all others);
+        node_distance [-], the largest distance of the nodes in 1/a; unmeasured_chords, the number of chords at whose
+        middle the curve was not found; open_ends, the number of ends of regions that are known to a step of the nodes
+        only.
 
     Raises
     ------
@@ -76,8 +85,8 @@ def overturning_boundary(
     Notes
     -----
     A region is found if a node lies in it, on any line; the nodes are finer by `FINER` where blocks overturn after
-    two impacts or more. From there it is followed in both directions. So a region is missed if it is narrower than the
-    distance of the nodes all along, or shorter than their distance in log omega.
+    two impacts or more. From there it is followed in both directions. So a region can be missed only if it is narrower
+    in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
     """
     return overturning_boundaries(
         pulse,
@@ -102,11 +111,9 @@ def overturning_boundaries(
 ) -> list[xr.Dataset]:
     """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit."""
     in_range("nodes", nodes, 16, 4001)
-    low, high = (float(in_range("frequency_ratio", x, 0.0, np.inf, closed="neither")) for x in frequency_ratio)
-    in_range("frequency_ratio[1]", high, low, np.inf, closed="neither")
-    bottom, top = (float(in_range("slenderness", x, 0.0, 1.0, closed="right")) for x in slenderness)
-    in_range("slenderness[1]", top, bottom, 1.0, closed="right")
-    etas = np.atleast_1d(in_range("restitution", restitution, 0.0, 1.0))
+    low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
+    bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
+    etas = np.atleast_1d(check(RESTITUTION, restitution))
     made = as_pulse(pulse)
     log_omega = np.linspace(np.log(low), np.log(high), int(nodes))
     rows = _rows(bottom, top, int(nodes), log_omega.size)
@@ -129,6 +136,9 @@ def _curves(
         alpha=float(alpha or 0.0),
         chord_error=error,
         thinnest_region=THINNEST,
+        thinnest_uncounted_region=tracer.thinnest,
+        end_distance=tracer.end,
+        node_distance=float(np.diff(rows, axis=0).max()),
         open_ends=tracer.open_ends,
         unmeasured_chords=unknown,
     )

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.closed_form.arguments import Array, checked
 from rocking.closed_form.case_1_1 import overturning_condition
 from rocking.closed_form.case_2 import case_2_amplitude
-from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end, uplift_phase
+from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end, uplift_phase
 from rocking.closed_form.interval import AmplitudeInterval
 from rocking.closed_form.roots import find_root
 from rocking.closed_form.transcendental import residual, rising_root
-from rocking.errors import in_range
 
 EXPANSION_TIME = 1.0
 """tau_i1^0 = p t_i1^0 [-], (3.23): the initial guess of the impact time, about which (3.24) and (3.25) expand."""
@@ -30,7 +30,7 @@ def kappa_lambda(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Arra
     frequency_ratio : array_like
         omega [-], (0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     phi = omega * EXPANSION_TIME + uplift_phase(a)
     kappa = -np.e * omega / 2 * (np.cos(phi) + omega * np.sin(phi))  # (3.26)
     lambda_ = omega / (2 * np.e) * (np.cos(phi) - omega * np.sin(phi))  # (3.26)
@@ -49,8 +49,8 @@ def sine_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLik
     time : array_like
         tau since uplift [-].
     """
-    a, omega = checked(amplitude, frequency_ratio)
-    phi, step = omega * EXPANSION_TIME + uplift_phase(a), np.asarray(time) - EXPANSION_TIME
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
+    phi, step = omega * EXPANSION_TIME + uplift_phase(a), tau - EXPANSION_TIME
     return np.asarray(np.sin(phi) * (1 - (omega * step) ** 2 / 2) + omega * np.cos(phi) * step)  # (3.24)
 
 
@@ -66,8 +66,9 @@ def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: A
     time : array_like
         tau since uplift [-].
     """
-    kappa, lambda_ = kappa_lambda(amplitude, frequency_ratio)
-    decaying, growing, step = kappa / np.e, lambda_ * np.e, np.asarray(time) - EXPANSION_TIME
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
+    kappa, lambda_ = kappa_lambda(a, omega)
+    decaying, growing, step = kappa / np.e, lambda_ * np.e, tau - EXPANSION_TIME
     return np.asarray((decaying + growing) * (1 + step**2 / 2) + (growing - decaying) * step)  # (3.25)
 
 
@@ -83,15 +84,15 @@ def ad_hoc_sine(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLik
     time : array_like
         tau since uplift [-].
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     kappa, lambda_ = kappa_lambda(a, omega)
     constant = (omega**2 + 1) * np.sin(omega * EXPANSION_TIME + uplift_phase(a))
-    return residual(kappa, lambda_, constant, time)  # (3.27)
+    return residual(kappa, lambda_, constant, tau)  # (3.27)
 
 
 def _exponential_terms(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array, Array]:
     """I1, I2 and I3 of (A 1) for (3.28) [-]."""
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     A0, B0, C0 = coefficients(a, omega)
     kappa, lambda_ = kappa_lambda(a, omega)
     a_sine = np.cos(omega) + cot_psi(a) * np.sin(omega)  # a sin(omega + psi), as a sin(psi) = 1
@@ -110,7 +111,8 @@ def ad_hoc_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arra
     time : array_like
         tau since uplift [-].
     """
-    return residual(*_exponential_terms(amplitude, frequency_ratio), time)  # (3.28)
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
+    return residual(*_exponential_terms(a, omega), tau)  # (3.28)
 
 
 def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -149,12 +151,12 @@ def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
     ndarray
         [-], zero on the semi-analytical curve, positive where the block overturns, nan where (3.29) has no root.
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
     tau = ad_hoc_impact_time(a, omega)
     A0, B0, C0 = coefficients(a, omega)
     with np.errstate(over="ignore", invalid="ignore"):
         doubled = B0 * np.exp(tau) - A0 * np.exp(-tau) + C0 * omega * np.cos(omega * tau + uplift_phase(a))  # (3.22)
-        return overturning_condition(a, omega, restitution, tau, doubled / 2)  # (3.30)
+        return overturning_condition(a, omega, eta, tau, doubled / 2)  # (3.30)
 
 
 def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> AmplitudeInterval:
@@ -175,9 +177,7 @@ def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLik
         physical, as its impact time lies beyond the end of the pulse. The same may hold for `lower`: check with
         `within_pulse`.
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
-    eta = in_range("restitution", restitution, 0.0, 1.0)
-    omega, eta = np.broadcast_arrays(omega, eta)
+    omega, eta = checked(frequency_ratio=frequency_ratio, restitution=restitution)
     top = np.log(2 * case_2_amplitude(omega) - 1)
     steps = np.linspace(0.0, 1.0, _GRID).reshape(-1, *(1,) * omega.ndim)
     grid = 1 + np.exp(_LOG_START + (top - _LOG_START) * steps)

@@ -10,12 +10,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end, uplift_phase
+from rocking.closed_form.arguments import POSITIVE_RESTITUTION, Array, checked
+from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end, uplift_phase
 from rocking.closed_form.first_arc import angular_velocity, arc_terms
 from rocking.closed_form.interval import AmplitudeInterval
 from rocking.closed_form.limit import limit_amplitude
 from rocking.closed_form.roots import find_maximum, find_root
 from rocking.errors import in_range
+from rocking.model.checks import check
 
 
 def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -41,7 +43,7 @@ def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Ar
     starts below zero crosses zero at most once. Any root is therefore unique and lies in [(pi - 2 psi)/omega, p T_ex];
     there is one if and only if theta >= 0 at the end of the pulse.
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     psi = uplift_phase(a)
     tau = find_root(_rotation, (np.pi - 2 * psi) / omega, pulse_end(a, omega), omega, cot_psi(a))
     return np.asarray(np.where(a == 1.0, 0.0, tau))  # (3.21)
@@ -90,12 +92,12 @@ def overturning_condition(
     ndarray
         2 B_ex1/alpha e^{tau_i} [-], zero for (3.19), positive where the block overturns.
     """
-    a, omega = checked(amplitude, frequency_ratio)
-    eta = in_range("restitution", restitution, 0.0, 1.0)
-    tau = np.asarray(time, dtype=np.float64)
+    a, omega, eta, tau, v = checked(
+        amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution, time=time, velocity=velocity
+    )
     C0, phi = coefficients(a, omega).C0, omega * tau + uplift_phase(a)
     forced = omega * np.exp(tau - pulse_end(a, omega)) - omega * np.cos(phi) - np.sin(phi)
-    return np.asarray(2 * eta * np.asarray(velocity) + C0 * forced - 2)  # (3.19), (3.20)
+    return np.asarray(2 * eta * v + C0 * forced - 2)  # (3.19), (3.20)
 
 
 def case_1_1_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
@@ -135,8 +137,8 @@ def amplitude_of_impact_time(impact_time: ArrayLike, frequency_ratio: ArrayLike)
     ndarray
         a [-]: sqrt(a^2 - 1) = [omega^2 (cosh tau - 1) - (1 - cos omega tau)]/[omega sinh tau - sin omega tau].
     """
-    tau = in_range("impact_time", impact_time, 0.0, np.inf, closed="neither")
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    in_range("impact_time", impact_time, 0.0, np.inf, closed="neither")
+    tau, omega = checked(impact_time=impact_time, frequency_ratio=frequency_ratio)
     Yc, Ys = arc_terms(tau, omega)
     return np.asarray(np.hypot(1.0, Yc / Ys))  # (3.21)
 
@@ -172,9 +174,7 @@ def case_1_1_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
         except for low frequency ratios (omega < 0.25 for eta = 0.8), where the block survives already below that
         limit. Both are nan where there is no such overturning, beyond `case_1_1_end`.
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
-    eta = in_range("restitution", restitution, 0.0, 1.0)
-    omega, eta = np.broadcast_arrays(omega, eta)
+    omega, eta = checked(frequency_ratio=frequency_ratio, restitution=restitution)
     limit = limit_amplitude(omega)
     end = pulse_end(limit, omega)
     start = 1e-3 * end  # an impact this early never overturns: (3.20) is near -2 + C0* omega e^{-p T_ex} < 0
@@ -206,7 +206,7 @@ def case_1_1_end(restitution: ArrayLike) -> Array:
         branch of (3.18) and the curve (3.20) meet there on the limit (3.31); for smaller eta the curve (3.20) has a
         turning point there.
     """
-    eta = in_range("restitution", restitution, 0.0, 1.0, closed="right")
+    eta = check(POSITIVE_RESTITUTION, restitution)
     return find_root(_best_condition, np.full_like(eta, 0.05), np.full_like(eta, 8.0), eta)
 
 

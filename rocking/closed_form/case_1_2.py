@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking.closed_form.arguments import Array, checked
 from rocking.closed_form.case_2 import case_2_phase
 from rocking.closed_form.coefficients import (
-    Array,
     after_pulse_coefficients,
-    checked,
     coefficients,
     d0_star,
     pulse_end,
@@ -20,7 +19,6 @@ from rocking.closed_form.interval import AmplitudeInterval
 from rocking.closed_form.limit import limit_amplitude, limit_velocity
 from rocking.closed_form.roots import find_maximum, find_root
 from rocking.closed_form.transcendental import residual, rising_root
-from rocking.errors import in_range
 
 _UNRESOLVED = 30.0  # p T_ex beyond which e^{-p T_ex} is below the rounding error of a
 _PRODUCT_FROM = 4.0  # p T_ex from which the product form of D0* is more accurate than the energy, which may overflow
@@ -38,10 +36,11 @@ def case_1_2_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Ar
     time : array_like
         tau since uplift [-]; the value is 2 theta/alpha only from the end of the pulse on.
     """
-    decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
-    T = pulse_end(amplitude, frequency_ratio)
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
+    decaying, growing = after_pulse_coefficients(a, omega)
+    T = pulse_end(a, omega)
     with np.errstate(over="ignore"):
-        return residual(decaying, growing * np.exp(T), -2.0, np.asarray(time) - T)  # (3.12)
+        return residual(decaying, growing * np.exp(T), -2.0, tau - T)  # (3.12)
 
 
 def case_1_2_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -80,9 +79,10 @@ def free_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayL
     time : array_like
         tau since uplift [-].
     """
-    decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
-    T = pulse_end(amplitude, frequency_ratio)
-    since_end = np.asarray(time) - T
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
+    decaying, growing = after_pulse_coefficients(a, omega)
+    T = pulse_end(a, omega)
+    since_end = tau - T
     with np.errstate(over="ignore"):
         return np.asarray((growing * np.exp(T) * np.exp(since_end) - decaying * np.exp(-since_end)) / 2)  # (3.14)
 
@@ -104,7 +104,7 @@ def impact_velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike) ->
         to one; 1 - D0* is then computed as the energy of free rocking, v_ex^2 - y_ex (y_ex + 2), without
         cancellation.
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     y, v = state_at_pulse_end(a, omega)
     with np.errstate(over="ignore", invalid="ignore"):
         energy = v * v - y * (y + 2)
@@ -145,9 +145,9 @@ def case_1_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitutio
         eta v_i2 - 1 = B_i2 [-], zero on (3.18), positive where the block overturns; valid between `limit_amplitude`
         and `case_2_amplitude` only.
     """
-    eta = in_range("restitution", restitution, 0.0, 1.0)
+    a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
     with np.errstate(invalid="ignore"):
-        return np.asarray(eta * case_1_2_impact_velocity(amplitude, frequency_ratio) - 1)  # (3.16), (3.17)
+        return np.asarray(eta * case_1_2_impact_velocity(a, omega) - 1)  # (3.16), (3.17)
 
 
 def condition_3_18(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -164,9 +164,9 @@ def condition_3_18(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     -----
     The sentence below (3.31) assigns (3.18) to case 1.1 and (3.30) to case 1.2; their derivations show the opposite.
     """
-    omega = np.asarray(frequency_ratio, dtype=np.float64)
-    A0, B0, C0 = coefficients(amplitude, omega)
-    T = pulse_end(amplitude, omega)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
+    A0, B0, C0 = coefficients(a, omega)
+    T = pulse_end(a, omega)
     half = omega / 2 * C0
     with np.errstate(over="ignore"):
         return np.asarray(1 - (A0 * B0 - half**2 + half * (A0 * np.exp(-T) - B0 * np.exp(T))))  # (3.18)
@@ -189,9 +189,7 @@ def case_1_2_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
         below the limit, in case 1.1; `upper` is the upper branch, below the curve of case 2 except for eta = 1. Both
         are nan where there is no such overturning.
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
-    eta = in_range("restitution", restitution, 0.0, 1.0)
-    omega, eta = np.broadcast_arrays(omega, eta)
+    omega, eta = checked(frequency_ratio=frequency_ratio, restitution=restitution)
     limit, overturned_at_limit = limit_amplitude(omega), eta * limit_velocity(omega) >= 1
     direct, end = case_2_phase(omega), uplift_phase(limit)
     top = find_maximum(_excess, direct, end, omega, eta)

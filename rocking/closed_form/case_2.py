@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.closed_form.coefficients import Array, after_pulse_coefficients, checked, cot_psi, pulse_end
+from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, Array, checked
+from rocking.closed_form.coefficients import after_pulse_coefficients, cot_psi, pulse_end
 from rocking.closed_form.roots import find_root
-from rocking.errors import in_range
+from rocking.model.checks import check
 
 
 def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -25,7 +26,7 @@ def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     ndarray
         sqrt(a^2 - 1) - a e^{-p T_ex} - omega [-]; zero on the curve, positive where the block overturns without impact.
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     return np.asarray(cot_psi(a) - a * np.exp(-pulse_end(a, omega)) - omega)  # (3.10), second line
 
 
@@ -63,7 +64,7 @@ def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
     ndarray
         a [-], > 1, of the shape of `frequency_ratio`. It is unique: (3.10) divided by a is monotone in psi.
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
     psi = case_2_phase(omega)
     return np.asarray(1 / np.sin(psi))
 

@@ -10,11 +10,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from rocking.errors import in_range
-
-Array = NDArray[np.float64]
+from rocking.closed_form.arguments import AMPLITUDE, Array, checked
+from rocking.model.checks import check
 
 
 class Coefficients(NamedTuple):
@@ -23,14 +22,6 @@ class Coefficients(NamedTuple):
     A0: Array
     B0: Array
     C0: Array
-
-
-def checked(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
-    """Amplitude a [-], [1, inf), and frequency ratio omega [-], (0, inf), broadcast against each other."""
-    a = in_range("amplitude", amplitude, 1.0, np.inf)
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
-    a, omega = np.broadcast_arrays(a, omega)
-    return a, omega
 
 
 def cot_psi(a: Array) -> Array:
@@ -51,7 +42,7 @@ def uplift_phase(amplitude: ArrayLike) -> Array:
     ndarray
         psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
     """
-    a = in_range("amplitude", amplitude, 1.0, np.inf)
+    a = check(AMPLITUDE, amplitude)
     return np.asarray(
         np.arctan2(1.0, cot_psi(a))
     )  # (3.3), accurate near a = 1, where arcsin(1/a) loses half the digits
@@ -67,7 +58,7 @@ def pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     frequency_ratio : array_like
         omega [-], (0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     return np.asarray((2 * np.pi - uplift_phase(a)) / omega)
 
 
@@ -95,7 +86,7 @@ def coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Coefficien
     frequency_ratio : array_like
         omega [-], (0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     s, K = cot_psi(a), omega / (omega * omega + 1)
     A0, B0, C0 = K * (omega + s), K * (omega - s), 2 * a * K / omega  # (3.9)
     return Coefficients(np.asarray(A0), np.asarray(B0), np.asarray(C0))
@@ -121,7 +112,7 @@ def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
         B0* + (omega/2) C0* e^{-p T_ex} [-]; its sign changes on the boundary of overturning without
         impact, (3.10).
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     s, K = cot_psi(a), omega / (omega * omega + 1)
     decay = np.exp(-pulse_end(a, omega))
     decaying, growing = K * ((omega + s) * decay - a), K * (omega - s + a * decay)  # (3.5), factors of D0* in (3.9)
@@ -160,7 +151,7 @@ def d0_star_expanded(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     frequency_ratio : array_like
         omega [-], (0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     s, T = cot_psi(a), pulse_end(a, omega)
     with np.errstate(over="ignore", invalid="ignore"):
         bracket = omega**2 - 2 * a**2 + 1 + (s + omega) * a * np.exp(-T) + (s - omega) * a * np.exp(T)

@@ -17,8 +17,9 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end, uplift_phase
-from rocking.errors import in_range
+from rocking.closed_form.arguments import TIME, Array, checked
+from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end, uplift_phase
+from rocking.model.checks import check
 
 _SERIES_UNTIL = 1.0  # max(tau, omega tau) up to which the series is used; the error of ten terms is then 1e-19
 _SERIES_TERMS = 10
@@ -36,8 +37,8 @@ def rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) 
     time : array_like
         tau = p t since uplift [-], [0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
-    tau = in_range("time", time, 0.0, np.inf)
+    check(TIME, time)
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     Yc, Ys = arc_terms(tau, omega)
     with np.errstate(over="ignore", invalid="ignore"):
         return np.asarray((Yc - cot_psi(a) * Ys) * np.exp(tau) / (2 * (omega * omega + 1)))  # (3.4), theta
@@ -55,8 +56,8 @@ def angular_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
     time : array_like
         tau = p t since uplift [-], [0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
-    tau = in_range("time", time, 0.0, np.inf)
+    check(TIME, time)
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     _, Ys = arc_terms(tau, omega)
     decay = np.exp(-tau)
     Ys_slope = omega * (np.expm1(-tau) ** 2 + 4 * decay * np.sin(omega * tau / 2) ** 2)
@@ -100,8 +101,8 @@ def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
     time : array_like
         tau = p t since uplift [-], [0, inf).
     """
-    a, omega = checked(amplitude, frequency_ratio)
-    tau = in_range("time", time, 0.0, np.inf)
+    check(TIME, time)
+    a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     A0, B0, C0 = coefficients(a, omega)
     forced = C0 * np.sin(omega * tau + uplift_phase(a))
     return np.asarray((A0 * np.exp(-tau) + B0 * np.exp(tau) + forced - 2) / 2)  # (3.4), left side of (3.21)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rocking.closed_form.coefficients import Array
+from rocking.closed_form.arguments import Array
 
 
 class AmplitudeInterval(NamedTuple):

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.closed_form.coefficients import Array, checked, coefficients, cot_psi, pulse_end
+from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, Array, checked
+from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end
 from rocking.closed_form.roots import find_root
-from rocking.errors import in_range
+from rocking.model.checks import check
 
 
 def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
@@ -26,7 +27,7 @@ def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
         (3.31), left side minus right side, times e^{-p T_ex} [-]: positive where the first impact is after the end of
         the pulse or does not occur; negative where it is within the pulse.
     """
-    a, omega = checked(amplitude, frequency_ratio)
+    a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     left = 1 + omega**2 + np.sqrt(1 + (a**2 + 1) * omega**2)
     return np.asarray(left * np.exp(-pulse_end(a, omega)) - omega * (omega - cot_psi(a)))  # (3.31)
 
@@ -46,7 +47,7 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
         `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and
         that of case 2 agree in all printed digits.
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
     psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -73,7 +74,7 @@ def limit_velocity(frequency_ratio: ArrayLike) -> Array:
         1.2; elsewhere it lies in the region where the block survives.
     """
     a = limit_amplitude(frequency_ratio)
-    omega = np.asarray(frequency_ratio, dtype=np.float64)
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
     A0, B0, C0 = coefficients(a, omega)
     grown = 1 + np.sqrt(1 - A0 * B0)  # B0* e^{p T_ex}, (3.31)
     return np.asarray((grown - A0 * np.exp(-pulse_end(a, omega)) + C0 * omega) / 2)  # (3.11)

@@ -13,8 +13,11 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
+from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
+from rocking.model.checks import check
+from rocking.model.parameters import RESTITUTION
 
 _NEGLIGIBLE = 50.0  # time s beyond which e^-s < 2e-22 is neglected
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
@@ -58,7 +61,7 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
         phi at tau_0 [rad], within the pulse.
     """
     shape = as_pulse(pulse)
-    omega = float(in_range("frequency_ratio", frequency_ratio, 0.0, math.inf, closed="neither"))
+    omega = float(check(ANY_FREQUENCY_RATIO, frequency_ratio))
     phi0 = float(in_range("start_phase", start_phase, shape.start, shape.end, unit="rad"))
     length = (shape.end - phi0) / omega
     if isinstance(shape, SinusoidalPulse):
@@ -136,6 +139,6 @@ def margin_after_impact(
         sine the margin vanishes on (3.18) and on (3.20).
     """
     shape = as_pulse(pulse)
-    eta = float(in_range("restitution", restitution, 0.0, 1.0))
+    eta = float(check(RESTITUTION, restitution))
     forced = discounted_integral(shape, frequency_ratio, impact_phase) if impact_phase < shape.end else 0.0
     return eta * abs(impact_velocity) - math.copysign(amplitude, impact_velocity) * forced - 1

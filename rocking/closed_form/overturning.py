@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking.closed_form.arguments import Array
 from rocking.closed_form.case_1_1 import case_1_1_amplitudes
 from rocking.closed_form.case_1_2 import case_1_2_amplitudes
 from rocking.closed_form.case_2 import case_2_amplitude
-from rocking.closed_form.coefficients import Array
 
 
 class OverturningAmplitudes(NamedTuple):

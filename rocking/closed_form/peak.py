@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking.closed_form.arguments import Array, checked
 from rocking.closed_form.case_1_2 import impact_velocity_squared
 from rocking.closed_form.case_2 import case_2_margin
-from rocking.closed_form.coefficients import Array
 from rocking.errors import in_range
 
 
@@ -59,8 +59,8 @@ def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
         where it overturns without impact. Exact where the first impact is after the pulse (above (3.31)) and the
         rotation before it is smaller; approximate elsewhere.
     """
-    eta = in_range("restitution", restitution, 0.0, 1.0)
-    return _peak(_velocity_squared(amplitude, frequency_ratio, eta))  # (4.13), first form
+    a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
+    return _peak(_velocity_squared(a, omega, eta))  # (4.13), first form
 
 
 def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
@@ -123,10 +123,8 @@ def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: Ar
     restitution : array_like
         eta [-], [0, 1].
     """
-    eta = in_range("restitution", restitution, 0.0, 1.0)
-    return np.asarray(
-        eta**2 / 2 * scale_function(amplitude, frequency_ratio)
-    )  # (4.14), (4.16), with 1 - D0*, not its square root
+    a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
+    return np.asarray(eta**2 / 2 * scale_function(a, omega))  # (4.14), (4.16), with 1 - D0*, not its square root
 
 
 def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.closed_form.coefficients import Array
+from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, Array
 from rocking.closed_form.roots import find_root
-from rocking.errors import in_range
+from rocking.model.checks import check
 
 
 def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
@@ -23,7 +23,7 @@ def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
     ndarray
         a = 1/(1 - exp(-p t_1)) [-].
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
     return np.asarray(-1 / np.expm1(-np.pi / omega))
 
 
@@ -40,7 +40,7 @@ def half_sine_amplitude(frequency_ratio: ArrayLike) -> Array:
     ndarray
         a = 1/sin(psi) [-] with omega sin(psi) - cos(psi) = exp(-(pi - psi)/omega).
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
     psi = find_root(_half_sine, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -62,5 +62,5 @@ def cosine_amplitude(frequency_ratio: ArrayLike) -> Array:
     ndarray
         a = (1 + omega^2)/(1 - exp(-2 pi/omega)) [-].
     """
-    omega = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
     return np.asarray(-(1 + omega**2) / np.expm1(-2 * np.pi / omega))

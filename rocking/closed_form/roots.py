@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import elementwise
 
-from rocking.closed_form.coefficients import Array
+from rocking.closed_form.arguments import Array
 
 Function = Callable[..., Array]
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.closed_form.coefficients import Array
+from rocking.closed_form.arguments import Array, checked
 
 
 def residual(falling: ArrayLike, growing: ArrayLike, constant: ArrayLike, time: ArrayLike) -> Array:
     """I1 e^-tau + I2 e^tau + I3, left side of (A 1); all arguments [-], any broadcast shape."""
-    tau = np.asarray(time, dtype=np.float64)
-    return np.asarray(np.asarray(falling) * np.exp(-tau) + np.asarray(growing) * np.exp(tau) + constant)  # (A 1)
+    I1, I2, I3, tau = checked(falling=falling, growing=growing, constant=constant, time=time)
+    return np.asarray(I1 * np.exp(-tau) + I2 * np.exp(tau) + I3)  # (A 1)
 
 
 def rising_root(falling: ArrayLike, growing: ArrayLike, constant: ArrayLike) -> Array:
@@ -36,7 +36,8 @@ def rising_root(falling: ArrayLike, growing: ArrayLike, constant: ArrayLike) -> 
     paper). If it is positive, it is a time before the stage begins, at which the same free motion would have passed
     theta = 0 with negative velocity.
     """
-    I1, I2, half = (np.asarray(v, dtype=np.float64) for v in (falling, growing, np.asarray(constant) / 2))
+    I1, I2, I3 = checked(falling=falling, growing=growing, constant=constant)
+    half = I3 / 2
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         r = np.sqrt(half * half - I1 * I2)
         # (A 4): two forms of the same root; the sign of I3 selects the one without cancellation

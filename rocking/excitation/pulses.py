@@ -27,6 +27,7 @@ __all__ = [
     "WaveletPulse",
     "as_pulse",
     "get_pulse",
+    "pulse_names",
     "pulse_number",
     "register",
 ]
@@ -162,9 +163,14 @@ def register(pulse: AbstractPulse) -> None:
     """
     if not isinstance(pulse, AbstractPulse):
         raise InvalidArgumentError("pulse", pulse, "a pulse such as SinusoidalPulse")
-    if not pulse.name.isidentifier() or pulse.name in (*PULSE_NAMES, *_REGISTERED):
+    if not pulse.name.isidentifier() or pulse.name in pulse_names():
         raise InvalidArgumentError("name", pulse.name, "an identifier that no other pulse has")
     _REGISTERED[pulse.name] = pulse
+
+
+def pulse_names() -> tuple[str, ...]:
+    """Names of all pulses: those of the package, then the registered ones."""
+    return (*PULSE_NAMES, *_REGISTERED)
 
 
 def pulse_number(name: str) -> int:
@@ -199,7 +205,7 @@ def get_pulse(name: str, **parameters: float) -> AbstractPulse:
         For an unknown name or parameter, or a parameter out of range.
     """
     if not isinstance(name, str):
-        allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join((*PULSE_NAMES, *_REGISTERED))
+        allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
         raise InvalidArgumentError("pulse", name, allowed)
     registered = _REGISTERED.get(name.removeprefix("-"))
     if registered is not None and not parameters:
@@ -209,7 +215,7 @@ def get_pulse(name: str, **parameters: float) -> AbstractPulse:
 
 @lru_cache(maxsize=256)
 def _build_pulse(name: str, **parameters: float) -> AbstractPulse:
-    base = one_of("pulse", name.removeprefix("-"), (*PULSE_NAMES, *_REGISTERED))
+    base = one_of("pulse", name.removeprefix("-"), pulse_names())
     allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
     for parameter in parameters:
         one_of(f"parameter of pulse {base}", parameter, allowed)

@@ -12,8 +12,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
-from rocking.model.block import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 

@@ -5,10 +5,14 @@ The functions work on peaks that the solver or a closed form computed along an a
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError
+from rocking.model.checks import check
+from rocking.model.parameters import RESTITUTION
 
 Array = NDArray[np.float64]
 
@@ -99,7 +103,7 @@ def restitution_exponent(peak_rotation: ArrayLike, restitution: ArrayLike, *, ax
 def _aligned(peak_rotation: ArrayLike, restitution: ArrayLike, axis: int) -> tuple[Array, Array]:
     """Peaks with restitution as the last axis, and the restitutions."""
     peak = np.moveaxis(np.asarray(peak_rotation, dtype=np.float64), axis, -1)
-    eta = in_range("restitution", restitution, 0.0, 1.0, closed="right")
+    eta = check(replace(RESTITUTION, closed="right"), restitution)
     if eta.shape != peak.shape[-1:]:
         raise InvalidArgumentError("restitution", eta.shape, f"one value for each of {peak.shape[-1]} peaks")
     return peak, eta

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.compilation import Record
-from rocking.history.motion import Motion, overturned
+from rocking.history.motion import SampledMotion, overturned
 from rocking.model.reactions import Floats, Reactions, impulse_ratio, reactions
 from rocking.model.response import Outcome
 
@@ -143,7 +143,7 @@ class ContactExtremes:
         return said
 
 
-def add_contact(history: xr.Dataset, motion: Motion, impact_times: Floats) -> xr.Dataset:
+def add_contact(history: xr.Dataset, motion: SampledMotion, impact_times: Floats) -> xr.Dataset:
     """Add the contact forces to a time history of this motion.
 
     Returns
@@ -172,13 +172,15 @@ def add_contact(history: xr.Dataset, motion: Motion, impact_times: Floats) -> xr
     )
 
 
-def reactions_of(motion: Motion, impact_times: Floats, tau: Floats, rotation: Floats, velocity: Floats) -> Reactions:
+def reactions_of(
+    motion: SampledMotion, impact_times: Floats, tau: Floats, rotation: Floats, velocity: Floats
+) -> Reactions:
     """The reactions at samples of the motion, all arrays (samples,); at an impact those after it.
 
     Parameters
     ----------
     motion : Motion
-    landings : float array (impacts,)
+    impact_times : float array (impacts,)
         Times of the impacts [tau], ascending.
     tau, rotation, velocity
         Ascending times and `Motion.sample` there.
@@ -193,7 +195,7 @@ def reactions_of(motion: Motion, impact_times: Floats, tau: Floats, rotation: Fl
     return reactions(rotation, velocity, ground, np.where(still, lifting, side), motion.alpha)
 
 
-def contact_extremes(motion: Motion) -> ContactExtremes:
+def contact_extremes(motion: SampledMotion) -> ContactExtremes:
     """Extremes of the contact forces during the motion, up to its horizon."""
     record, impact_times = motion.events()
     tau, rotation = _fine_samples(motion, record, impact_times)
@@ -222,14 +224,10 @@ def contact_extremes(motion: Motion) -> ContactExtremes:
     )
 
 
-def _fine_samples(motion: Motion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:
+def _fine_samples(motion: SampledMotion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:
     """Times and rotations: both sides of every event, and small steps where the block moves, until it overturns."""
-    end, cuts = (
-        motion.pulse_end,
-        record["interval_phase"][: int(record["interval_count"]) + 1],
-    )  # phases of possible uplift
-    phases = np.concatenate([cuts, [motion.pulse.start, *motion.pulse.stationary]])
-    events = np.concatenate([impact_times, (phases - motion.pulse.start) / motion.frequency_ratio, [end]])
+    end = motion.pulse_end
+    events = np.concatenate([impact_times, motion.event_times(record), [end]])
     tau = np.concatenate(
         [np.linspace(0.0, motion.horizon, 400), events, events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET)]
     )
@@ -242,7 +240,7 @@ def _fine_samples(motion: Motion, record: Record, impact_times: Floats) -> tuple
             tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
         moves = (rotation != 0.0) | (velocity != 0.0)
         step = np.diff(tau)
-        allowed = np.where(tau[:-1] < end, MAX_STEP / max(1.0, motion.frequency_ratio), MAX_STEP)
+        allowed = np.where(tau[:-1] < end, MAX_STEP / motion.ground_rate, MAX_STEP)
         wide = (moves[1:] | moves[:-1]) & (step > np.maximum(allowed, 8 * EVENT_OFFSET * tau[1:]))
         if not wide.any():
             return tau, rotation
@@ -250,7 +248,7 @@ def _fine_samples(motion: Motion, record: Record, impact_times: Floats) -> tuple
         tau = np.sort(np.concatenate([tau, between.ravel()]))
 
 
-def _until_last_crossing_of_alpha(motion: Motion, tau: Floats, rotation: Floats) -> Floats:
+def _until_last_crossing_of_alpha(motion: SampledMotion, tau: Floats, rotation: Floats) -> Floats:
     """The times up to the last crossing of |theta| = alpha, after which the block overturns monotonically."""
     below = int(np.flatnonzero(np.abs(rotation) <= 1.0)[-1])
     if below == tau.size - 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,46 @@ MAX_FREE_IMPACTS = 10_000
 
 MAX_ROTATION = 4.0
 """|theta|/alpha up to which an overturning block is followed [-]; it lies on the ground at |theta| = pi/2."""
+
+
+class SampledMotion(Protocol):
+    """The motion of one block as a function of tau, under a pulse or a recorded motion."""
+
+    @property
+    def restitution(self) -> float: ...
+
+    @property
+    def alpha(self) -> float: ...
+
+    @property
+    def horizon(self) -> float: ...
+
+    @property
+    def pulse_end(self) -> float:
+        """tau at which the ground motion ends [-]."""
+
+    @property
+    def max_rotation(self) -> float:
+        """|theta|/alpha up to which a block that overturns is followed [-]."""
+
+    @property
+    def ground_rate(self) -> float:
+        """Largest of 1 and the rate of the phase of the ground motion with respect to tau [-]."""
+
+    def events(self) -> tuple[Record, Floats]:
+        """The record of the solver with the response, and the times of the impacts [tau]."""
+
+    def event_times(self, record: Record) -> Floats:
+        """Times [tau] other than impacts at which the reactions may jump or have a kink."""
+
+    def sample(self, tau: Floats) -> tuple[Floats, Floats]:
+        """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero after overturning."""
+
+    def sample_count(self, tau: Floats, rotation: Floats, record: Record) -> int:
+        """Number of samples up to the first beyond `max_rotation`; all unless the block overturns."""
+
+    def ground_acceleration(self, tau: Floats) -> Floats:
+        """Acceleration of the ground over g tan(alpha) [-]."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +103,18 @@ class Motion:
     @property
     def max_rotation(self) -> float:
         """|theta|/alpha up to which a block that overturns is followed [-]."""
-        return min(MAX_ROTATION, 0.5 * np.pi / self.alpha) if self.alpha > 0.0 else MAX_ROTATION
+        return largest_rotation(self.alpha)
+
+    @property
+    def ground_rate(self) -> float:
+        """Largest of 1 and the rate of the phase with respect to tau [-]."""
+        return max(1.0, self.frequency_ratio)
+
+    def event_times(self, record: Record) -> Floats:
+        """Times [tau] of the ends of the intervals of the pulse: of possible uplift, and of extremes of the pulse."""
+        cuts = record["interval_phase"][: int(record["interval_count"]) + 1]
+        phases = np.concatenate([cuts, [self.pulse.start, *self.pulse.stationary]])
+        return np.asarray((phases - self.pulse.start) / self.frequency_ratio)
 
     def events(self) -> tuple[Record, Floats]:
         """The record of the solver with the response, and the times of the impacts [tau]."""
@@ -84,11 +136,7 @@ class Motion:
         """Number of samples `rotation` at `tau` up to the first beyond `max_rotation`; all unless it overturns."""
         if not overturned(record):
             return tau.size
-        beyond = np.flatnonzero(np.abs(rotation) > self.max_rotation)
-        if beyond.size:
-            return int(beyond[0]) + 1
-        shown = (rotation != 0.0) | (tau <= record["uplift_time"])
-        return int(np.flatnonzero(shown).max(initial=0)) + 1
+        return shown_count(tau, rotation, record, self.max_rotation)
 
     def ground_acceleration(self, tau: Floats) -> Floats:
         """Acceleration of the ground over g tan(alpha), a f [-] (3.2)."""
@@ -155,6 +203,20 @@ def build_motion(
     s, omega, eta, angle = (float(group) for group in check_groups(slenderness, frequency_ratio, restitution, alpha))
     horizon = (made.end - made.start) / omega + FREE_DURATION if duration is None else float(duration)
     return Motion(made, s, omega, eta, angle, horizon, stop)
+
+
+def largest_rotation(alpha: float) -> float:
+    """|theta|/alpha up to which a block of this slenderness angle [rad] that overturns is followed [-]."""
+    return min(MAX_ROTATION, 0.5 * np.pi / alpha) if alpha > 0.0 else MAX_ROTATION
+
+
+def shown_count(tau: Floats, rotation: Floats, record: Record, max_rotation: float) -> int:
+    """Number of samples of a block that overturns, up to the first beyond `max_rotation` or the last that moves."""
+    beyond = np.flatnonzero(np.abs(rotation) > max_rotation)
+    if beyond.size:
+        return int(beyond[0]) + 1
+    shown = (rotation != 0.0) | (tau <= record["uplift_time"])
+    return int(np.flatnonzero(shown).max(initial=0)) + 1
 
 
 def overturned(record: Record) -> bool:

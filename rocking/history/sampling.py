@@ -165,11 +165,11 @@ def solve_and_sample(
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
     flight, steps
         Solver state, records of `pulse_state` and `step_state`; `flight` holds the response on return.
-    farthest : float
+    max_rotation : float
         |theta|/alpha at which the history of a block that overturns may stop [-].
     tau : float array (samples,)
         Times from the pulse's start [-], ascending; `rotation` and `velocity` (samples,) are zero on entry.
-    landings : float array
+    impact_times : float array
         Filled with the times of the impacts, as many as fit.
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight; samples are missing.
@@ -235,11 +235,11 @@ def sample_free_rocking(
         Restitution [-].
     start, horizon : float
         Times from the pulse's start at which free rocking begins and at which to stop [-].
-    farthest : float
+    max_rotation : float
         |theta|/alpha at which to stop [-].
     tau, rotation, velocity : float arrays (samples,)
         Filled for times from `start` on.
-    landings : float array
+    impact_times : float array
         Filled with the times of the impacts, as many as fit.
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight; samples are missing.

@@ -1,7 +1,9 @@
-"""Compiled interpolation of spectrum cubes at many points, with the sum of the measured errors of each.
+"""Compiled interpolation of spectrum cubes at many points, with the error bound of each.
 
 A point is interpolated from up to four slices of restitution, four slices of slenderness angle and 4 x 4 nodes of each.
-The kernel takes arrays only; files and classes of cubes belong to `rocking.lookup`.
+What is known of a cell lies in one record of 16 bytes (`CELL_RECORD`), so that a point on slices reads one record and
+four rows of peaks: most of the time is spent waiting for memory. The kernel takes arrays only; files and classes of
+cubes belong to `rocking.lookup`.
 """
 
 from __future__ import annotations
@@ -11,156 +13,414 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.compilation import FloatArray, Record, contiguous_array, uncounted_entry, uncounted_kernel
+from rocking._numba.memory import load_float32, load_float64, load_int32, prefetch
 from rocking.interpolation.stencils import (
     NO_STENCIL,
     OVERTURNS,
+    PEAK,
     SQUARED,
+    STENCIL_SIZE,
     Mesh,
-    interpolate_in_cell,
-    lagrange_weight,
+    cell_of,
+    lagrange_weights,
+    padded_weights,
+    slice_products,
     slice_window,
 )
-from rocking.model.outcome_code import SURVIVES, outcome_of_code, overturning_code
+from rocking.model.outcome import Outcome
+from rocking.model.outcome_code import impacts_of_code, outcome_of_code, overturning_code
 
 UNKNOWN_IMPACTS = -1
 """Value of `impacts` where the nodes around a point have different numbers."""
 
-FOUND_RECORD = np.dtype(
+UNKNOWN, INTERPOLATED, NO_UPLIFT = 0, 1, 2
+"""Values of `Found.state`: not determined by the cubes within the tolerance, interpolated, 1/a >= 1."""
+
+CELL_RECORD = np.dtype(
     [
-        ("known", np.bool_),
-        ("overturned", np.bool_),
-        ("outcome", np.int8),
-        ("impacts", np.int32),
-        ("peak", np.float64),
-        ("error", np.float64),
+        ("code", np.int32),
+        ("interpolation_error", np.float32),
+        ("restitution_error", np.float32),
+        ("alpha_error", np.float32),
     ],
     align=True,
 )
-"""Result at a point; `error` is the sum of the measured errors [-]."""
+"""What is known of a cell.
 
-Slices = tuple[NDArray[np.generic], ...]
-"""One array (angles, n, m) for each restitution of a window."""
+`code` is -1 where nothing is interpolated, else 4 v + `stencil`. Where all blocks of the cell overturn in the same way,
+v is their overturning code (`rocking.model.outcome_code`), else 1 + the impacts of the four corners, 0 where these
+differ. The errors are the variables of the cube [-].
+"""
 
-UNKNOWN = -1
-"""Code of the outcome before the first slice."""
+BLOCK = 32
+"""Points whose cells are located, and read ahead of their use, together."""
 
+_ROW, _COLUMN, _FIRST, _COUNT = range(4)
+"""Columns of the places of a block: cell, first angle and number of angles."""
 
-class SliceArrays(NamedTuple):
-    """The variables of a spectrum cube that interpolation needs, for `STENCIL_SIZE` restitutions."""
+_SAFE = int(Outcome.SAFE)
 
-    peak_rotation: Slices
-    outcome: Slices
-    impacts: Slices
-    stencil: Slices
-    interpolation_error: Slices
-    restitution_error: Slices
-    alpha_error: Slices
+CELL_BYTES = CELL_RECORD.itemsize
+INTERPOLATION_ERROR, RESTITUTION_ERROR, ALPHA_ERROR = 4, 8, 12
+"""Size of a cell's record and offsets of its errors [bytes]."""
 
-
-@kernel
-def common_impacts(cubes: Record, layer: int, e: int, i: int, j: int, before: int) -> int:
-    """The impacts of the four corners of a cell if they are equal to each other and to `before` (-2: none yet)."""
-    impacts = cubes.impacts[e]
-    first = impacts[layer, i, j]
-    for p in range(2):
-        for q in range(2):
-            if impacts[layer, i + p, j + q] != first:
-                return UNKNOWN_IMPACTS
-    return first if before == -2 or before == first else UNKNOWN_IMPACTS
+FORM_BITS = 2
+"""Bits of a code that state the stencil: `PEAK`, `SQUARED` or `OVERTURNS`."""
 
 
-@entry
-def interpolate_many(
-    row: FloatArray,
-    column: FloatArray,
-    x: FloatArray,
-    y: FloatArray,
-    mesh: Mesh,
-    eta: FloatArray,
-    etas: FloatArray,
-    lower: int,
-    count: int,
-    angle_slice: FloatArray,
-    on_angle: FloatArray,
-    angle: FloatArray,
-    angles: FloatArray,
-    cubes: Record,
-    answers: Record,
-) -> None:
-    """Fill `answers` (points,) where the cubes determine the response.
+class SliceWindow(NamedTuple):
+    """The slices from which points between two restitutions, or on one, are interpolated.
+
+    Attributes
+    ----------
+    restitutions : float array (STENCIL_SIZE,)
+        Restitutions of the slices [-].
+    products : float array (1, STENCIL_SIZE)
+        Denominators of their Lagrange weights.
+    lower, size : int
+        The slice at or below the restitutions of the points, and the number of slices used.
+    cells : tuple of int (STENCIL_SIZE,)
+        Address of the array (angles, n - 1, m - 1) of `CELL_RECORD` of each slice; those from `size` on are not read.
+    peaks : tuple of int (STENCIL_SIZE,)
+        Address of the variable `peak_rotation` of each slice, float64 (angles, n, m) [-].
+    """
+
+    restitutions: NDArray[np.float64]
+    products: NDArray[np.float64]
+    lower: int
+    size: int
+    cells: tuple[int, int, int, int]
+    peaks: tuple[int, int, int, int]
+
+
+class AngleAxis(NamedTuple):
+    """The slenderness angles of a cube.
+
+    Attributes
+    ----------
+    angles, squares : float arrays (angles,)
+        Ascending [rad], and their squares [rad2], the variable of interpolation: the equation of motion depends on the
+        square of the angle only.
+    products : float array (windows, STENCIL_SIZE)
+        Denominators of the Lagrange weights of the windows that start at each angle.
+    """
+
+    angles: NDArray[np.float64]
+    squares: NDArray[np.float64]
+    products: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, angles: NDArray[np.float64]) -> AngleAxis:
+        """The axis of some ascending angles [rad]."""
+        return cls(contiguous_array(angles), angles**2, slice_products(angles**2))
+
+
+class Found(NamedTuple):
+    """Responses to be filled, arrays (points,); fields as in `rocking.solver.bounded_response`.
+
+    Attributes
+    ----------
+    state : int8 array
+        `UNKNOWN`, `INTERPOLATED` or `NO_UPLIFT`; the other fields are set where it is `INTERPOLATED`.
+    """
+
+    state: NDArray[np.int8]
+    peak_rotation: NDArray[np.float64]
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    exceeded_alpha: NDArray[np.bool_]
+    error_bound: NDArray[np.float64]
+
+
+def pack_cells(
+    stencil: NDArray[np.int8],
+    outcome: NDArray[np.int8],
+    impacts: NDArray[np.int32],
+    interpolation_error: NDArray[np.float32],
+    restitution_error: NDArray[np.float32],
+    alpha_error: NDArray[np.float32],
+) -> NDArray[np.void]:
+    """The records (angles, n - 1, m - 1) of the cells of a cube, from its variables (angles, n, m)."""
+    lower = np.s_[:, :-1, :-1]
+    corner = impacts[lower]
+    equal = np.logical_and.reduce(
+        [corner == impacts[:, i : i - 1 or None, j : j - 1 or None] for i in (0, 1) for j in (0, 1)]
+    )
+    form = stencil[lower].astype(np.int32)
+    value = np.where(form == OVERTURNS, overturning_code(outcome[lower], corner), np.where(equal, corner + 1, 0))
+    cells = np.empty(form.shape, CELL_RECORD)
+    cells["code"] = np.where(form == NO_STENCIL, -1, (value << FORM_BITS) + form)
+    cells["interpolation_error"] = interpolation_error[lower]
+    cells["restitution_error"] = restitution_error[lower]
+    cells["alpha_error"] = alpha_error[lower]
+    return cells
+
+
+@uncounted_entry
+def group_points(restitution: FloatArray, slices: FloatArray, order: FloatArray, ends: FloatArray) -> None:
+    """Sort points by the slices of restitution from which they are interpolated.
 
     Parameters
     ----------
-    row, column : int arrays (points,)
-        The cell that contains each point; -1 outside.
-    x, y : float arrays (points,)
-        slenderness and log(frequency_ratio) [-].
+    restitution : float array (points,)
+        eta [-].
+    slices : float array (n,)
+        Restitutions of the cubes, ascending [-].
+    order : int32 array (points,), filled
+        Indices of the points: first those on slice 0, then those between 0 and 1, those on slice 1, and so on; those
+        outside of all slices are left out.
+    ends : int64 array (2 n,), filled
+        The end of each of these groups in `order`.
+    """
+    n = len(slices)
+    ends[:] = 0
+    for point in range(len(restitution)):
+        group = _group(restitution[point], slices)
+        if group >= 0:
+            ends[group] += 1
+    total = 0
+    for group in range(2 * n):
+        ends[group], total = total, total + ends[group]
+    for point in range(len(restitution)):
+        group = _group(restitution[point], slices)
+        if group >= 0:
+            order[ends[group]] = point
+            ends[group] += 1
+
+
+@uncounted_kernel
+def _group(value: float, slices: FloatArray) -> int:
+    """2 k on slice k, 2 k + 1 between it and the next one, -1 outside of the slices."""
+    below = -1
+    for one in slices:
+        below += one <= value
+    if below < 0 or np.isnan(value):
+        return -1
+    if slices[below] == value:
+        return 2 * below
+    return 2 * below + 1 if below + 1 < len(slices) else -1
+
+
+@uncounted_kernel
+def _interpolate_layer(address: int, stride: int, squared: bool, by_row: Record, by_column: Record) -> float:
+    """Interpolate 4 x 4 node values, or (1 - value)^2 if `squared`, with the weights of rows and columns.
+
+    The first value is at `address`; rows are `stride` bytes apart.
+    """
+    c0, c1, c2, c3 = 0.0, 0.0, 0.0, 0.0  # one for each column: the compiler makes vectors of them
+    for p in range(4):
+        row = address + p * stride
+        c0 += by_row[p] * _form(load_float64(row), squared)
+        c1 += by_row[p] * _form(load_float64(row + 8), squared)
+        c2 += by_row[p] * _form(load_float64(row + 16), squared)
+        c3 += by_row[p] * _form(load_float64(row + 24), squared)
+    total: float = c0 * by_column[0] + c1 * by_column[1] + c2 * by_column[2] + c3 * by_column[3]
+    return total
+
+
+@uncounted_kernel
+def _peak_of(value: float) -> float:
+    """The peak from an interpolated (1 - peak)^2."""
+    root: float = np.sqrt(max(value, 0.0))
+    return 1.0 - root
+
+
+@uncounted_kernel
+def _form(value: float, squared: bool) -> float:
+    """The interpolated variable, (1 - value)^2 or the value; a product in both cases, without a branch."""
+    rest: float = (1.0 if squared else 0.0) - value
+    return rest * (rest if squared else -1.0)
+
+
+@uncounted_entry
+def interpolate_many(
+    slenderness: FloatArray,
+    frequency_ratio: FloatArray,
+    restitution: FloatArray,
+    alpha: FloatArray,
+    order: FloatArray,
+    mesh: Mesh,
+    axis: AngleAxis,
+    window: SliceWindow,
+    tolerance: float,
+    safety: float,
+    solver_error: float,
+    places: FloatArray,
+    logs: FloatArray,
+    found: Found,
+) -> int:
+    """Fill `found` where the cubes determine the response within the tolerance.
+
+    Parameters
+    ----------
+    slenderness, frequency_ratio, restitution, alpha : float arrays (points,)
+        The points [-], [-], [-], [rad].
+    order : int32 array
+        Indices of the points to be interpolated; the restitutions of all of them are in the interval above slice
+        `window.lower`, or all on it if `window.size` is 1.
     mesh : Mesh
         The nodes.
-    eta : float array (points,)
-        Restitutions [-], all in the interval above slice `lower`, or all on it if `count` is 1.
-    etas : float array (STENCIL_SIZE,)
-        Restitutions of the slices [-].
-    lower, count : int
-        The slice at or below the restitutions, and the number of slices to be used.
-    angle_slice, on_angle : int array, bool array (points,)
-        Slice at or below each angle, -1 where there is none; whether the angle is on the slice.
-    angle, angles : float arrays (points,), (angles,)
-        Squares of the angles of the points and of the slices [rad2].
-    cubes : SliceArrays
-        Variables of the cubes; only the first `count` slices are used.
-    answers : array (points,) of `FOUND_RECORD`
-        `known` is set where all slices and nodes determine the response.
+    axis : AngleAxis
+        The angles.
+    window : SliceWindow
+        The slices.
+    tolerance : float
+        Largest error bound [-].
+    safety, solver_error : float
+        The bound is `safety` times the sum of the measured errors, plus `solver_error` [-].
+    places, logs : int64 array (BLOCK, 4), float array (BLOCK,)
+        Working memory.
+    found : Found
+        Responses of all points.
+
+    Returns
+    -------
+    int
+        The number of points that were interpolated.
     """
-    for point in range(len(row)):
-        i, j, layer = row[point], column[point], angle_slice[point]
-        if i < 0 or j < 0 or layer < 0:
-            continue
-        kind, impacts = UNKNOWN, -2
-        peak, value, squared_all = 0.0, 0.0, True
-        error = 0.0
-        first_angle, count_angles = layer, 1
-        if not on_angle[point]:
-            first_angle, count_angles = slice_window(len(angles), layer)
-            error = cubes.alpha_error[lower][layer, i, j]
-            if count > 1:  # between four slices: the larger of the two measured on either side
-                error = np.maximum(error, cubes.alpha_error[lower + 1][layer, i, j])  # nan if either is
-        agree = not np.isnan(error)
-        for a in range(count_angles):
-            if not agree:
-                break
-            layer = first_angle + a
-            by_angle = lagrange_weight(angles, first_angle, count_angles, a, angle[point])
-            layer_peak, layer_value, layer_squared = 0.0, 0.0, True
-            if count > 1:
-                error += abs(by_angle) * cubes.restitution_error[lower][layer, i, j]
-            for e in range(count):
-                code, kind_here = cubes.stencil[e][layer, i, j], SURVIVES
-                if code == OVERTURNS:
-                    kind_here = overturning_code(cubes.outcome[e][layer, i, j], cubes.impacts[e][layer, i, j])
-                agree = code != NO_STENCIL and kind in (UNKNOWN, kind_here)
-                if not agree:
-                    break
-                kind, weight = kind_here, lagrange_weight(etas, 0, count, e, eta[point])
-                error += abs(by_angle * weight) * cubes.interpolation_error[e][layer, i, j]
-                impacts = common_impacts(cubes, layer, e, i, j, impacts)
-                if kind == SURVIVES:
-                    squared = code == SQUARED
-                    here = interpolate_in_cell(cubes.peak_rotation[e][layer], i, j, squared, x[point], y[point], mesh)
-                    layer_value += weight * here
-                    layer_peak += weight * (1.0 - np.sqrt(max(here, 0.0)) if squared else here)
-                    layer_squared = layer_squared and squared
-            # (1 - peak)^2 where all slices have it, as when the errors were measured (`LevelInterval.errors`)
-            value += by_angle * layer_value
-            peak += by_angle * (1.0 - np.sqrt(max(layer_value, 0.0)) if layer_squared else layer_peak)
-            squared_all = squared_all and layer_squared
-        if not agree or np.isnan(error):
-            continue
-        found = answers[point]
-        found.known = True
-        found.error = error
-        found.impacts = impacts
-        found.overturned = kind != SURVIVES
-        found.outcome = outcome_of_code(kind)
-        found.peak = 1.0 - np.sqrt(max(value, 0.0)) if squared_all else peak
+    interpolated = 0
+    for start in range(0, len(order), BLOCK):
+        size = min(BLOCK, len(order) - start)
+        for k in range(size):
+            point = order[start + k]
+            s, w, angle = slenderness[point], frequency_ratio[point], alpha[point]
+            logs[k] = np.log(w)
+            i = cell_of(mesh.rows, s, mesh.rows, s, mesh.row_guide)
+            j = cell_of(mesh.frequency_ratio, w, mesh.columns, logs[k], mesh.column_guide)
+            first, count = _angle_window(axis, angle)
+            if i < 0 or j < 0 or s >= 1.0:
+                count = 0
+            places[k, _ROW], places[k, _COLUMN], places[k, _FIRST], places[k, _COUNT] = i, j, first, count
+            _prefetch_point(i, j, first, count, mesh, window)
+        for k in range(size):
+            point = order[start + k]
+            if places[k, _COUNT]:
+                interpolated += _interpolate_point(
+                    point,
+                    places[k],
+                    (slenderness[point], logs[k], restitution[point], alpha[point]),
+                    mesh,
+                    axis,
+                    window,
+                    (tolerance, safety, solver_error),
+                    found,
+                )
+    return interpolated
+
+
+@uncounted_kernel
+def _angle_window(axis: AngleAxis, angle: float) -> tuple[int, int]:
+    """First and number of the angles from which a point is interpolated; the number is 0 outside of the axis."""
+    below, size = -1, len(axis.angles)
+    for k in range(size):
+        below += axis.angles[k] <= angle
+    if below < 0:
+        return 0, 0
+    if axis.angles[below] == angle:
+        return below, 1
+    return slice_window(size, below) if below + 1 < size else (0, 0)
+
+
+@uncounted_kernel
+def _prefetch_point(i: int, j: int, first: int, count: int, mesh: Mesh, window: SliceWindow) -> None:
+    """Prefetch the records and peaks of a point."""
+    rows, columns = len(mesh.rows), len(mesh.columns)
+    for layer in range(first, first + count):
+        for e in range(window.size):
+            prefetch(window.cells[e] + CELL_BYTES * ((layer * (rows - 1) + i) * (columns - 1) + j))
+            for p in range(STENCIL_SIZE):
+                prefetch(window.peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j - 1))
+                prefetch(window.peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j + 2))
+
+
+@uncounted_kernel
+def _interpolate_point(
+    point: int,
+    place: FloatArray,
+    coordinates: Record,
+    mesh: Mesh,
+    axis: AngleAxis,
+    window: SliceWindow,
+    limits: Record,
+    found: Found,
+) -> bool:
+    """`interpolate_many` for one point, given its cell and the window of its angle."""
+    i, j, first, count = place[_ROW], place[_COLUMN], place[_FIRST], place[_COUNT]
+    s, x, eta, angle = coordinates
+    tolerance, safety, solver_error = limits
+    rows, columns = len(mesh.rows), len(mesh.columns)
+    # offsets in bytes: of the cell and of the first node of its stencil in the first layer, and of one layer
+    cell_layer, peak_layer = CELL_BYTES * (rows - 1) * (columns - 1), 8 * rows * columns
+    cell_offset = CELL_BYTES * (i * (columns - 1) + j) + first * cell_layer
+    peak_offset = 8 * ((i - 1) * columns + j - 1) + first * peak_layer
+    lower = window.cells[window.lower] + cell_offset
+    error = 0.0
+    by_angle = by_slice = (1.0, 0.0, 0.0, 0.0)
+    if count > 1:
+        by_angle = padded_weights(axis.squares, axis.products, first, count, angle * angle)
+        below = np.searchsorted(axis.angles, angle) - 1 - first
+        error = float(load_float32(lower + below * cell_layer + ALPHA_ERROR))
+        if window.size > 1:  # between slices: the larger of the two measured on either side, nan if either is
+            upper = window.cells[window.lower + 1] + cell_offset
+            error = np.maximum(error, float(load_float32(upper + below * cell_layer + ALPHA_ERROR)))
+    if window.size > 1:
+        by_slice = padded_weights(window.restitutions, window.products, 0, window.size, eta)
+    kind, agree, all_squared, impacts = -1, True, True, -2
+    for a in range(count):
+        if window.size > 1:
+            error += abs(by_angle[a]) * load_float32(lower + a * cell_layer + RESTITUTION_ERROR)
+        for e in range(window.size):
+            cell = window.cells[e] + cell_offset + a * cell_layer
+            code = load_int32(cell)
+            this = code if code & 3 == OVERTURNS else PEAK
+            agree = agree and code >= 0 and kind in (-1, this)
+            kind = this
+            all_squared = all_squared and code & 3 == SQUARED
+            corners = (code >> FORM_BITS) - 1
+            impacts = corners if impacts in (-2, corners) else UNKNOWN_IMPACTS
+            error += abs(by_angle[a] * by_slice[e]) * load_float32(cell + INTERPOLATION_ERROR)
+    if not agree or np.isnan(error):
+        return False
+    if kind & 3 == OVERTURNS:
+        code = kind >> FORM_BITS
+        found.peak_rotation[point] = np.nan
+        found.outcome[point] = outcome_of_code(code)
+        found.impacts[point] = impacts_of_code(code)
+        found.exceeded_alpha[point] = True
+        found.error_bound[point] = np.nan
+        found.state[point] = INTERPOLATED
+        return True
+    bound = safety * error + solver_error
+    if bound > tolerance:
+        return False
+    by_row = lagrange_weights(mesh.rows, mesh.row_products, i - 1, s)
+    by_column = lagrange_weights(mesh.columns, mesh.column_products, j - 1, x)
+    peak = 0.0
+    for a in range(count):
+        layer_squared = all_squared
+        if not all_squared:
+            layer_squared = True
+            for e in range(window.size):
+                code = load_int32(window.cells[e] + cell_offset + a * cell_layer)
+                layer_squared = layer_squared and code & 3 == SQUARED
+        layer_value = 0.0
+        for e in range(window.size):
+            squared = load_int32(window.cells[e] + cell_offset + a * cell_layer) & 3 == SQUARED
+            stencil = window.peaks[e] + peak_offset + a * peak_layer
+            value = _interpolate_layer(stencil, 8 * columns, squared, by_row, by_column)
+            # (1 - peak)^2 is interpolated where all slices have it, as when the errors were measured
+            layer_value += by_slice[e] * (_peak_of(value) if squared and not layer_squared else value)
+        peak += by_angle[a] * (_peak_of(layer_value) if layer_squared and not all_squared else layer_value)
+    if all_squared:
+        peak = _peak_of(peak)
+    # a block that survives passes alpha if and only if its peak does: unknown for a peak within its bound of alpha
+    if abs(peak - 1.0) <= bound:
+        return False
+    found.peak_rotation[point] = max(peak, 0.0)
+    found.outcome[point] = _SAFE
+    found.impacts[point] = impacts
+    found.exceeded_alpha[point] = peak > 1.0
+    found.error_bound[point] = bound
+    found.state[point] = INTERPOLATED
+    return True

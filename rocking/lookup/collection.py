@@ -19,7 +19,6 @@ from rocking.errors import DatasetError
 from rocking.excitation.pulses import get_pulse
 from rocking.lookup.cube import Cube
 from rocking.lookup.cube_slice import CubeSlice, decode_slice
-from rocking.model.response import Outcome
 from rocking.solver.bounded_response import BoundedResponse
 
 
@@ -165,20 +164,10 @@ class CubeCollection:
         """
         get_pulse(pulse)
         cube = self.cube(pulse, method)
-        result = cube.response(
-            slenderness=slenderness,
-            frequency_ratio=frequency_ratio,
-            restitution=restitution,
-            alpha=alpha,
-            tolerance=tolerance,
-            method=method,
-            stop=stop,
+        result, used = cube.evaluate(
+            slenderness, frequency_ratio, restitution, alpha, tolerance=tolerance, method=method, stop=stop
         )
-        eta = np.asarray(restitution, dtype=np.float64)
-        rocked = (result.source == "cube") & (result.outcome != Outcome.NO_UPLIFT)
-        interpolated = np.broadcast_to(eta, rocked.shape)[rocked] if eta.ndim else eta.reshape(1)
-        used = [cube.slice_at(k) for k in cube.used(interpolated)] if rocked.any() else []
-        return result, tuple(one.sha256 for one in used if one is not None)
+        return result, tuple(one.sha256 for one in used)
 
     def problem(self, name: str) -> str | None:
         """Description of the problem of a data set; None if it is intact.

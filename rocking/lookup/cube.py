@@ -8,8 +8,9 @@ restitutions and between the angles were measured against the solver when the cu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal, get_args
 
 import numpy as np
@@ -17,8 +18,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
-from rocking.interpolation.kernel import FOUND_RECORD, SliceArrays, interpolate_many
-from rocking.interpolation.stencils import STENCIL_SIZE, cell_index, slice_index, slice_window
+from rocking.interpolation.kernel import (
+    BLOCK,
+    INTERPOLATED,
+    NO_UPLIFT,
+    UNKNOWN,
+    Found,
+    group_points,
+    interpolate_many,
+)
+from rocking.interpolation.stencils import slice_index, slice_window
 from rocking.lookup.cube_slice import CubeSlice
 from rocking.lookup.points import Points
 from rocking.solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
@@ -29,26 +38,11 @@ METHODS: tuple[str, ...] = get_args(Method)
 SAFETY = 6.0
 """Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
 
+SOURCES = np.array(["solver", "cube", "solver"])
+"""Source of a response by its state."""
+
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Index = slice | NDArray[np.intp]
-
-
-@dataclass(frozen=True)
-class Window:
-    """The slices from which points between two restitutions, or on one, are interpolated.
-
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        `STENCIL_SIZE` slices; those from `count` on repeat the slice `lower`.
-    lower, count : int
-        The slice at or below the restitutions, and the number of slices used.
-    """
-
-    slices: list[CubeSlice]
-    lower: int
-    count: int
 
 
 @dataclass(frozen=True)
@@ -104,6 +98,19 @@ class Cube:
         OutsideCubeError
             With `method="cube"`: outside the axes, where kinds of response meet, or if the bound exceeds the tolerance.
         """
+        return self.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, stop)[0]
+
+    def evaluate(
+        self,
+        slenderness: ArrayLike,
+        frequency_ratio: ArrayLike,
+        restitution: ArrayLike | None,
+        alpha: ArrayLike | None,
+        tolerance: float,
+        method: str,
+        stop: StopFlag | None,
+    ) -> tuple[BoundedResponse, list[CubeSlice]]:
+        """`response`, and the cubes from which points were interpolated, in the order of `used`."""
         one_of("method", method, METHODS)
         limit = float(in_range("tolerance", tolerance, 0.0, np.inf, closed="left"))
         if restitution is None:
@@ -111,20 +118,19 @@ class Cube:
                 raise InvalidArgumentError("restitution", None, "a number: there are several cubes")
             restitution = self.restitutions[0]
         points, shape = Points.of(slenderness, frequency_ratio, restitution, alpha)
-        result = BoundedResponse.empty(points.slenderness.shape)
+        used: list[CubeSlice] = []
+        if method == "solver":
+            state, result = _empty(points)
+        else:
+            state, result, used = self._interpolated(points, limit)
+        left = np.flatnonzero(state == UNKNOWN)
+        if left.size and method == "cube":
+            self._refuse(points[left[:1]], limit)
         if method == "cube":
             result.source[...] = "cube"
-        rocks = points.slenderness < 1.0
-        left = np.flatnonzero(rocks)
-        if method != "solver":
-            known, part = self.interpolate(points[left], limit)
-            result.put(left[known], part)
-            left = left[~known]
         if left.size:
-            if method == "cube":
-                self._refuse(points[left[:1]], limit)
             result.put(left, _solve(self.pulse, points[left], stop))
-        return result.reshape(shape)
+        return result.reshape(shape), used
 
     def used(self, restitution: Array) -> list[int]:
         """Indices of the cubes needed for some restitutions: first those at or below one of them, then the others."""
@@ -137,52 +143,71 @@ class Cube:
         return list(needed)
 
     def interpolate(self, points: Points, limit: float) -> tuple[Flags, BoundedResponse]:
-        """Where the error bound is at most `limit` (points,), and the responses there."""
-        found = np.zeros(points.slenderness.size, FOUND_RECORD)
-        lower, on_slice = slice_index(self.restitutions, points.restitution)
-        for label, index in _parts(np.where(lower < 0, -1, 2 * lower + on_slice)):
-            window = self._window(*divmod(label, 2)) if label >= 0 else None
-            if window is not None:
-                part = found[index]
-                _interpolate(window, points[index], part)
-                found[index] = part
-        bound = np.where(found["overturned"], 0.0, SAFETY * found["error"] + SOLVER_ERROR)
-        # a block that survives passes alpha if and only if its peak does: unknown for a peak within its bound of alpha
-        undecided = ~found["overturned"] & (np.abs(found["peak"] - 1.0) <= bound)
-        known = found["known"] & (bound <= limit) & ~undecided
-        kept, bound = found[known], bound[known]
-        survives = ~kept["overturned"]
-        return known, BoundedResponse(
-            np.where(survives, np.maximum(kept["peak"], 0.0), np.nan),
-            kept["outcome"],
-            kept["impacts"],
-            ~survives | (kept["peak"] > 1.0),
-            np.where(survives, bound, np.nan),
-            np.full(kept.size, "cube"),
-        )
+        """Where the cubes give a response with an error bound of at most `limit` (points,), and the responses.
 
-    def _window(self, k: int, on_slice: int) -> Window | None:
-        """The window of points on slice k, or between it and the next one; None if a slice is missing.
+        Responses elsewhere are undefined.
+        """
+        state, result, _ = self._interpolated(points, limit)
+        return state == INTERPOLATED, result
+
+    def _interpolated(self, points: Points, limit: float) -> tuple[NDArray[np.int8], BoundedResponse, list[CubeSlice]]:
+        """`Found.state` of the points (points,), their responses, and the slices used."""
+        state, result = _empty(points)
+        found = Found(state, *(getattr(result, name) for name in Found._fields[1:]))
+        order, ends = np.empty(state.size, dtype=np.int32), np.empty(2 * self.restitutions.size, dtype=np.int64)
+        places, logs = np.empty((BLOCK, 4), dtype=np.int64), np.empty(BLOCK)
+        group_points(points.restitution, self.restitutions, order, ends)
+        lower, others = [], []
+        for group, (start, end) in enumerate(pairwise([0, *ends.tolist()])):
+            slices = self._slices(*divmod(group, 2)) if end > start else []
+            if not slices:
+                continue
+            own = slices[0]
+            window = own.window(*slices[1:])
+            count = interpolate_many(
+                points.slenderness,
+                points.frequency_ratio,
+                points.restitution,
+                points.alpha,
+                order[start:end],
+                own.mesh,
+                own.angles,
+                window,
+                limit,
+                SAFETY,
+                SOLVER_ERROR,
+                places,
+                logs,
+                found,
+            )
+            if count:
+                lower.append(own)
+                others += slices[1:]
+        # the slices are compared by identity
+        return state, replace(result, source=SOURCES[state]), list(dict.fromkeys([*lower, *others]))
+
+    def _slices(self, k: int, between: int) -> list[CubeSlice]:
+        """Slice k, and for points between it and the next one the others of their window; empty if one is missing.
 
         Between slices these are the slices with which the errors were measured, whatever other files there are.
         """
         own = self.slice_at(k)
-        if own is None:
-            return None
-        if on_slice:
-            return Window([own] * STENCIL_SIZE, 0, 1)
+        if own is None or not between:
+            return [] if own is None else [own]
         lower = int(np.searchsorted(own.restitutions, own.restitution))
         if lower + 1 >= own.restitutions.size:
-            return None
+            return []
         first, count = slice_window(own.restitutions.size, lower)
-        slices = [own] * STENCIL_SIZE
-        for place, restitution in enumerate(own.restitutions[first : first + count]):
+        slices = [own]
+        for restitution in own.restitutions[first : first + count]:
+            if restitution == own.restitution:
+                continue
             index = np.flatnonzero(self.restitutions == restitution)
             one = self.slice_at(int(index[0])) if index.size else None
             if one is None or not one.fits(own) or not np.array_equal(one.restitutions, own.restitutions):
-                return None
-            slices[place] = one
-        return Window(slices, lower - first, count)
+                return []
+            slices.append(one)
+        return slices
 
     def _refuse(self, point: Points, limit: float) -> None:
         """Raise `OutsideCubeError` with the reason why the cubes do not give the response at a point."""
@@ -209,36 +234,10 @@ class Cube:
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 
 
-def _parts(labels: NDArray[np.intp]) -> Iterator[tuple[int, Index]]:
-    """Each label and the index of its points; usually there is one label."""
-    if labels.size and (labels == labels[0]).all():
-        yield int(labels[0]), slice(None)
-    else:
-        for label in np.unique(labels):
-            yield int(label), np.flatnonzero(labels == label)
-
-
-def _interpolate(window: Window, points: Points, found: NDArray[np.void]) -> None:
-    """Fill `found` (points,) for restitutions that are all in the interval of the window, or all on its slice."""
-    own = window.slices[window.lower]
-    angle_slice, on_angle = slice_index(own.alpha, points.alpha)
-    interpolate_many(
-        cell_index(own.slenderness, points.slenderness),
-        cell_index(own.frequency_ratio, points.frequency_ratio),
-        points.slenderness,
-        np.log(points.frequency_ratio),
-        own.mesh,
-        points.restitution,
-        np.array([one.restitution for one in window.slices]),
-        window.lower,
-        window.count,
-        angle_slice,
-        on_angle,
-        points.alpha**2,  # the equation of motion depends on alpha through its square only
-        own.alpha**2,
-        SliceArrays(*(tuple(getattr(one, name) for one in window.slices) for name in SliceArrays._fields)),
-        found,
-    )
+def _empty(points: Points) -> tuple[NDArray[np.int8], BoundedResponse]:
+    """State and responses of points that are not interpolated: those without uplift are final."""
+    state = np.where(points.slenderness < 1.0, np.int8(UNKNOWN), np.int8(NO_UPLIFT))
+    return state, BoundedResponse.empty(state.shape)
 
 
 def _solve(pulse: str, points: Points, stop: StopFlag | None) -> BoundedResponse:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import urllib.request
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +16,15 @@ from rocking._numba.compilation import contiguous_array
 from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
-from rocking.interpolation.kernel import SliceArrays
-from rocking.interpolation.stencils import Mesh
+from rocking.interpolation.kernel import AngleAxis, SliceWindow, pack_cells
+from rocking.interpolation.stencils import STENCIL_SIZE, Mesh, slice_products
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CubeSlice:
-    """The cube of one restitution; fields (angles, n, m) as in `rocking.datasets.cube`.
+    """The cube of one restitution.
 
     Attributes
     ----------
@@ -38,8 +38,14 @@ class CubeSlice:
         The axes [rad], [-], [-].
     mesh : Mesh
         The mesh of slenderness and frequency_ratio.
+    angles : AngleAxis
+        The angles.
     sha256 : str
         Digest of the file, the version of the data.
+    peaks : float array (angles, n, m)
+        The variable `peak_rotation`.
+    cells : array (angles, n - 1, m - 1) of `CELL_RECORD`
+        What is known of each cell.
     """
 
     pulse: str
@@ -49,18 +55,31 @@ class CubeSlice:
     slenderness: Array
     frequency_ratio: Array
     mesh: Mesh
+    angles: AngleAxis
     sha256: str
-    peak_rotation: Array
-    outcome: NDArray[np.int8]
-    impacts: NDArray[np.int32]
-    stencil: NDArray[np.int8]
-    interpolation_error: NDArray[np.float32]
-    restitution_error: NDArray[np.float32]
-    alpha_error: NDArray[np.float32]
+    peaks: Array
+    cells: NDArray[np.void]
+    _windows: dict[tuple[CubeSlice, ...], SliceWindow] = field(default_factory=dict, init=False, repr=False)
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)
+
+    def window(self, *others: CubeSlice) -> SliceWindow:
+        """The window of points on this slice, or between it and the next one of up to three others.
+
+        It holds addresses in the slices, which the caller keeps while it uses the window.
+        """
+        found = self._windows.get(others)
+        if found is None:
+            slices = sorted([self, *others], key=lambda one: one.restitution)
+            padded = slices + [self] * (STENCIL_SIZE - len(slices))
+            restitutions = np.array([one.restitution for one in padded])
+            cells, peaks = (tuple(getattr(one, name).ctypes.data for one in padded) for name in ("cells", "peaks"))
+            products = slice_products(restitutions[: len(slices)])
+            found = SliceWindow(restitutions, products, slices.index(self), len(slices), cells, peaks)
+            self._windows[others] = found
+        return found
 
 
 def open_slice(path: Path | str) -> CubeSlice:
@@ -98,15 +117,17 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
         If an axis has fewer than four nodes.
     """
     axes: dict[str, Any] = {name: cube[name].values for name in AXES}
-    fields: dict[str, Any] = {name: contiguous_array(cube[name].values) for name in SliceArrays._fields}
+    of_cells = ("stencil", "outcome", "impacts", "interpolation_error", "restitution_error", "alpha_error")
     return CubeSlice(
         pulse=str(cube["pulse"].attrs["pulse_name"]),
         restitution=float(cube["restitution"]),
         restitutions=np.atleast_1d(cube.attrs.get("restitution_slices", float(cube["restitution"]))),
         mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
+        angles=AngleAxis.of(axes["alpha"]),
         sha256=sha256,
+        peaks=contiguous_array(cube["peak_rotation"].values),
+        cells=pack_cells(*(cube[name].values for name in of_cells)),
         **axes,
-        **fields,
     )
 
 

@@ -33,6 +33,31 @@ def check(parameter: Parameter, value: ArrayLike, name: str | None = None) -> Ar
     )
 
 
+def check_window(
+    parameter: Parameter, low: float, high: float, names: tuple[str, str] | None = None
+) -> tuple[float, float]:
+    """The ends of a window of a parameter, low < high.
+
+    Parameters
+    ----------
+    parameter : Parameter
+        The declaration.
+    low, high : float
+        The ends.
+    names : (str, str), optional
+        Names for the error message; by default that of the parameter with the endings `_min` and `_max`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an end is outside the range, or `high` is not above `low`.
+    """
+    first, last = names or (f"{parameter.name}_min", f"{parameter.name}_max")
+    lower = float(check(parameter, low, first))
+    closed = "right" if parameter.closed in ("both", "right") else "neither"
+    return lower, float(in_range(last, high, lower, parameter.upper, closed=closed, unit=parameter.unit))
+
+
 def check_alpha(alpha: ArrayLike | None) -> Array:
     """Slenderness angles [rad], 0 for None; the same errors as `check`, also between 0 and `SMALLEST_ALPHA`."""
     angles = check(ALPHA, 0.0 if alpha is None else alpha)

@@ -51,8 +51,21 @@ class Parameter:
         return f"{self.description}, {self.symbol} [{self.unit}]"
 
     def restricted(self, lower: float, upper: float) -> Parameter:
-        """The same parameter on a smaller closed range."""
-        return replace(self, lower=lower, upper=upper, closed="both")
+        """The same parameter on a smaller range, closed at its finite ends.
+
+        Raises
+        ------
+        ValueError
+            If the range is not a part of that of the parameter.
+        """
+        if not self.lower <= lower < upper <= self.upper:
+            raise ValueError(f"[{lower:g}, {upper:g}] is not a part of {self.interval}, the range of {self.name}")
+        return replace(self, lower=lower, upper=upper, closed="both" if math.isfinite(upper) else "left")
+
+    def in_degrees(self) -> Parameter:
+        """The same angle in degrees, with the ending `_deg` of its name."""
+        lower, upper = math.degrees(self.lower), math.degrees(self.upper)
+        return replace(self, name=f"{self.name}_deg", unit="deg", lower=lower, upper=upper)
 
 
 SLENDERNESS = Parameter(
@@ -67,6 +80,9 @@ SLENDERNESS = Parameter(
 """From 1 on the block does not uplift. The lower end is an acceleration of 1e12 g tan(alpha)."""
 
 FREQUENCY_RATIO = Parameter("frequency_ratio", "omega_g/p", "-", 1e-9, 1e9, "both", "frequency ratio")
+
+FREQUENCY_PARAMETER = Parameter("frequency_parameter", "p", "rad/s", 1e-6, 1e6, "both", "frequency parameter")
+"""Of a block under a recorded motion, whose time is in seconds."""
 
 RESTITUTION = Parameter("restitution", "eta", "-", 0.0, 1.0, "both", "coefficient of restitution")
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.errors import in_range
+from rocking.model.checks import check, check_alpha
+from rocking.model.parameters import RESTITUTION
 
 Floats = NDArray[np.float64]
 
@@ -101,8 +102,8 @@ def impulse_ratio(restitution: float, alpha: float) -> float:
     InvalidArgumentError
         For an argument out of range.
     """
-    eta = float(in_range("restitution", restitution, 0.0, 1.0))
-    slope = math.tan(float(in_range("alpha", alpha, 0.0, 0.5 * math.pi, closed="left", unit="rad")))
+    eta = float(check(RESTITUTION, restitution))
+    slope = math.tan(float(check_alpha(alpha)))
     loss = (1.0 - eta) / (1.0 + eta)
     if loss == 0.0:
         return 0.0

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking.excitation.pulses import AbstractPulse
 from rocking.model.fields import BOUNDED_FIELDS
 from rocking.model.outcome import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
@@ -72,6 +73,10 @@ class BoundedResponse:
         """The same responses in another shape."""
         return BoundedResponse(*(getattr(self, field.name).reshape(shape) for field in BOUNDED_FIELDS))
 
+    def __getitem__(self, index: Flags | NDArray[np.intp] | slice) -> BoundedResponse:
+        """The responses of a part of the points."""
+        return BoundedResponse(*(getattr(self, field.name)[index] for field in BOUNDED_FIELDS))
+
     def put(self, where: Flags | NDArray[np.intp], part: BoundedResponse) -> None:
         """Set the responses of a part of the points."""
         for field in BOUNDED_FIELDS:
@@ -79,7 +84,7 @@ class BoundedResponse:
 
 
 def solve_with_bound(
-    pulse: str,
+    pulse: str | AbstractPulse,
     *,
     slenderness: ArrayLike,
     frequency_ratio: ArrayLike,
@@ -95,8 +100,8 @@ def solve_with_bound(
 
     Parameters
     ----------
-    pulse : str
-        Name of the pulse.
+    pulse : str or AbstractPulse
+        The pulse, or its name.
     slenderness, frequency_ratio, restitution : array_like, broadcasting
         1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
     alpha : array_like or None

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-import os
 import threading
-from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
-from itertools import repeat
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._numba.cancellation import StopFlag, check_stop, flag_array
+from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, in_range
@@ -23,6 +20,7 @@ from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
+from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.kernels.batch import solve_batch
 from rocking.solver.stages.batch import solve_by_arcs
 from rocking.solver.stages.state import StageState, stage_state
@@ -39,10 +37,6 @@ TRUNCATION_FRACTION = 1e-4
 
 NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
-
-
-AVAILABLE_CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-"""Cores available to this process [-]."""
 
 
 class SolverState(threading.local):
@@ -127,11 +121,11 @@ def peak_response(
     accepted = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
     by_arcs = made.series.has_exact_arcs and slender  # exact: no terms to truncate
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
-    records = _solve_cells(made, cells, precision, threads, stop)
+    records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
         margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], cells[3])
         near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted)
-        records[near] = _solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
+        records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
     peak = found[PEAK_ROTATION.name]
     return Response(
@@ -143,28 +137,45 @@ def peak_response(
     )
 
 
-def _solve_cells(
+def solve_cells(
     pulse: AbstractPulse,
     cells: list[NDArray[np.float64]],
     precision: float,
     threads: int | None,
     stop: StopFlag | None,
 ) -> NDArray[np.void]:
-    """Response records (size,) of cells given by four arrays (size,), distributed over threads."""
+    """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+    cells : list of four float arrays (size,)
+        1/a, omega, eta and alpha (0: slender) of each cell, in range; each as `contiguous_array` gives it.
+    precision : float
+        Relative truncation error of a Taylor step [-].
+    threads : int or None
+        Number of threads, None: all cores.
+    stop : StopFlag or None
+        Cancels the work.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
     size = cells[0].size
     records = np.empty(size, RESPONSE_RECORD)
     sinusoids, rigid = pulse.series.has_exact_arcs, bool(cells[3].any())
     if sinusoids and rigid and not cells[3].all():
         for kind in (cells[3] > 0.0, cells[3] == 0.0):
-            records[kind] = _solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
+            records[kind] = solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
         return records
     by_arcs = sinusoids and not rigid
     cores = int(threads) if threads else AVAILABLE_CORES
     fewest, most = (MIN_ARC_CHUNK, MAX_ARC_CHUNK) if by_arcs else (MIN_CHUNK, MAX_CHUNK)
     chunk_size = min(max(math.ceil(size / cores), fewest), most)
 
-    def fill(start: int, flag: NDArray[np.uint8]) -> None:
-        part = slice(start, start + chunk_size)
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
         chunk = [cell[part] for cell in cells]
         if by_arcs:
             state, stages = solver_state.of_arcs(pulse)
@@ -172,18 +183,5 @@ def _solve_cells(
         else:
             solve_batch(*chunk, *solver_state.of_steps(pulse, precision), flag, records[part])
 
-    starts = range(0, size, chunk_size)
-    workers = min(cores, len(starts))
-    if workers <= 1:
-        for start in starts:
-            fill(start, flag_array(stop))
-            check_stop(stop)
-    else:
-        with (stop or StopFlag()).child() as own, ThreadPoolExecutor(workers) as pool:
-            try:
-                list(pool.map(fill, starts, repeat(own.array)))
-            except BaseException:  # includes KeyboardInterrupt: the pool waits for its threads
-                own.set()
-                raise
-        check_stop(stop)
+    fill_chunks(fill, size, chunk_size, cores, stop)
     return records

@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.datasets.cube import build_spectrum_dataset
-from rocking.errors import in_range
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
+from rocking.model.checks import check, check_alpha
 from rocking.model.outcome_code import SURVIVES, outcome_codes
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking.model.response import Response
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.layer import (
@@ -97,10 +98,10 @@ def spectra(
     InvalidArgumentError
         If a value is out of range.
     """
-    rows = in_range("slenderness", slenderness, 0.0, np.inf, closed="neither")
-    columns = in_range("frequency_ratio", frequency_ratio, 0.0, np.inf, closed="neither")
-    angles = in_range("alpha", alpha, 0.0, np.pi / 2, closed="left", unit="rad")
-    etas = in_range("restitution", restitution, 0.0, 1.0)
+    rows = check(SLENDERNESS, slenderness)
+    columns = check(FREQUENCY_RATIO, frequency_ratio)
+    angles = check_alpha(alpha)
+    etas = check(RESTITUTION, restitution)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
     layers: list[list[GridLayer]] = [[] for _ in etas]
     shape = (etas.size, angles.size, rows.size - 1, columns.size - 1)

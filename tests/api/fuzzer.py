@@ -221,7 +221,7 @@ def _body(draw: random.Random) -> tuple[bytes, str, str]:
     return body, media_type, query
 
 
-async def answer(app, sent: Sent) -> Received:
+async def exchange(app, sent: Sent) -> Received:
     """Send a request to the application as uvicorn would."""
     scope = {
         "type": "http",
@@ -305,7 +305,7 @@ async def ask_all(results: Path, seed: int, first: int, count: int, together: in
         for k in left:
             sent = request(seed, k, names)
             try:
-                got = await answer(app, sent)
+                got = await exchange(app, sent)
                 wrong = fault(sent, got)
             except Exception as error:  # noqa: BLE001  (whatever gets out of the application)
                 got, wrong = Received(0, {}, b"", 0.0), repr(error)

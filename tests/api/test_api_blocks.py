@@ -5,12 +5,13 @@ import math
 import pytest
 from rocking_api.routers import blocks
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.history.time_history import time_history
-from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking.model.block import Block
 from rocking.solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 
-QUESTION = {
+QUERY = {
     "half_width": 0.2,
     "half_height": 0.8,
     "pulse": "sine",
@@ -19,52 +20,52 @@ QUESTION = {
 }
 
 
-def ask(client, **changes):
-    return client.get("/v1/blocks/response", params=QUESTION | changes)
+def get_response(client, **changes):
+    return client.get("/v1/blocks/response", params=QUERY | changes)
 
 
 def test_the_response_equals_the_solver_in_si_units(client):
-    answer = ask(client).json()
+    response = get_response(client).json()
     block = Block(0.2, 0.8)
-    truth = peak_response(
+    expected = peak_response(
         "sine",
         slenderness=block.uplift_acceleration / 4.0,
         frequency_ratio=2 * math.pi / 0.5 / block.frequency_parameter,
         restitution=block.housner_restitution,
         alpha=block.alpha,
     )
-    rotation = truth.peak_rotation * block.alpha
-    assert answer["peak_rotation_deg"] == pytest.approx(math.degrees(rotation), rel=1e-9)
-    assert answer["top_displacement"] == pytest.approx(1.6 * math.sin(rotation), rel=1e-9)
-    assert answer["restitution"] == block.housner_restitution
-    assert answer["response"]["query"]["alpha_deg"] == pytest.approx(14.036, abs=1e-3)
-    assert not answer["overturned"]
+    rotation = expected.peak_rotation * block.alpha
+    assert response["peak_rotation_deg"] == pytest.approx(math.degrees(rotation), rel=1e-9)
+    assert response["top_displacement"] == pytest.approx(1.6 * math.sin(rotation), rel=1e-9)
+    assert response["restitution"] == block.housner_restitution
+    assert response["response"]["query"]["alpha_deg"] == pytest.approx(14.036, abs=1e-3)
+    assert not response["overturned"]
 
 
 def test_golden_thresholds_of_the_rigid_block(client):
     block = Block.from_slenderness_angle(0.2, 0.5)
-    answer = ask(client, half_width=block.half_width, half_height=block.half_height).json()
-    found = [threshold["peak_acceleration"] / block.uplift_acceleration for threshold in answer["thresholds"]]
+    response = get_response(client, half_width=block.half_width, half_height=block.half_height).json()
+    found = [threshold["peak_acceleration"] / block.uplift_acceleration for threshold in response["thresholds"]]
     assert found == pytest.approx([1.45844, 3.97129, 4.07192], abs=1e-5)
-    assert [threshold["overturns_above"] for threshold in answer["thresholds"]] == [True, False, True]
-    assert answer["largest_safe_acceleration"] == answer["thresholds"][0]["peak_acceleration"]
+    assert [threshold["overturns_above"] for threshold in response["thresholds"]] == [True, False, True]
+    assert response["largest_safe_acceleration"] == response["thresholds"][0]["peak_acceleration"]
 
 
 def test_a_block_that_overturns(client):
-    answer = ask(client, peak_acceleration=8.0).json()
-    assert answer["overturned"]
-    assert answer["peak_rotation_deg"] is answer["top_displacement"] is None
+    response = get_response(client, peak_acceleration=8.0).json()
+    assert response["overturned"]
+    assert response["peak_rotation_deg"] is response["top_displacement"] is None
 
 
 def test_a_weak_pulse_causes_no_uplift(client):
-    answer = ask(client, peak_acceleration=2.0, restitution=0.9).json()
-    assert answer["response"]["outcome"] == "NO_UPLIFT"
-    assert answer["peak_rotation_deg"] == 0.0
-    assert answer["restitution"] == 0.9
+    response = get_response(client, peak_acceleration=2.0, restitution=0.9).json()
+    assert response["response"]["outcome"] == "NO_UPLIFT"
+    assert response["peak_rotation_deg"] == 0.0
+    assert response["restitution"] == 0.9
 
 
 def test_friction_through_the_motion(client):
-    answer = ask(client).json()
+    response = get_response(client).json()
     block = Block(0.2, 0.8)
     motion = time_history(
         "sine",
@@ -74,12 +75,12 @@ def test_friction_through_the_motion(client):
         alpha=block.alpha,
         contact=True,
     )
-    assert answer["friction_at_uplift"] == pytest.approx(0.25)
-    assert answer["friction_demand"] == pytest.approx(motion.largest_friction_demand, rel=1e-9)
-    assert answer["friction_demand"] > answer["friction_at_uplift"]
-    assert answer["friction_at_impact"] == pytest.approx(motion.impulse_ratio, rel=1e-9)
-    assert answer["smallest_normal_reaction"] == pytest.approx(motion.smallest_normal_reaction, rel=1e-9)
-    assert answer["warnings"] == []
+    assert response["friction_at_uplift"] == pytest.approx(0.25)
+    assert response["friction_demand"] == pytest.approx(motion.largest_friction_demand, rel=1e-9)
+    assert response["friction_demand"] > response["friction_at_uplift"]
+    assert response["friction_at_impact"] == pytest.approx(motion.impulse_ratio, rel=1e-9)
+    assert response["smallest_normal_reaction"] == pytest.approx(motion.smallest_normal_reaction, rel=1e-9)
+    assert response["warnings"] == []
 
 
 @pytest.mark.parametrize(
@@ -96,10 +97,10 @@ def test_friction_through_the_motion(client):
     ],
 )
 def test_warnings(client, changes, words, overturned):
-    answer = ask(client, **changes).json()
-    assert answer["overturned"] is overturned
-    assert any(words in warning for warning in answer["warnings"])
-    assert (answer["friction_demand"] is None) is (words == "lifts off")
+    response = get_response(client, **changes).json()
+    assert response["overturned"] is overturned
+    assert any(words in warning for warning in response["warnings"])
+    assert (response["friction_demand"] is None) is (words == "lifts off")
 
 
 @pytest.mark.parametrize(
@@ -120,21 +121,21 @@ def test_warnings(client, changes, words, overturned):
     ],
 )
 def test_bad_input(client, changes, parameter):
-    assert_problem(ask(client, **changes), 422, parameter)
+    assert_problem(get_response(client, **changes), 422, parameter)
 
 
 @pytest.mark.parametrize("odd", ["bouncy", "", "nan", "Housner"])
 def test_a_restitution_may_be_housner_or_a_number(client, odd):
-    problem = assert_problem(ask(client, restitution=odd), 422, "restitution")
+    problem = assert_problem(get_response(client, restitution=odd), 422, "restitution")
     assert "[0, 1]" in problem["allowed"]
     assert odd == "nan" or "housner" in problem["allowed"]
 
 
 def test_the_largest_safe_acceleration_holds_for_this_size_only(client):
     """A block of 0.6 m x 2.4 m is safe up to 0.496 g; under 0.45 g the same shape at 0.2 m x 0.8 m overturns."""
-    question = {"pulse_period": 0.6, "peak_acceleration": 0.45 * STANDARD_GRAVITY}
-    large = ask(client, half_width=0.3, half_height=1.2, **question).json()
-    small = ask(client, half_width=0.1, half_height=0.4, **question).json()
+    query = {"pulse_period": 0.6, "peak_acceleration": 0.45 * STANDARD_GRAVITY}
+    large = get_response(client, half_width=0.3, half_height=1.2, **query).json()
+    small = get_response(client, half_width=0.1, half_height=0.4, **query).json()
     assert large["largest_safe_acceleration"] == pytest.approx(0.496 * STANDARD_GRAVITY, rel=1e-3)
     assert small["overturned"]
     assert small["largest_safe_acceleration"] < 0.45 * STANDARD_GRAVITY < large["largest_safe_acceleration"]
@@ -143,10 +144,10 @@ def test_the_largest_safe_acceleration_holds_for_this_size_only(client):
 
 
 def test_the_largest_safe_acceleration_comes_with_its_friction(client):
-    answer = ask(client).json()
-    just_below = ask(client, peak_acceleration=answer["largest_safe_acceleration"] * (1 - 1e-9)).json()
+    response = get_response(client).json()
+    just_below = get_response(client, peak_acceleration=response["largest_safe_acceleration"] * (1 - 1e-9)).json()
     assert not just_below["overturned"]
-    assert answer["largest_safe_friction_demand"] == pytest.approx(just_below["friction_demand"], rel=1e-6)
+    assert response["largest_safe_friction_demand"] == pytest.approx(just_below["friction_demand"], rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -158,54 +159,54 @@ def test_the_largest_safe_acceleration_comes_with_its_friction(client):
     ],
 )
 def test_the_meaning_starts_with_the_rocking_model_not_applying(client, changes, first):
-    answer = ask(client, **changes).json()
-    assert not answer["rocking_model_applies"]
-    assert answer["meaning"].startswith(first)
-    assert "the rocking model does not apply" in answer["meaning"]
-    assert answer["meaning"].endswith(answer["response"]["meaning"])  # what a block that is held would do
-    demand = answer["friction_demand"]
-    assert demand is None or (demand > 1 and f"{demand:.3g}" in answer["meaning"])
+    response = get_response(client, **changes).json()
+    assert not response["rocking_model_applies"]
+    assert response["meaning"].startswith(first)
+    assert "the rocking model does not apply" in response["meaning"]
+    assert response["meaning"].endswith(response["response"]["meaning"])  # what a block that is held would do
+    demand = response["friction_demand"]
+    assert demand is None or (demand > 1 and f"{demand:.3g}" in response["meaning"])
 
 
 def test_no_acceleration_is_called_safe_where_the_rocking_model_does_not_apply(client):
     cube = {"half_width": 0.5, "half_height": 0.5, "peak_acceleration": 1.5 * STANDARD_GRAVITY}
-    answer = ask(client, **cube).json()
-    assert answer["friction_demand"] == pytest.approx(17.9, abs=0.1)
-    assert answer["thresholds"][0]["peak_acceleration"] == pytest.approx(5.67 * STANDARD_GRAVITY, rel=1e-3)
-    assert answer["largest_safe_acceleration"] is answer["largest_safe_friction_demand"] is None
-    assert any("no largest safe acceleration" in warning for warning in answer["warnings"])
+    response = get_response(client, **cube).json()
+    assert response["friction_demand"] == pytest.approx(17.9, abs=0.1)
+    assert response["thresholds"][0]["peak_acceleration"] == pytest.approx(5.67 * STANDARD_GRAVITY, rel=1e-3)
+    assert response["largest_safe_acceleration"] is response["largest_safe_friction_demand"] is None
+    assert any("no largest safe acceleration" in warning for warning in response["warnings"])
 
 
 def test_a_squat_block_that_does_not_uplift_has_a_response(client):
     """2 m x 1 m under 1.2 g: it uplifts from 2 g on, and no impact asks for the negative restitution of (2.4)."""
     squat = {"half_width": 1.0, "half_height": 0.5}
-    answer = ask(client, **squat, peak_acceleration=1.2 * STANDARD_GRAVITY).json()
-    assert answer["response"]["outcome"] == "NO_UPLIFT"
-    assert not answer["overturned"]
-    assert answer["uplift_acceleration"] == pytest.approx(2 * STANDARD_GRAVITY)
-    assert answer["friction_demand"] == pytest.approx(1.2)
-    assert answer["meaning"] == "never uplifts, but slides unless the coefficient of friction is at least 1.2"
-    assert ask(client, **squat, peak_acceleration=5.0).json()["meaning"] == "never uplifts"
+    response = get_response(client, **squat, peak_acceleration=1.2 * STANDARD_GRAVITY).json()
+    assert response["response"]["outcome"] == "NO_UPLIFT"
+    assert not response["overturned"]
+    assert response["uplift_acceleration"] == pytest.approx(2 * STANDARD_GRAVITY)
+    assert response["friction_demand"] == pytest.approx(1.2)
+    assert response["meaning"] == "never uplifts, but slides unless the coefficient of friction is at least 1.2"
+    assert get_response(client, **squat, peak_acceleration=5.0).json()["meaning"] == "never uplifts"
 
 
 def test_a_squat_block_that_uplifts_stops_at_an_impact(client):
     squat = {"half_width": 1.0, "half_height": 0.5, "peak_acceleration": 2.1 * STANDARD_GRAVITY}
-    answer = ask(client, **squat).json()
-    assert answer["response"]["impacts"] > 0
-    assert answer["restitution"] == 0.0
-    assert any("negative (-0.2)" in warning and "eta = 0" in warning for warning in answer["warnings"])
-    given = ask(client, **squat, restitution=0.0).json()
-    assert given["peak_rotation_deg"] == answer["peak_rotation_deg"]
+    response = get_response(client, **squat).json()
+    assert response["response"]["impacts"] > 0
+    assert response["restitution"] == 0.0
+    assert any("negative (-0.2)" in warning and "eta = 0" in warning for warning in response["warnings"])
+    given = get_response(client, **squat, restitution=0.0).json()
+    assert given["peak_rotation_deg"] == response["peak_rotation_deg"]
     assert not any("(2.4)" in warning for warning in given["warnings"])
 
 
 def overturned(client, **changes):
-    return ask(client, method="solver", **changes).json()["overturned"]
+    return get_response(client, method="solver", **changes).json()["overturned"]
 
 
 @pytest.mark.parametrize("peak_acceleration", [4.0, 4.8, 13.5, 20.0])
 def test_margins_are_the_nearest_changes_of_outcome(client, peak_acceleration):
-    margins = ask(client, peak_acceleration=peak_acceleration).json()["margins"]
+    margins = get_response(client, peak_acceleration=peak_acceleration).json()["margins"]
     here = overturned(client, peak_acceleration=peak_acceleration)
     for name, value, factor in (
         ("peak_acceleration", margins["nearest_acceleration"], margins["acceleration_factor"]),
@@ -222,7 +223,7 @@ def test_margins_are_the_nearest_changes_of_outcome(client, peak_acceleration):
 
 
 def test_sizes_of_the_shape_that_survive(client):
-    margins = ask(client).json()["margins"]
+    margins = get_response(client).json()["margins"]
     block = Block(0.2, 0.8)
 
     def overturns(half_diagonal):
@@ -236,48 +237,48 @@ def test_sizes_of_the_shape_that_survive(client):
     assert not overturns(from_here_on * (1 + 1e-9))
     assert not any(overturns(from_here_on * factor) for factor in (1.01, 2, 10, 50))
     assert all(overturns(smallest / factor) for factor in (1.01, 2, 8))
-    assert any("larger ones overturn" in note for note in ask(client).json()["notes"])
+    assert any("larger ones overturn" in note for note in get_response(client).json()["notes"])
     low, high = margins["sizes_searched"]
     assert low == pytest.approx(block.half_diagonal / 100)
     assert high == pytest.approx(block.half_diagonal * 100)
 
 
 def test_a_pulse_without_uplift_has_no_margin_in_period(client):
-    margins = ask(client, peak_acceleration=2.0).json()["margins"]
+    margins = get_response(client, peak_acceleration=2.0).json()["margins"]
     assert margins["nearest_period"] is margins["period_factor"] is None
     assert margins["smallest_surviving_half_diagonal"] == margins["surviving_from_half_diagonal"]
     assert margins["nearest_acceleration"] > 2.0
 
 
 def test_the_url_repeats_the_request(client):
-    answer = ask(client, pulse="-cosine", restitution=0.9, gravity=3.71).json()
-    assert client.get(answer["url"]).json() == answer
+    response = get_response(client, pulse="-cosine", restitution=0.9, gravity=3.71).json()
+    assert client.get(response["url"]).json() == response
 
 
 def test_a_change_of_outcome_close_in_period_is_a_warning(client):
-    answer = ask(client, pulse_period=0.55).json()
-    assert any("5 % of this period: at 0.5681 s" in warning for warning in answer["warnings"])
+    response = get_response(client, pulse_period=0.55).json()
+    assert any("5 % of this period: at 0.5681 s" in warning for warning in response["warnings"])
 
 
 def test_a_response_outside_of_the_data_sets_has_a_note(client):
-    assert any("the solver was used" in note for note in ask(client).json()["notes"])
+    assert any("the solver was used" in note for note in get_response(client).json()["notes"])
 
 
 def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, monkeypatch):
-    whole = ask(client).json()
+    whole = get_response(client).json()
     monkeypatch.setattr(blocks, "SEARCH_SHARE", 0.0)
-    answer = ask(client).json()
-    assert (answer["thresholds"], answer["largest_safe_acceleration"], answer["margins"]) == (None, None, None)
-    assert [text for text in answer["warnings"] if "not found in time" in text] == answer["warnings"][-2:]
+    response = get_response(client).json()
+    assert (response["thresholds"], response["largest_safe_acceleration"], response["margins"]) == (None, None, None)
+    assert [text for text in response["warnings"] if "not found in time" in text] == response["warnings"][-2:]
     for name in ("response", "peak_rotation_deg", "friction_demand"):
-        assert answer[name] == whole[name]
+        assert response[name] == whole[name]
 
 
 def test_an_elastic_block_with_many_impacts_has_a_response(results):
     """A hundred thousand impacts for each amplitude that is looked at: minutes of work."""
     needle = {"half_width": 1e-4, "half_height": 450.0, "pulse": "c1", "peak_acceleration": 1e-6, "pulse_period": 450.0}
     with client_of(results, max_seconds=10.0) as client:
-        answer = ask(client, **needle).json()
-    assert answer["response"]["outcome"] == "NO_UPLIFT"
-    assert answer["thresholds"] is None
-    assert "the peak accelerations at which the outcome changes were not found in time" in answer["warnings"][-1]
+        response = get_response(client, **needle).json()
+    assert response["response"]["outcome"] == "NO_UPLIFT"
+    assert response["thresholds"] is None
+    assert "the peak accelerations at which the outcome changes were not found in time" in response["warnings"][-1]

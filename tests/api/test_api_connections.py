@@ -158,16 +158,16 @@ def test_the_server_still_responds(server):
 def test_running_requests_are_finished_at_shutdown(results, tmp_path):
     with serving(results, tmp_path / "log") as server:
         httpx2.get(server.address + POINT)
-        answers = []
+        responses = []
         curves = "/v1/overturning?pulse=sine&restitution=0.77"  # traced on request: some tenths of a second
-        asking = threading.Thread(target=lambda: answers.append(httpx2.get(server.address + curves, timeout=60)))
+        asking = threading.Thread(target=lambda: responses.append(httpx2.get(server.address + curves, timeout=60)))
         asking.start()
         deadline = time.monotonic() + 30
-        while "rocking_heavy_running 1.0" not in httpx2.get(server.address + "/metrics").text and not answers:
+        while "rocking_heavy_running 1.0" not in httpx2.get(server.address + "/metrics").text and not responses:
             assert time.monotonic() < deadline
         status = server.stop()
         asking.join()
-    assert [answer.status_code for answer in answers] == [200]
+    assert [response.status_code for response in responses] == [200]
     assert status in (0, -15)
 
 

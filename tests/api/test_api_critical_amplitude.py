@@ -6,32 +6,34 @@ from rocking.boundary.amplitude import critical_amplitude
 from tests.api.conftest import assert_problem
 
 URL = "/v1/critical_amplitude"
-QUESTION = {"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.85}
+QUERY = {"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.85}
 
 
 def test_golden_thresholds(client):
-    answer = client.get(URL, params=QUESTION).json()
-    assert [one["amplitude"] for one in answer["thresholds"]] == pytest.approx([3.980175, 5.356347, 7.168129], abs=1e-6)
-    assert [one["overturns_above"] for one in answer["thresholds"]] == [True, False, True]
-    assert answer["thresholds"][-1]["outcome"] == "OVERTURNED_DIRECTLY"
-    assert answer["largest_safe_amplitude"] == answer["thresholds"][0]["amplitude"]
+    response = client.get(URL, params=QUERY).json()
+    assert [one["amplitude"] for one in response["thresholds"]] == pytest.approx(
+        [3.980175, 5.356347, 7.168129], abs=1e-6
+    )
+    assert [one["overturns_above"] for one in response["thresholds"]] == [True, False, True]
+    assert response["thresholds"][-1]["outcome"] == "OVERTURNED_DIRECTLY"
+    assert response["largest_safe_amplitude"] == response["thresholds"][0]["amplitude"]
 
 
 @pytest.mark.parametrize("alpha_deg", [None, 0, 20])
 def test_thresholds_equal_those_of_the_package(client, alpha_deg):
-    asked = QUESTION | ({} if alpha_deg is None else {"alpha_deg": alpha_deg})
-    answer = client.get(URL, params=asked).json()
+    query = QUERY | ({} if alpha_deg is None else {"alpha_deg": alpha_deg})
+    response = client.get(URL, params=query).json()
     alpha = 0.3490658503988659 if alpha_deg else None
-    truth = critical_amplitude("sine", frequency_ratio=5.0, restitution=0.85, alpha=alpha)
-    assert [one["amplitude"] for one in answer["thresholds"]] == truth.amplitude.tolist()
-    assert [one["impacts"] for one in answer["thresholds"]] == truth.impacts.tolist()
-    assert all(one["slenderness"] == 1 / one["amplitude"] for one in answer["thresholds"])
+    expected = critical_amplitude("sine", frequency_ratio=5.0, restitution=0.85, alpha=alpha)
+    assert [one["amplitude"] for one in response["thresholds"]] == expected.amplitude.tolist()
+    assert [one["impacts"] for one in response["thresholds"]] == expected.impacts.tolist()
+    assert all(one["slenderness"] == 1 / one["amplitude"] for one in response["thresholds"])
 
 
 def test_thresholds_above_the_highest_amplitude_are_not_listed(client):
-    answer = client.get(URL, params=QUESTION | {"highest_amplitude": 2.0}).json()
-    assert answer["thresholds"] == []
-    assert answer["largest_safe_amplitude"] is None
+    response = client.get(URL, params=QUERY | {"highest_amplitude": 2.0}).json()
+    assert response["thresholds"] == []
+    assert response["largest_safe_amplitude"] is None
 
 
 @pytest.mark.parametrize(
@@ -48,4 +50,4 @@ def test_thresholds_above_the_highest_amplitude_are_not_listed(client):
     ],
 )
 def test_bad_input(client, changes, parameter):
-    assert_problem(client.get(URL, params=QUESTION | changes), 422, parameter)
+    assert_problem(client.get(URL, params=QUERY | changes), 422, parameter)

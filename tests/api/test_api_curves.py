@@ -35,24 +35,24 @@ def read_csv(response):
 
 
 def test_spectrum_lies_within_its_bounds(client):
-    answer = client.get("/v1/spectrum", params=SPECTRUM).json()
-    truth = peak_response("sine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 50), restitution=0.85)
-    assert answer["frequency_ratio"] == np.geomspace(0.5, 12.0, 50).tolist()
-    assert answer["overturned"] == truth.overturned.tolist()
-    assert any(answer["overturned"])
-    assert {"cube", "solver"} >= set(answer["source"])
-    for peak, bound, exact in zip(answer["peak_rotation"], answer["error_bound"], truth.peak_rotation, strict=True):
+    result = client.get("/v1/spectrum", params=SPECTRUM).json()
+    expected = peak_response("sine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 50), restitution=0.85)
+    assert result["frequency_ratio"] == np.geomspace(0.5, 12.0, 50).tolist()
+    assert result["overturned"] == expected.overturned.tolist()
+    assert any(result["overturned"])
+    assert {"cube", "solver"} >= set(result["source"])
+    for peak, bound, exact in zip(result["peak_rotation"], result["error_bound"], expected.peak_rotation, strict=True):
         assert peak is None or abs(peak - exact) <= bound
 
 
 def test_the_three_formats_of_a_spectrum_agree(client):
-    answer = client.get("/v1/spectrum", params=SPECTRUM).json()
+    result = client.get("/v1/spectrum", params=SPECTRUM).json()
     rows = read_csv(client.get("/v1/spectrum", params=SPECTRUM | {"format": "csv"}))
     stored = read_netcdf(client.get("/v1/spectrum", params=SPECTRUM, headers={"accept": "application/x-netcdf"}))
-    assert [row["outcome"] for row in rows] == answer["outcome"]
-    assert [float(row["peak_rotation"]) if row["peak_rotation"] else None for row in rows] == answer["peak_rotation"]
+    assert [row["outcome"] for row in rows] == result["outcome"]
+    assert [float(row["peak_rotation"]) if row["peak_rotation"] else None for row in rows] == result["peak_rotation"]
     np.testing.assert_array_equal(
-        stored["peak_rotation"], [np.nan if peak is None else peak for peak in answer["peak_rotation"]]
+        stored["peak_rotation"], [np.nan if peak is None else peak for peak in result["peak_rotation"]]
     )
     assert stored.attrs["slenderness"] == 0.6
 
@@ -65,25 +65,25 @@ def test_traced_curves_are_cached(client, monkeypatch):
         return overturning_boundary(*args, **kwargs)
 
     monkeypatch.setattr(rocking_api.routers.overturning, "overturning_boundary", trace)
-    question = {"pulse": "half_sine", "restitution": 0.8765}
-    answers = [client.get("/v1/overturning", params=question | more) for more in ({}, {"alpha_deg": 0}, {})]
+    query = {"pulse": "half_sine", "restitution": 0.8765}
+    responses = [client.get("/v1/overturning", params=query | more) for more in ({}, {"alpha_deg": 0}, {})]
     assert len(traced) == 1
-    assert answers[0].headers["etag"] == answers[2].headers["etag"]
-    assert answers[0].json()["curves"] == answers[1].json()["curves"]
-    known = client.get("/v1/overturning", params=question, headers={"If-None-Match": answers[0].headers["etag"]})
+    assert responses[0].headers["etag"] == responses[2].headers["etag"]
+    assert responses[0].json()["curves"] == responses[1].json()["curves"]
+    known = client.get("/v1/overturning", params=query, headers={"If-None-Match": responses[0].headers["etag"]})
     assert known.status_code == 304
 
 
 def test_overturning_reads_the_curves_of_the_workflow(client, results):
-    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+    result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
     stored = xr.load_dataset(results / "overturning" / "sine" / "eta-0.85.nc")
-    assert answer["source"] == "dataset"
-    assert answer["data_version"] == client.get("/v1/datasets/overturning/sine/eta-0.85").json()["sha256"]
-    assert [len(curve["slenderness"]) for curve in answer["curves"]] == stored["row_size"].values.tolist()
+    assert result["source"] == "dataset"
+    assert result["data_version"] == client.get("/v1/datasets/overturning/sine/eta-0.85").json()["sha256"]
+    assert [len(curve["slenderness"]) for curve in result["curves"]] == stored["row_size"].values.tolist()
     np.testing.assert_array_equal(
-        np.concatenate([curve["slenderness"] for curve in answer["curves"]]), stored["slenderness"]
+        np.concatenate([curve["slenderness"] for curve in result["curves"]]), stored["slenderness"]
     )
-    assert {curve["outcome"] for curve in answer["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
+    assert {curve["outcome"] for curve in result["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
 
 
 def test_overturning_returns_the_curves_of_the_requested_angle(own_results):
@@ -96,20 +96,20 @@ def test_overturning_returns_the_curves_of_the_requested_angle(own_results):
     write_dataset(join_curves([slender, rigid]), path)
     with client_of(own_results) as client:
         for angle, stored in ((None, slender), (0, slender), (20, rigid)):
-            asked = ROUTES["/v1/overturning"] | ({} if angle is None else {"alpha_deg": angle})
-            answer = client.get("/v1/overturning", params=asked).json()
-            assert answer["source"] == "dataset"
-            found = [s for curve in answer["curves"] for s in curve["slenderness"]]
+            requested = ROUTES["/v1/overturning"] | ({} if angle is None else {"alpha_deg": angle})
+            result = client.get("/v1/overturning", params=requested).json()
+            assert result["source"] == "dataset"
+            found = [s for curve in result["curves"] for s in curve["slenderness"]]
             assert found == stored["slenderness"].values.tolist()
-        asked["alpha_deg"] = 10
-        assert client.get("/v1/overturning", params=asked).json()["source"] == "solver"
+        requested["alpha_deg"] = 10
+        assert client.get("/v1/overturning", params=requested).json()["source"] == "solver"
 
 
 @pytest.mark.parametrize("changes", [{"restitution": 0.5}, {"pulse": "half_sine"}])
 def test_overturning_traces_curves_that_are_not_stored(client, changes):
-    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | changes).json()
-    assert (answer["source"], answer["data_version"]) == ("solver", None)
-    curve = max(answer["curves"], key=lambda curve: len(curve["slenderness"]))
+    result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | changes).json()
+    assert (result["source"], result["data_version"]) == ("solver", None)
+    curve = max(result["curves"], key=lambda curve: len(curve["slenderness"]))
     assert curve["outcome"].startswith("OVERTURNED")
     for s, w in list(zip(curve["slenderness"], curve["frequency_ratio"], strict=True))[::40]:
         beside = s * (1 + np.array([-1e-9, 1e-9]))
@@ -125,28 +125,28 @@ def test_damaged_curves_are_traced_instead(own_results):
 
 
 def test_overturning_as_csv_and_netcdf(client):
-    answer = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+    result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
     rows = read_csv(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "csv"}))
     stored = read_netcdf(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "nc"}))
-    points = sum(len(curve["slenderness"]) for curve in answer["curves"])
+    points = sum(len(curve["slenderness"]) for curve in result["curves"])
     assert len(rows) == stored.sizes["point"] == points
     assert int(rows[-1]["curve"]) == stored.sizes["curve"] - 1
 
 
 def test_history_equals_the_solver(client):
-    answer = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
-    truth = time_history(**BLOCK, samples=50)
+    result = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
+    expected = time_history(**BLOCK, samples=50)
     for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
-        assert answer[name] == truth[name].values.tolist()
-    assert answer["outcome"] == "SAFE"
-    assert answer["peak_rotation"] == pytest.approx(max(map(abs, answer["rotation"])), rel=0.05)
+        assert result[name] == expected[name].values.tolist()
+    assert result["outcome"] == "SAFE"
+    assert result["peak_rotation"] == pytest.approx(max(map(abs, result["rotation"])), rel=0.05)
 
 
 def test_history_of_a_block_that_overturns_has_no_peak(client):
-    answer = client.get("/v1/history", params=BLOCK | {"slenderness": 0.1, "duration": 3.0}).json()
-    assert answer["overturned"]
-    assert answer["peak_rotation"] is None
-    assert answer["tau"][-1] <= 3.0
+    result = client.get("/v1/history", params=BLOCK | {"slenderness": 0.1, "duration": 3.0}).json()
+    assert result["overturned"]
+    assert result["peak_rotation"] is None
+    assert result["tau"][-1] <= 3.0
 
 
 def test_history_as_csv_and_netcdf(client):
@@ -156,17 +156,17 @@ def test_history_as_csv_and_netcdf(client):
 
 
 def test_history_with_the_reactions_of_the_ground(client):
-    asked = BLOCK | {"alpha_deg": 20, "samples": 50, "contact": "true"}
-    answer = client.get("/v1/history", params=asked).json()
-    truth = time_history(**BLOCK, alpha=np.radians(20), samples=50, contact=True)
+    requested = BLOCK | {"alpha_deg": 20, "samples": 50, "contact": "true"}
+    result = client.get("/v1/history", params=requested).json()
+    expected = time_history(**BLOCK, alpha=np.radians(20), samples=50, contact=True)
     for name in ("horizontal_reaction", "normal_reaction", "friction_demand", "friction_demand_over_slope"):
-        assert answer["contact"][name] == truth[name].values.tolist()
-    assert answer["contact"]["largest_friction_demand"] == truth.largest_friction_demand
-    assert (answer["contact"]["lifts_off"], answer["contact"]["warnings"]) == (False, "")
-    rows = read_csv(client.get("/v1/history", params=asked | {"format": "csv"}))
-    assert [float(row["friction_demand"]) for row in rows] == answer["contact"]["friction_demand"]
-    stored = read_netcdf(client.get("/v1/history", params=asked | {"format": "nc"}))
-    np.testing.assert_array_equal(stored["normal_reaction"], truth["normal_reaction"])
+        assert result["contact"][name] == expected[name].values.tolist()
+    assert result["contact"]["largest_friction_demand"] == expected.largest_friction_demand
+    assert (result["contact"]["lifts_off"], result["contact"]["warnings"]) == (False, "")
+    rows = read_csv(client.get("/v1/history", params=requested | {"format": "csv"}))
+    assert [float(row["friction_demand"]) for row in rows] == result["contact"]["friction_demand"]
+    stored = read_netcdf(client.get("/v1/history", params=requested | {"format": "nc"}))
+    np.testing.assert_array_equal(stored["normal_reaction"], expected["normal_reaction"])
     assert client.get("/v1/history", params=BLOCK).json()["contact"] is None
 
 

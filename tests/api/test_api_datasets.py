@@ -72,12 +72,12 @@ def test_changed_is_sent(client, content):
 
 
 @pytest.mark.parametrize(
-    ("asked", "part"),
+    ("requested", "part"),
     [("bytes=0-3", slice(0, 4)), ("bytes=100-199", slice(100, 200)), ("bytes=-7", slice(-7, None)),
      ("bytes=90000-", slice(90000, None))],
 )  # fmt: skip
-def test_range_is_206(client, content, asked, part):
-    response = client.get(URL, headers={"range": asked})
+def test_range_is_206(client, content, requested, part):
+    response = client.get(URL, headers={"range": requested})
     assert response.status_code == 206
     assert response.content == content[part]
     start = part.indices(len(content))[0]
@@ -103,9 +103,9 @@ def test_range_outside_is_416(client, content):
     assert response.headers["content-range"] == f"bytes */{len(content)}"
 
 
-@pytest.mark.parametrize("asked", ["bytes=9-3", "lines=1-2", "nonsense"])
-def test_malformed_range_is_400(client, asked):
-    assert_problem(client.get(URL, headers={"range": asked}), 400, "Range")
+@pytest.mark.parametrize("requested", ["bytes=9-3", "lines=1-2", "nonsense"])
+def test_malformed_range_is_400(client, requested):
+    assert_problem(client.get(URL, headers={"range": requested}), 400, "Range")
 
 
 @pytest.mark.parametrize(

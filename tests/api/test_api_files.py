@@ -162,8 +162,8 @@ def test_boundary_curves_that_cannot_be_read_are_traced(own_results):
     path.unlink()
     path.symlink_to(path)
     with client_of(own_results) as client:
-        answer = client.get("/v1/overturning", params={"pulse": "sine", "restitution": 0.85})
-        assert answer.json()["source"] == "solver"
+        response = client.get("/v1/overturning", params={"pulse": "sine", "restitution": 0.85})
+        assert response.json()["source"] == "solver"
 
 
 def test_health_shows_no_path(tmp_path, own_results, path):

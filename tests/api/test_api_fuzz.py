@@ -52,9 +52,9 @@ def test_generated_requests(results, path, method):
 
     @settings(max_examples=share, suppress_health_check=list(HealthCheck), derandomize=SEED is None)
     @given(case=schema[path][method].as_strategy())
-    def ask(case):
+    def check_case(case):
         case.call_and_validate(checks=CHECKS, timeout=100)  # more than the time limit of the service
 
     if SEED is not None:
-        ask = hypothesis.seed(int(SEED))(ask)
-    ask()
+        check_case = hypothesis.seed(int(SEED))(check_case)
+    check_case()

@@ -43,8 +43,8 @@ def test_no_number_is_refused_by_name(client, route, value):
 @pytest.mark.parametrize("route", ROUTES)
 def test_a_parameter_given_twice_is_refused(client, route):
     for name, value in ROUTES[route].items():
-        asked = [*ROUTES[route].items(), (name, value)]
-        problem = assert_problem(client.get(route, params=asked), 422, name)
+        query = [*ROUTES[route].items(), (name, value)]
+        problem = assert_problem(client.get(route, params=query), 422, name)
         assert problem["allowed"] == "one value"
 
 
@@ -53,16 +53,16 @@ def test_a_parameter_given_twice_is_refused(client, route):
 def test_extreme_numbers_have_a_response_or_an_error(client, route, value):
     for name in ROUTES[route]:
         if name != "pulse":
-            answer = client.get(route, params=ROUTES[route] | {name: value})
-            assert answer.status_code in (200, 422)
-            json.loads(answer.text, parse_constant=pytest.fail)  # no NaN, no Infinity
+            response = client.get(route, params=ROUTES[route] | {name: value})
+            assert response.status_code in (200, 422)
+            json.loads(response.text, parse_constant=pytest.fail)  # no NaN, no Infinity
 
 
 @pytest.mark.parametrize(("route", "name"), [("spectrum", "points"), ("history", "samples")])
 @pytest.mark.parametrize("value", ["-1", "0", "1", "1e3", "10.5", "9" * 30])
 def test_invalid_counts(client, route, name, value):
-    asked = ROUTES[f"/v1/{route}"] | {name: value}
-    assert client.get(f"/v1/{route}", params=asked).status_code in (413, 422)
+    query = ROUTES[f"/v1/{route}"] | {name: value}
+    assert client.get(f"/v1/{route}", params=query).status_code in (413, 422)
 
 
 @pytest.mark.parametrize(
@@ -71,11 +71,11 @@ def test_invalid_counts(client, route, name, value):
 )
 @pytest.mark.parametrize("sign", ["", "-"])
 def test_integers_beyond_all_doubles(client, route, name, sign):
-    asked = {key: POINT[key] for key in ("pulse", "slenderness", "restitution", "frequency_ratio")}
+    query = {key: POINT[key] for key in ("pulse", "slenderness", "restitution", "frequency_ratio")}
     unknown = {"spectrum": ["frequency_ratio"], "map": ["slenderness", "frequency_ratio"]}.get(route, [])
-    asked = {key: value for key, value in asked.items() if key not in unknown} | {name: sign + "9" * 400}
-    answer = client.get(f"/v1/{route}", params=asked)
-    assert_problem(answer, 413 if route == "history" and not sign else 422, name)
+    query = {key: value for key, value in query.items() if key not in unknown} | {name: sign + "9" * 400}
+    response = client.get(f"/v1/{route}", params=query)
+    assert_problem(response, 413 if route == "history" and not sign else 422, name)
 
 
 NESTED = b"[" * 100_000 + b"]" * 100_000
@@ -105,9 +105,9 @@ BODIES = [
 @pytest.mark.parametrize("body", BODIES, ids=range(len(BODIES)))
 @pytest.mark.parametrize("media_type", ["application/json", "text/csv", "application/x-netcdf"])
 def test_invalid_bodies(client, body, media_type):
-    answer = client.post("/v1/response", content=body, headers={"content-type": media_type})
-    assert_problem(answer, 422)
-    assert len(answer.content) < 2000
+    response = client.post("/v1/response", content=body, headers={"content-type": media_type})
+    assert_problem(response, 422)
+    assert len(response.content) < 2000
 
 
 @pytest.mark.parametrize("media_type", ["application/json", "text/csv", "application/x-netcdf"])
@@ -129,13 +129,13 @@ def test_a_netcdf_file_with_a_wrong_size(client):
     where = body.index(b"point") + 8  # after the name, padded: the length of the dimension
     for length in (51, 10**6, 2**31 - 1):
         body[where : where + 4] = length.to_bytes(4, "big")
-        answer = client.post(
+        response = client.post(
             "/v1/response",
             params={"pulse": "sine", "frequency_ratio": 5, "restitution": 0.9},
             content=bytes(body),
             headers={"content-type": "application/x-netcdf"},
         )
-        assert answer.status_code in (413, 422), length
+        assert response.status_code in (413, 422), length
 
 
 def test_a_netcdf_file_damaged_anywhere(client):
@@ -145,13 +145,13 @@ def test_a_netcdf_file_damaged_anywhere(client):
         body = bytearray(whole)
         for position in random.integers(4, len(body), 3):
             body[position] = random.integers(256)
-        answer = client.post(
+        response = client.post(
             "/v1/response",
             params={"pulse": "sine", "frequency_ratio": 5, "restitution": 0.9},
             content=bytes(body[: random.integers(4, len(body) + 1)]),
             headers={"content-type": "application/x-netcdf"},
         )
-        assert answer.status_code in (200, 413, 422)
+        assert response.status_code in (200, 413, 422)
 
 
 @pytest.mark.parametrize(

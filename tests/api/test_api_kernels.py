@@ -17,7 +17,7 @@ from rocking.excitation.pulses import PULSE_NAMES
 from tests.api.conftest import assert_problem, client_of
 from tests.api.servers import serving
 
-QUESTION = {"slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85, "method": "solver"}
+QUERY = {"slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85, "method": "solver"}
 SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 3}
 
 
@@ -52,15 +52,15 @@ def burst(server):
 
     The times of /health are those on a machine that does nothing else.
     """
-    answers, waits = {}, []
+    responses, waits = {}, []
 
-    def ask(pulse):
+    def get_response(pulse):
         began = time.perf_counter()
         with connect(server) as connection:
-            status = get(connection, "/v1/response?" + urlencode(QUESTION | {"pulse": pulse}))
-        answers[pulse] = status, time.perf_counter() - began
+            status = get(connection, "/v1/response?" + urlencode(QUERY | {"pulse": pulse}))
+        responses[pulse] = status, time.perf_counter() - began
 
-    threads = [threading.Thread(target=ask, args=(pulse,)) for pulse in PULSE_NAMES]
+    threads = [threading.Thread(target=get_response, args=(pulse,)) for pulse in PULSE_NAMES]
     processes = os.getpid(), server.process.pid
     with connect(server) as connection:
         get(connection, "/health")
@@ -72,7 +72,7 @@ def burst(server):
             took = time.perf_counter() - began
             waits.append(took - (kept_waiting(*processes) - delayed))
             time.sleep(0.005)
-    return answers, waits
+    return responses, waits
 
 
 @pytest.mark.slow
@@ -84,11 +84,11 @@ def test_health_responds_while_the_kernels_are_compiled_and_loaded(tmp_path):
         with serving(tmp_path, tmp_path / log, **folder, ROCKING_MAX_SECONDS=str(granted)) as server:
             if log == "loaded.log":
                 with connect(server) as connection:  # waits until they are loaded
-                    get(connection, "/v1/response?" + urlencode(QUESTION | {"pulse": "sine"}))
-            answers, waits = burst(server)
-        assert {status for status, _ in answers.values()} == {200}
+                    get(connection, "/v1/response?" + urlencode(QUERY | {"pulse": "sine"}))
+            responses, waits = burst(server)
+        assert {status for status, _ in responses.values()} == {200}
         assert max(waits) < 0.2
-    assert max(seconds for _, seconds in answers.values()) < 1.0
+    assert max(seconds for _, seconds in responses.values()) < 1.0
 
 
 def test_a_request_waits_for_the_kernels_up_to_its_time_limit(tmp_path, monkeypatch):
@@ -96,9 +96,7 @@ def test_a_request_waits_for_the_kernels_up_to_its_time_limit(tmp_path, monkeypa
     monkeypatch.setattr(rocking_api.execution.kernels, "load_kernels", lambda: loaded.wait(30))
     with client_of(tmp_path, max_seconds=0.1) as client:
         for route in ("response", "spectrum"):
-            refused = client.get(
-                f"/v1/{route}", params=QUESTION | {"pulse": "sine"} if route == "response" else SPECTRUM
-            )
+            refused = client.get(f"/v1/{route}", params=QUERY | {"pulse": "sine"} if route == "response" else SPECTRUM)
             assert_problem(refused, 503)
             assert int(refused.headers["retry-after"]) > 0
         assert client.get("/health").status_code == 200

@@ -39,29 +39,29 @@ class Gate:
 
 def test_work_beyond_the_queue_limit_is_refused():
     async def scenario():
-        shop, gate = BoundedExecutor(workers=1, queue=2, seconds=30), Gate()
-        asked = [asyncio.create_task(shop.run(gate.work)) for _ in range(3)]
+        executor, gate = BoundedExecutor(workers=1, queue=2, seconds=30), Gate()
+        tasks = [asyncio.create_task(executor.run(gate.work)) for _ in range(3)]
         await asyncio.to_thread(gate.begun.acquire)
-        assert (shop.running, shop.waiting) == (1, 2)
+        assert (executor.running, executor.waiting) == (1, 2)
         with pytest.raises(BusyError):
-            await shop.run(gate.work)
+            await executor.run(gate.work)
         gate.open.set()
-        assert await asyncio.gather(*asked) == ["done"] * 3
-        assert (shop.running, shop.waiting) == (0, 0)
+        assert await asyncio.gather(*tasks) == ["done"] * 3
+        assert (executor.running, executor.waiting) == (0, 0)
 
     asyncio.run(scenario())
 
 
 def test_work_that_ignores_the_stop_flag_keeps_its_worker():
     async def scenario():
-        shop, gate = BoundedExecutor(workers=1, queue=0, seconds=0.05), Gate()
+        executor, gate = BoundedExecutor(workers=1, queue=0, seconds=0.05), Gate()
         with pytest.raises(TimeLimitError, match=r"0\.05 s"):
-            await shop.run(gate.work)
-        assert shop.running == 1
+            await executor.run(gate.work)
+        assert executor.running == 1
         with pytest.raises(BusyError):
-            await shop.run(gate.work)
+            await executor.run(gate.work)
         gate.open.set()
-        while shop.running:
+        while executor.running:
             await asyncio.sleep(0.001)
 
     asyncio.run(scenario())
@@ -111,7 +111,7 @@ def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(resul
     gate = Gate()
     with client_of(results, max_workers=1, max_queue=0) as client:
         client.get("/v1/response", params=POINT)
-        shop = client.app.state.service.executor
+        executor = client.app.state.service.executor
         monkeypatch.setattr(rocking_api.execution.evaluation, "evaluate", lambda *_, **__: gate.work())
         batch = threading.Thread(target=client.post, args=("/v1/response",), kwargs={"json": BATCH})
         batch.start()
@@ -121,7 +121,7 @@ def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(resul
         assert int(refused.headers["retry-after"]) > 0
         assert client.get("/v1/response", params=POINT).status_code == 200
         assert client.get("/health").status_code == 200
-        assert metrics_of(client)["rocking_heavy_running",] == shop.running == 1
+        assert metrics_of(client)["rocking_heavy_running",] == executor.running == 1
         gate.open.set()
         batch.join()
 
@@ -166,9 +166,9 @@ def test_an_invalid_batch_is_refused_before_queueing(results, form):
         def post(**wrong):
             if form == "json":
                 return client.post("/v1/response", json=BATCH | wrong)
-            asked = {key: value for key, value in (POINT | wrong).items() if key != "slenderness"}
+            tasks = {key: value for key, value in (POINT | wrong).items() if key != "slenderness"}
             body = f"slenderness\n{wrong.get('slenderness', 0.6)}\n"
-            return client.post("/v1/response", params=asked, content=body, headers={"content-type": "text/csv"})
+            return client.post("/v1/response", params=tasks, content=body, headers={"content-type": "text/csv"})
 
         try:
             assert_problem(post(), 503)
@@ -189,11 +189,11 @@ def test_timeout_is_504(results, monkeypatch):
 @pytest.mark.parametrize("path", ["/v1/critical_amplitude", "/v1/overturning"])
 def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, path):
     """An elastic block under a slow pulse has very many changes of outcome: half a minute."""
-    question = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
+    query = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
     if path == "/v1/critical_amplitude":
-        question["frequency_ratio"] = 0.05
+        query["frequency_ratio"] = 0.05
     with client_of(results, max_seconds=0.3) as client:
-        assert_problem(client.get(path, params=question), 504)
+        assert_problem(client.get(path, params=query), 504)
         began = time.monotonic()
         while client.app.state.service.executor.running:
             time.sleep(0.01)
@@ -236,38 +236,38 @@ def test_batches_in_chunks_are_equal(client, monkeypatch):
 
 
 def test_batched_requests_have_the_results_of_single_requests(results):
-    questions = [POINT | {"slenderness": 0.05 + 0.03 * k} for k in range(30)]
-    questions += [POINT | {"method": "cube", "slenderness": s} for s in (0.01, 0.6, 0.02)]
-    questions += [POINT | {"slenderness": -1.0}, POINT | {"tolerance": -1.0}, POINT | {"pulse": "sinus"}]
+    queries = [POINT | {"slenderness": 0.05 + 0.03 * k} for k in range(30)]
+    queries += [POINT | {"method": "cube", "slenderness": s} for s in (0.01, 0.6, 0.02)]
+    queries += [POINT | {"slenderness": -1.0}, POINT | {"tolerance": -1.0}, POINT | {"pulse": "sinus"}]
     with client_of(results) as client:
-        alone = [client.get("/v1/response", params=question) for question in questions]
+        alone = [client.get("/v1/response", params=query) for query in queries]
         calls = _count_calls(client.app.state.service.cubes)
-        together = asyncio.run(_all_at_once(client.app, questions))
-    assert [answer.status_code for answer in alone] == [status for status, _ in together]
+        together = asyncio.run(_all_at_once(client.app, queries))
+    assert [response.status_code for response in alone] == [status for status, _ in together]
     for one, (_, body) in zip(alone, together, strict=True):
         found = json.loads(body)
         assert found == one.json()
-    assert len(calls) < len(questions) / 2
+    assert len(calls) < len(queries) / 2
 
 
 def test_a_request_waits_for_those_of_the_next_iterations_of_the_loop(results):
-    async def one_a_turn(together, questions):
-        asked = []
-        for question in questions:
-            asked.append(asyncio.create_task(together.evaluate(question)))
+    async def one_a_turn(together, queries):
+        tasks = []
+        for query in queries:
+            tasks.append(asyncio.create_task(together.evaluate(query)))
             await asyncio.sleep(0)
-        return await asyncio.gather(*asked)
+        return await asyncio.gather(*tasks)
 
-    questions = [ResponseParams(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
+    queries = [ResponseParams(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
     with client_of(results) as client:
         cubes = client.app.state.service.cubes
 
         def gathered():
             return MicroBatcher(cubes, BoundedExecutor(1, 16, 30.0))
 
-        alone = [asyncio.run(one_a_turn(gathered(), [question]))[0] for question in questions]
+        alone = [asyncio.run(one_a_turn(gathered(), [query]))[0] for query in queries]
         calls = _count_calls(cubes)
-        assert asyncio.run(one_a_turn(gathered(), questions)) == alone
+        assert asyncio.run(one_a_turn(gathered(), queries)) == alone
     assert len(calls) == 1
 
 
@@ -286,12 +286,12 @@ def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
         client.get("/v1/response", params=POINT)
 
         async def scenario():
-            asked = asyncio.create_task(together.evaluate(ResponseParams(**elastic)))
+            tasks = asyncio.create_task(together.evaluate(ResponseParams(**elastic)))
             longest, before = 0.0, time.perf_counter()
-            while not asked.done():
+            while not tasks.done():
                 await asyncio.sleep(0.001)
                 longest, before = max(longest, time.perf_counter() - before), time.perf_counter()
-            return longest, (await asked).source
+            return longest, (await tasks).source
 
         longest, source = asyncio.run(scenario())
     assert source == "solver"
@@ -309,8 +309,8 @@ def _count_calls(cubes):
     return calls
 
 
-async def _all_at_once(app, questions):
+async def _all_at_once(app, queries):
     transport = httpx2.ASGITransport(app=app, raise_app_exceptions=False)
     async with httpx2.AsyncClient(transport=transport, base_url="http://service") as client:
-        answers = await asyncio.gather(*(client.get("/v1/response", params=question) for question in questions))
-    return [(answer.status_code, answer.content) for answer in answers]
+        responses = await asyncio.gather(*(client.get("/v1/response", params=query) for query in queries))
+    return [(response.status_code, response.content) for response in responses]

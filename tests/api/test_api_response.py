@@ -12,24 +12,24 @@ from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectra
 from tests.api.conftest import assert_problem, client_of
 
-QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 
 
-def ask(client, **changes):
-    return client.get("/v1/response", params=QUESTION | changes)
+def get_response(client, **changes):
+    return client.get("/v1/response", params=QUERY | changes)
 
 
 def test_a_response_from_a_cube(client):
-    answer = ask(client).json()
-    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
-    assert answer["source"] == "cube"
-    assert abs(answer["peak_rotation"] - truth.peak_rotation) <= answer["error_bound"] <= 1e-4
-    assert answer["outcome"] == Outcome(truth.outcome).name == "SAFE"
-    assert answer["impacts"] == truth.impacts
-    assert not answer["overturned"]
-    assert answer["query"] == QUESTION | {"alpha_deg": None, "method": "auto", "tolerance": 1e-4}
+    result = get_response(client).json()
+    expected = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
+    assert result["source"] == "cube"
+    assert abs(result["peak_rotation"] - expected.peak_rotation) <= result["error_bound"] <= 1e-4
+    assert result["outcome"] == Outcome(expected.outcome).name == "SAFE"
+    assert result["impacts"] == expected.impacts
+    assert not result["overturned"]
+    assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "tolerance": 1e-4}
     stored = client.get("/v1/datasets/spectra/sine/eta-0.85").json()
-    assert answer["data_version"] == stored["sha256"]
+    assert result["data_version"] == stored["sha256"]
 
 
 def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
@@ -37,21 +37,21 @@ def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
     for cube in spectra("sine", restitution=[0.82, 0.84, 0.86, 0.88, 0.90], **window):
         write_dataset(cube, tmp_path / "spectra" / "sine" / f"eta-{float(cube.restitution):.2f}.nc")
     with client_of(tmp_path) as client:
-        answer = ask(client, restitution=0.87).json()
+        result = get_response(client, restitution=0.87).json()
         below = client.get("/v1/datasets/spectra/sine/eta-0.86").json()
-    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.87)
-    assert answer["source"] == "cube"
-    assert answer["data_version"] == below["sha256"]
-    assert abs(answer["peak_rotation"] - truth.peak_rotation) <= answer["error_bound"] <= 1e-4
+    expected = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.87)
+    assert result["source"] == "cube"
+    assert result["data_version"] == below["sha256"]
+    assert abs(result["peak_rotation"] - expected.peak_rotation) <= result["error_bound"] <= 1e-4
 
 
 def test_a_response_from_the_solver_equals_the_solver(client):
-    answer = ask(client, method="solver").json()
-    truth = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
-    assert answer["source"] == "solver"
-    assert answer["peak_rotation"] == truth.peak_rotation
-    assert 0 < answer["error_bound"] < 1e-9
-    assert answer["data_version"] is None
+    result = get_response(client, method="solver").json()
+    expected = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
+    assert result["source"] == "solver"
+    assert result["peak_rotation"] == expected.peak_rotation
+    assert 0 < result["error_bound"] < 1e-9
+    assert result["data_version"] is None
 
 
 @pytest.mark.parametrize(
@@ -60,26 +60,26 @@ def test_a_response_from_the_solver_equals_the_solver(client):
     ids=["no cube of this restitution", "outside the cube", "no cube of this pulse", "too coarse"],
 )
 def test_auto_uses_the_solver_where_no_cube_applies(client, changes):
-    answer = ask(client, **changes).json()
-    assert answer["source"] == "solver"
-    asked = {key: value for key, value in (QUESTION | changes).items() if key not in ("pulse", "tolerance")}
-    assert answer["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **asked).peak_rotation
+    result = get_response(client, **changes).json()
+    assert result["source"] == "solver"
+    requested = {key: value for key, value in (QUERY | changes).items() if key not in ("pulse", "tolerance")}
+    assert result["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **requested).peak_rotation
 
 
 def test_overturned_has_no_peak_and_a_note(client):
-    answer = ask(client, slenderness=0.3, frequency_ratio=2.0).json()
-    assert answer["overturned"]
-    assert answer["peak_rotation"] is answer["error_bound"] is None
-    assert "overturns" in answer["note"]
+    result = get_response(client, slenderness=0.3, frequency_ratio=2.0).json()
+    assert result["overturned"]
+    assert result["peak_rotation"] is result["error_bound"] is None
+    assert "overturns" in result["note"]
 
 
 def test_above_slenderness_one_there_is_no_uplift(client):
-    answer = ask(client, slenderness=1.5, method="cube").json()
-    assert (answer["outcome"], answer["peak_rotation"], answer["error_bound"]) == ("NO_UPLIFT", 0.0, 0.0)
+    result = get_response(client, slenderness=1.5, method="cube").json()
+    assert (result["outcome"], result["peak_rotation"], result["error_bound"]) == ("NO_UPLIFT", 0.0, 0.0)
 
 
 def test_a_mirrored_pulse_has_the_same_response(client):
-    direct, mirrored = ask(client).json(), ask(client, pulse="-sine").json()
+    direct, mirrored = get_response(client).json(), get_response(client, pulse="-sine").json()
     assert mirrored["peak_rotation"] == direct["peak_rotation"]
     assert mirrored["source"] == "cube"
 
@@ -109,7 +109,7 @@ def test_a_mirrored_pulse_has_the_same_response(client):
     ],
 )
 def test_bad_input_names_parameter_value_and_range(client, changes, parameter):
-    problem = assert_problem(ask(client, **changes), 422, parameter)
+    problem = assert_problem(get_response(client, **changes), 422, parameter)
     value = next(iter(changes.values()))
     assert str(problem["value"]).startswith(str(value)) or float(problem["value"]) == value
 
@@ -129,13 +129,13 @@ TRUTH = [Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY, Outcome.NO_UPLIFT, Outcome.S
 
 def test_a_json_batch_equals_single_requests(client):
     body = {"pulse": "sine"} | {name: values.tolist() for name, values in BATCH.items()}
-    answer = client.post("/v1/response", json=body).json()
-    assert answer["query"]["points"] == 4
+    result = client.post("/v1/response", json=body).json()
+    assert result["query"]["points"] == 4
     for k in range(4):
-        single = ask(client, **{name: values[k] for name, values in BATCH.items()}).json()
+        single = get_response(client, **{name: values[k] for name, values in BATCH.items()}).json()
         for name in ("peak_rotation", "overturned", "outcome", "impacts", "exceeded_alpha", "error_bound", "source"):
-            assert answer[name][k] == single[name]
-    assert answer["data_versions"] == [ask(client).json()["data_version"]]
+            assert result[name][k] == single[name]
+    assert result["data_versions"] == [get_response(client).json()["data_version"]]
 
 
 def test_numbers_broadcast_against_arrays(client):
@@ -147,14 +147,14 @@ def test_numbers_broadcast_against_arrays(client):
 
 def test_csv_batch(client):
     lines = [",".join(BATCH), *(",".join(map(repr, map(float, row))) for row in zip(*BATCH.values(), strict=True))]
-    answer = client.post(
+    result = client.post(
         "/v1/response",
         params={"pulse": "sine", "tolerance": 1e-3},
         content="\r\n".join(lines),
         headers={"content-type": "text/csv"},
     )
-    assert answer.headers["content-type"].startswith("text/csv")
-    header, *rows = [line.split(",") for line in answer.text.splitlines()]
+    assert result.headers["content-type"].startswith("text/csv")
+    header, *rows = [line.split(",") for line in result.text.splitlines()]
     assert [row[header.index("outcome")] for row in rows] == [outcome.name for outcome in TRUTH]
     assert rows[1][header.index("peak_rotation")] == ""
     assert float(rows[0][header.index("error_bound")]) <= 1e-3
@@ -162,28 +162,28 @@ def test_csv_batch(client):
 
 def test_netcdf_batch_in_and_out(client):
     grid = xr.Dataset(coords={"slenderness": [0.5, 0.6, 1.5], "frequency_ratio": [5.0, 6.0]})
-    answer = client.post(
+    result = client.post(
         "/v1/response",
         params={"pulse": "sine", "restitution": 0.85},
         content=bytes(grid.to_netcdf(engine="scipy")),
         headers={"content-type": "application/x-netcdf"},
     )
-    assert answer.headers["content-type"] == "application/x-netcdf"
-    found = xr.open_dataset(io.BytesIO(answer.content), engine="scipy").load()
-    truth = peak_response(
+    assert result.headers["content-type"] == "application/x-netcdf"
+    found = xr.open_dataset(io.BytesIO(result.content), engine="scipy").load()
+    expected = peak_response(
         "sine", slenderness=found.slenderness, frequency_ratio=found.frequency_ratio, restitution=0.85
     )
     assert found.sizes == {"point": 6}
-    np.testing.assert_array_equal(found.outcome, truth.outcome)
-    assert np.all(np.abs(found.peak_rotation - truth.peak_rotation) <= found.error_bound)
+    np.testing.assert_array_equal(found.outcome, expected.outcome)
+    assert np.all(np.abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound)
     assert found.attrs["pulse"] == "sine"
     assert found.outcome.attrs["flag_meanings"].split()[1] == "safe"
 
 
 def test_the_accept_header_selects_the_format(client):
     body = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
-    answer = client.post("/v1/response", json=body, headers={"accept": "text/csv;q=1, */*"})
-    assert answer.text.splitlines()[0].startswith("slenderness,frequency_ratio,restitution,peak_rotation")
+    result = client.post("/v1/response", json=body, headers={"accept": "text/csv;q=1, */*"})
+    assert result.text.splitlines()[0].startswith("slenderness,frequency_ratio,restitution,peak_rotation")
 
 
 def post(client, content, media_type, **parameters):
@@ -254,14 +254,14 @@ def test_other_methods_are_not_allowed(client):
     ],
 )
 def test_values_outside_the_ranges_of_the_service(client, changes, parameter):
-    assert_problem(ask(client, **changes), 422, parameter)
+    assert_problem(get_response(client, **changes), 422, parameter)
 
 
 @pytest.mark.parametrize("slenderness", [1e-9, 1e-4, 0.5, 0.9999999, 1.0, 1e300])
 @pytest.mark.parametrize("frequency_ratio", [1e-6, 0.05, 50.0, 1e6])
 @pytest.mark.parametrize("alpha_deg", [0.0, 1e-6, 89.9])
 def test_at_the_ends_of_the_ranges_every_request_has_a_response(client, slenderness, frequency_ratio, alpha_deg):
-    answer = ask(client, slenderness=slenderness, frequency_ratio=frequency_ratio, alpha_deg=alpha_deg)
-    assert answer.status_code == 200
-    found = answer.json()
+    result = get_response(client, slenderness=slenderness, frequency_ratio=frequency_ratio, alpha_deg=alpha_deg)
+    assert result.status_code == 200
+    found = result.json()
     assert found["overturned"] == (found["peak_rotation"] is None)

@@ -15,7 +15,7 @@ from rocking_api.settings import Settings
 from tests.api.conftest import assert_problem, client_of
 
 STATIC = Path(rocking_api.__file__).parent / "static"
-QUESTION = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 
 
 def health_of(client):
@@ -41,9 +41,9 @@ def test_without_results_the_solver_is_used_and_health_reports_it(tmp_path):
         health = health_of(client)
         assert health["status"] == "degraded"
         assert "make reproduce" in health["problems"]["spectra"]
-        assert client.get("/v1/response", params=QUESTION).json()["source"] == "solver"
+        assert client.get("/v1/response", params=QUERY).json()["source"] == "solver"
         assert client.get("/v1/datasets").json() == {"datasets": []}
-        assert_problem(client.get("/v1/response", params=QUESTION | {"method": "cube"}), 422, "restitution")
+        assert_problem(client.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "restitution")
 
 
 def test_with_a_damaged_cube_the_solver_is_used_and_health_reports_it(client, own_results):
@@ -51,18 +51,18 @@ def test_with_a_damaged_cube_the_solver_is_used_and_health_reports_it(client, ow
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
     with client_of(own_results) as damaged:
-        answer = damaged.get("/v1/response", params=QUESTION).json()
-        assert answer["source"] == "solver"
+        result = damaged.get("/v1/response", params=QUERY).json()
+        assert result["source"] == "solver"
         assert (
-            answer["peak_rotation"]
-            == client.get("/v1/response", params=QUESTION | {"method": "solver"}).json()["peak_rotation"]
+            result["peak_rotation"]
+            == client.get("/v1/response", params=QUERY | {"method": "solver"}).json()["peak_rotation"]
         )
         health = health_of(damaged)
         assert health["status"] == "degraded"
         assert "damaged" in health["problems"]["spectra/sine/eta-0.85"]
-        assert_problem(damaged.get("/v1/response", params=QUESTION | {"method": "cube"}), 503)
+        assert_problem(damaged.get("/v1/response", params=QUERY | {"method": "cube"}), 503)
         path.write_bytes(whole)  # repaired: detected without a restart
-        assert damaged.get("/v1/response", params=QUESTION).json()["source"] == "cube"
+        assert damaged.get("/v1/response", params=QUERY).json()["source"] == "cube"
         assert health_of(damaged)["status"] == "ok"
 
 
@@ -70,7 +70,7 @@ def test_a_cube_under_another_name_is_refused(own_results):
     own = own_results / "spectra"
     (own / "sine" / "eta-0.85.nc").write_bytes((own / "cosine" / "eta-0.90.nc").read_bytes())
     with client_of(own_results) as client:
-        assert client.get("/v1/response", params=QUESTION).json()["source"] == "solver"
+        assert client.get("/v1/response", params=QUERY).json()["source"] == "solver"
         assert "holds cosine" in health_of(client)["problems"]["spectra/sine/eta-0.85"]
 
 
@@ -131,15 +131,15 @@ def test_openapi_describes_every_route(client):
      "/static/explorer/main.js", "/v1/map?pulse=sine&restitution=0.85&columns=2&rows=2"],
 )  # fmt: skip
 def test_every_response_has_nosniff(client, path):
-    for answer in (client.get(path), client.head(path), client.get(path, headers={"if-none-match": "*"})):
-        assert answer.headers.get_list("x-content-type-options") == ["nosniff"]
+    for result in (client.get(path), client.head(path), client.get(path, headers={"if-none-match": "*"})):
+        assert result.headers.get_list("x-content-type-options") == ["nosniff"]
 
 
 @pytest.mark.parametrize("path", ["/", "/docs", "/static/explorer/main.js"])
-@pytest.mark.parametrize("asked", ["bytes=0-3", "bytes=5-2", "bytes=99999999-", "x"])
-def test_pages_ignore_ranges(client, path, asked):
-    answer = client.get(path, headers={"range": asked})
-    assert (answer.status_code, answer.content) == (200, client.get(path).content)
+@pytest.mark.parametrize("requested", ["bytes=0-3", "bytes=5-2", "bytes=99999999-", "x"])
+def test_pages_ignore_ranges(client, path, requested):
+    result = client.get(path, headers={"range": requested})
+    assert (result.status_code, result.content) == (200, client.get(path).content)
 
 
 def test_an_empty_name_of_the_results_is_refused(monkeypatch):
@@ -170,9 +170,9 @@ def test_an_internal_error_shows_no_details(results):
 
 def test_only_text_is_compressed(client):
     accept = {"accept-encoding": "gzip"}
-    question = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85}
-    assert client.get("/v1/spectrum", params=question, headers=accept).headers["content-encoding"] == "gzip"
-    netcdf = client.get("/v1/spectrum", params=question | {"format": "nc"}, headers=accept)
+    query = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85}
+    assert client.get("/v1/spectrum", params=query, headers=accept).headers["content-encoding"] == "gzip"
+    netcdf = client.get("/v1/spectrum", params=query | {"format": "nc"}, headers=accept)
     assert "content-encoding" not in netcdf.headers
 
 

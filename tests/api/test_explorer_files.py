@@ -48,13 +48,13 @@ def test_ids_are_there_and_unique():
     page = (STATIC / "index.html").read_text()
     ids = re.findall(r'\bid="([^"]+)"', page)
     assert len(ids) == len(set(ids))
-    asked = {name for path in SCRIPTS for name in re.findall(r'getElementById\("([^"]+)"\)', path.read_text())}
+    params = {name for path in SCRIPTS for name in re.findall(r'getElementById\("([^"]+)"\)', path.read_text())}
     named = {
         name
         for names in re.findall(r'\b(?:for|data-field|aria-labelledby|aria-describedby)="([^"]+)"', page)
         for name in names.split()
     }
-    assert asked | named <= set(ids)
+    assert params | named <= set(ids)
 
 
 def test_no_style_or_script_inside_the_page(client):

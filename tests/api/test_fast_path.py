@@ -19,9 +19,9 @@ def usual(results):
         yield client
 
 
-@pytest.mark.parametrize("question", QUESTIONS)
-def test_the_fast_path_has_the_same_response(client, usual, question):
-    short, long = (one.get("/v1/response", params=question) for one in (client, usual))
+@pytest.mark.parametrize("query", QUESTIONS)
+def test_the_fast_path_has_the_same_response(client, usual, query):
+    short, long = (one.get("/v1/response", params=query) for one in (client, usual))
     assert (short.status_code, short.content) == (long.status_code, long.content)
     assert {**short.headers, "x-request-id": ""} == {**long.headers, "x-request-id": ""}
 
@@ -34,16 +34,16 @@ def test_the_router_is_not_called_for_one_block(client, monkeypatch):
 
 @pytest.mark.parametrize("method", ["HEAD", "PUT", "DELETE", "OPTIONS"])
 def test_other_methods_are_refused_as_everywhere(client, method):
-    answer = client.request(method, "/v1/response", params=POINT)
-    assert answer.status_code == 405
-    assert answer.headers["allow"] == "GET, POST"
+    response = client.request(method, "/v1/response", params=POINT)
+    assert response.status_code == 405
+    assert response.headers["allow"] == "GET, POST"
 
 
 def test_other_origins_may_read_the_answer_if_they_are_allowed(results):
     with client_of(results, cors_origins=("https://a.example",)) as client:
-        answer = client.get("/v1/response", params=POINT, headers={"Origin": "https://a.example"})
+        response = client.get("/v1/response", params=POINT, headers={"Origin": "https://a.example"})
         refused = client.get("/v1/response", headers={"Origin": "https://a.example"})
-    assert answer.headers["access-control-allow-origin"] == "https://a.example"
-    assert "ETag" in answer.headers["access-control-expose-headers"]
+    assert response.headers["access-control-allow-origin"] == "https://a.example"
+    assert "ETag" in response.headers["access-control-expose-headers"]
     assert_problem(refused, 422)
     assert refused.headers["access-control-allow-origin"] == "https://a.example"

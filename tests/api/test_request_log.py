@@ -83,12 +83,12 @@ def test_an_error_leaves_its_traceback_and_its_id_in_the_log(results, caplog):
 
 
 def test_responses_may_be_stored_for_a_minute_and_are_revalidated(client):
-    answer = client.get("/v1/response", params=POINT)
-    assert answer.headers["cache-control"] == "max-age=60"
-    again = client.get("/v1/response", params=POINT, headers={"If-None-Match": answer.headers["etag"]})
+    response = client.get("/v1/response", params=POINT)
+    assert response.headers["cache-control"] == "max-age=60"
+    again = client.get("/v1/response", params=POINT, headers={"If-None-Match": response.headers["etag"]})
     assert (again.status_code, again.content) == (304, b"")
     other = client.get("/v1/response", params=POINT | {"slenderness": 0.61})
-    assert other.headers["etag"] != answer.headers["etag"]
+    assert other.headers["etag"] != response.headers["etag"]
     assert "etag" not in client.get("/v1/response").headers
 
 

@@ -38,7 +38,7 @@ ENTRIES = (
         sampling.sample_free_rocking,
     ),
     *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
-    lookup_kernel.interpolate_many,
+    *(lookup_kernel.group_points, lookup_kernel.interpolate_many),
 )
 
 

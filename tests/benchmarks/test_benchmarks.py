@@ -20,8 +20,9 @@ from benchmarks.baselines import runge_kutta
 from benchmarks.baselines.event_loop import SINE, respond
 from benchmarks.baselines.methods import compiled_peaks, package_peaks, python_peaks
 from benchmarks.baselines.scipy_ivp import integrate_flight
-from benchmarks.cost import stages, work_precision
+from benchmarks.cost import records, stages, work_precision
 from benchmarks.cost.equal_error import time_for
+from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.measure import accuracy
 from benchmarks.summary import page
 from rocking.lookup.open import open_cube
@@ -184,7 +185,7 @@ def test_interpolation_is_of_fourth_order_where_linear_is_of_second(tmp_path: Pa
     for path, _ in grid_size.build_cubes(tmp_path, config, (0.125, 0.5)):
         known, found = open_cube(path).interpolate(points, math.inf)
         errors.append(np.full(exact.size, np.nan))
-        errors[-1][known] = np.abs(found.peak_rotation - exact[known])
+        errors[-1][known] = np.abs(found.peak_rotation - exact)[known]
     both = ~np.isnan(errors).any(axis=0)
     coarse, fine = (np.median(error[both]) for error in errors)
     assert math.log2(coarse / fine) > 7.0  # one fourth of the spacing: 8 at order 4
@@ -267,3 +268,15 @@ def test_the_tolerance_benchmark_runs_and_draws(tmp_path: Path) -> None:
     assert record["cells"] == 1000
     assert len(record["tolerances"]) == 11
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_records_are_made_up_like_real_ones_and_dop853_agrees() -> None:
+    suite = made_up_suite(3)
+    assert [motion.samples for motion in suite] == [2000, 6000, 18000]
+    for alpha in (0.0, 0.25):
+        groups = {"frequency_parameter": 3.0, "slenderness": 0.7, "restitution": 0.6}
+        peak = float(rocking.record_response(suite[0], **groups, alpha=alpha).peak_rotation)
+        found = records.dop853_peak(suite[0], *groups.values(), alpha)
+        assert found == pytest.approx(peak, rel=1e-3)
+    share = records.stepped(suite[0], "slender", 4) / (16 * (suite[0].samples - 1))
+    assert 0.0 < share < 1.0

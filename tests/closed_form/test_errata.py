@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
+import rocking
 from rocking import closed_form as cf
 from rocking.errors import InvalidArgumentError
 from rocking.orientation import Orientation, quantity_of
@@ -138,6 +139,60 @@ def test_figure_8_restitutions():
     assert (len(text), len(caption)) == (9, 8)
     computed = yaml.safe_load(CONFIG.read_text())["restitution"]
     assert all(np.isclose(computed, eta).any() for eta in text)  # the text is right: the plot has nine curves
+
+
+def test_figure_3_caption_numerical_condition():
+    omega, eta = 1.5, 0.9
+    on_curve = float(cf.case_1_1_amplitudes(omega, eta).lower)
+    motion = integrate(on_curve, omega, eta)
+    (time,) = motion.impact_times
+    exact = cf.printed_rotation(on_curve, omega, time)  # (3.21)
+    printed = cf.ad_hoc_residual(on_curve, omega, time)  # (3.28), the approximation
+    assert exact == pytest.approx(0, abs=1e-8)
+    assert abs(printed) > 0.01
+
+
+def test_above_4_1_equation_that_is_multiplied():
+    a, omega, tau = 2.0, 3.0, 0.8
+    psi = float(cf.uplift_phase(a))
+    motion = integrate(a, omega, 0.9, end=psi + omega * tau)
+    # (4.1) has the sine and the forced constants, as (3.4) has; (3.5) is free rocking, without them
+    A0, B0, _ = cf.coefficients(a, omega)
+    free = (A0 * math.exp(-tau) + B0 * math.exp(tau)) / 2 - 1
+    forced = free + a / (omega**2 + 1) * math.sin(omega * tau + psi)
+    assert forced / a == pytest.approx(motion.rotation / a, rel=1e-8)
+    assert free / a != pytest.approx(motion.rotation / a, rel=0.1)
+
+
+def test_below_3_12_condition_that_takes_the_impact_time():
+    a, omega = 3.0, 4.0
+    time = float(cf.case_1_2_impact_time(a, omega))
+    velocity = float(cf.free_velocity(a, omega, time))  # left side of (3.17) with (3.13) inserted, over 2
+    assert velocity**2 == pytest.approx(float(cf.condition_3_18(a, omega)), rel=1e-12)  # becomes (3.18)
+    assert "time" not in inspect.signature(cf.condition_3_18).parameters  # which has no time of impact in it
+
+
+def test_section_6_figure_10_is_not_of_slender_blocks():
+    # in the slender formulation all angles would have one threshold; those of figure 10 differ
+    slender, rigid = (
+        rocking.critical_amplitude("sine", frequency_ratio=4.0, restitution=0.85, alpha=alpha).amplitude
+        for alpha in (None, math.radians(20))
+    )
+    assert np.all(np.abs(rigid / slender - 1) > 0.005)
+
+
+def test_section_7_small_rotations_are_not_exactly_self_similar():
+    alpha = np.radians([1e-4, 20.0])
+    tiny, large = (
+        rocking.peak_response("sine", slenderness=0.6, frequency_ratio=8.0, restitution=0.85, alpha=a).peak_rotation
+        * a
+        / np.sin(a)
+        for a in alpha
+    )
+    slender = float(rocking.peak_response("sine", slenderness=0.6, frequency_ratio=8.0, restitution=0.85).peak_rotation)
+    assert slender < 0.15  # small rotations
+    assert tiny == pytest.approx(slender, rel=1e-6)  # exact in the slender limit
+    assert 1e-4 < abs(large / slender - 1) < 0.05  # practically, not exactly, for other blocks
 
 
 def test_symbol_alpha_is_not_accepted_as_amplitude():

@@ -80,9 +80,15 @@ def test_cube_and_http_response(tmp_path):
     precompile.main()  # the service refuses requests while it compiles
     with TestClient(create_app(Settings(results=tmp_path))) as client:
         for method in ("solver", "auto"):
-            answer = client.get("/v1/response", params=GROUPS | {"pulse": "three_sines", "method": method})
-            assert answer.status_code == 200, answer.text
-            assert answer.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)
+            response = client.get("/v1/response", params=GROUPS | {"pulse": "three_sines", "method": method})
+            assert response.status_code == 200, response.text
+            assert response.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)
+        (parameter,) = (
+            one
+            for one in client.get("/openapi.json").json()["paths"]["/v1/response"]["get"]["parameters"]
+            if one["name"] == "pulse"
+        )
+        assert {"sine", "-sine", "three_sines", "-three_sines"} <= set(parameter["schema"]["enum"])
 
 
 def test_names_that_cannot_be_registered(pulse, monkeypatch):

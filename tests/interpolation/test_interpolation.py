@@ -2,21 +2,30 @@
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from rocking.errors import InvalidArgumentError
+from rocking.interpolation.kernel import group_points, pack_cells
 from rocking.interpolation.stencils import (
+    NO_STENCIL,
+    OVERTURNS,
     PEAK,
     SQUARED,
     STENCIL_SIZE,
     Mesh,
-    cell_index,
+    cell_of,
     interpolate_cells,
     interpolated_cells,
     lagrange_weight,
     lagrange_weights,
+    padded_weights,
     slice_index,
+    slice_products,
     slice_window,
 )
+from rocking.model.outcome import Outcome
+from rocking.model.outcome_code import overturning_code
 
 UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0.1])
 
@@ -78,11 +87,28 @@ def test_error_decreases_with_the_fourth_power_of_the_step_on_uneven_axes():
     assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-4.0, abs=0.3)
 
 
-def test_cell_index_inside_and_outside_of_the_axis():
-    np.testing.assert_array_equal(cell_index(UNEVEN, UNEVEN), [*range(11), 10])
-    np.testing.assert_array_equal(cell_index(UNEVEN, 0.5 * (UNEVEN[1:] + UNEVEN[:-1])), np.arange(11))
-    outside = [np.nextafter(UNEVEN[0], 0), np.nextafter(UNEVEN[-1], 9), -1.0, np.nan, np.inf]
-    np.testing.assert_array_equal(cell_index(UNEVEN, outside), -1)
+def cells_of(axis, values):
+    mesh = Mesh.of(axis, axis)
+    rows = [cell_of(mesh.rows, x, mesh.rows, x, mesh.row_guide) for x in values]
+    columns = [cell_of(mesh.frequency_ratio, x, mesh.columns, np.log(x), mesh.column_guide) for x in values]
+    assert rows == columns
+    return rows
+
+
+def test_cells_inside_and_outside_of_the_axis():
+    assert cells_of(UNEVEN, UNEVEN) == [*range(11), 10]
+    assert cells_of(UNEVEN, 0.5 * (UNEVEN[1:] + UNEVEN[:-1])) == list(range(11))
+    assert cells_of(UNEVEN, [np.nextafter(UNEVEN[0], 0), np.nextafter(UNEVEN[-1], 9), np.nan, np.inf]) == [-1] * 4
+
+
+@given(st.lists(st.floats(1e-9, 1e3), min_size=4, max_size=30), st.lists(st.floats(0.0, 1e4), min_size=1, max_size=20))
+def test_cells_are_those_of_a_binary_search(steps, fractions):
+    axis = 0.01 + np.cumsum(steps)
+    assume((np.diff(axis) > 0.0).all() and (np.diff(np.log(axis)) > 0.0).all())
+    values = np.concatenate([axis, np.nextafter(axis, 0.0), axis[0] + np.minimum(fractions, axis[-1] - axis[0])])
+    inside = values[(values >= axis[0]) & (values <= axis[-1])]
+    expected = np.minimum(np.searchsorted(axis, inside, side="right") - 1, axis.size - 2)
+    assert cells_of(axis, inside) == expected.tolist()
 
 
 def test_interpolated_cells_against_a_plain_loop():
@@ -118,6 +144,45 @@ def test_slices_are_interpolated_exactly_up_to_their_degree(count):
         weights = [lagrange_weight(slices, 2, count, k, x) for k in range(count)]
         found = np.dot(weights, slices[2 : 2 + count] ** (count - 1))
         assert found == pytest.approx(x ** (count - 1), rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 7])
+def test_weights_of_a_window_are_lagrange_weights_and_zero_above_it(count):
+    slices = np.sort(np.random.default_rng(4).uniform(0.5, 1.0, count))
+    products = slice_products(slices)
+    for lower in range(count - 1):
+        first, size = slice_window(count, lower)
+        x = 0.3 * slices[lower] + 0.7 * slices[lower + 1]
+        found = padded_weights(slices, products, first, size, x)
+        expected = [lagrange_weight(slices, first, size, k, x) if k < size else 0.0 for k in range(4)]
+        np.testing.assert_allclose(found, expected, rtol=1e-13)
+
+
+def test_points_are_grouped_by_the_slices_that_they_need():
+    rng = np.random.default_rng(6)
+    slices = np.array([0.80, 0.85, 0.90, 0.94])
+    eta = rng.permutation(np.concatenate([rng.uniform(0.75, 1.0, 500), rng.choice(slices, 100), [np.nan]]))
+    order, ends = np.full(eta.size, -1, dtype=np.int32), np.empty(8, dtype=np.int64)
+    group_points(eta, slices, order, ends)
+    below, on_slice = slice_index(slices, eta)
+    for group, start, end in zip(range(8), [0, *ends], ends, strict=False):
+        expected = np.flatnonzero((below == group // 2) & (on_slice == (group % 2 == 0)))
+        np.testing.assert_array_equal(order[start:end], expected)
+    assert ends[-1] == (below >= 0).sum()
+
+
+def test_record_of_a_cell_holds_its_stencil_outcome_impacts_and_errors():
+    impacts = np.array([[[1, 1, 2], [1, 1, 3], [5, 5, 5]]], dtype=np.int32)
+    outcome = np.full((1, 3, 3), int(Outcome.SAFE), dtype=np.int8)
+    outcome[0, 1, 1:] = int(Outcome.OVERTURNED_AFTER_IMPACT)
+    stencil = np.array([[[PEAK, SQUARED, -1], [NO_STENCIL, OVERTURNS, -1], [-1, -1, -1]]], dtype=np.int8)
+    errors = [np.arange(9, dtype=np.float32).reshape(1, 3, 3) + shift for shift in (0.0, 0.5, 0.25)]
+    cells = pack_cells(stencil, outcome, impacts, *errors)
+    assert cells.dtype.itemsize == 16
+    value = overturning_code(int(Outcome.OVERTURNED_AFTER_IMPACT), 1)
+    np.testing.assert_array_equal(cells["code"], [[[4 * (1 + 1) + PEAK, SQUARED], [-1, 4 * value + OVERTURNS]]])
+    for name, error in zip(("interpolation_error", "restitution_error", "alpha_error"), errors, strict=True):
+        np.testing.assert_array_equal(cells[name], error[:, :-1, :-1])
 
 
 def test_value_on_a_slice():

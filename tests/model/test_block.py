@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import InvalidArgumentError
-from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking.model.block import Block
 
 lengths = st.floats(1e-3, 1e3)
 

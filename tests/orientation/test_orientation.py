@@ -13,9 +13,12 @@ from rocking.orientation import (
     admissible_exponents,
     is_group,
     is_homogeneous,
+    is_homogeneous_equation,
     multiplication_table,
     orientation_of_function,
     quantity_of,
+    scaling_of_exponents,
+    terms_of_equation,
 )
 
 L0, LX, LY, LZ = Orientation
@@ -117,7 +120,18 @@ def test_proposed_groups_that_fail(group):
 
 @pytest.mark.parametrize(
     "expression",
-    ["", "theta+alpha", "mass*g", "exp(theta)", "theta**eta", "sin(g)", "theta(", "sin(theta, alpha)", "'theta'"],
+    [
+        "",
+        "theta+eta",
+        "theta - t",
+        "mass*g",
+        "exp(theta)",
+        "theta**eta",
+        "sin(g)",
+        "theta(",
+        "sin(theta, alpha)",
+        "'theta'",
+    ],
 )
 def test_expressions_that_are_no_product_are_rejected(expression):
     with pytest.raises(InvalidArgumentError, match="`expression`"):
@@ -134,3 +148,79 @@ def test_dimensional_analysis_alone_cannot_combine_the_groups():
     assert len(involved) == 6
     assert {quantity_of(name).length for name in involved} == {0}  # only time is left, [T]
     assert set(VARIABLES) >= {"theta", "alpha", "p", "a_g", "g", "omega_g", "eta"}
+
+
+def test_lengths_of_the_block_are_consistent():
+    for equation in ("b = R*sin(alpha)", "h = R*cos(alpha)", "tan(alpha) = b/h", "I = 4/3*m*R**2", "p**2 = 3*g/(4*R)"):
+        assert is_homogeneous_equation(equation), equation
+    assert not is_homogeneous_equation("b = R*cos(alpha)")
+    assert not is_homogeneous_equation("h = b")
+
+
+@pytest.mark.parametrize(
+    ("equation", "count"),
+    [
+        ("I*theta/t**2 + m*g*R*sin(alpha - theta) = -m*a_g*R*cos(alpha - theta)", 3),  # (2.1), theta > 0
+        ("I*theta/t**2 + m*g*R*sin(-alpha - theta) = -m*a_g*R*cos(-alpha - theta)", 3),  # (2.1), theta < 0
+        ("theta/t**2/p**2 = -sin(alpha*sgn(theta) - theta) - a_g/g*cos(alpha*sgn(theta) - theta)", 3),  # (2.2)
+        ("theta/t**2 - p**2*theta + p**2*alpha*sgn(theta) = -p**2*a_g/g", 4),  # (3.1)
+        (
+            "theta/t**2/p**2 + cos(alpha)*((a_g/g*tan(alpha) - 1)*sin(theta) + (tan(alpha) + a_g/g)*cos(theta)) = 0",
+            2,
+        ),  # (5.1), theta > 0
+        (
+            "theta/t**2/p**2 - cos(alpha)*((a_g/g*tan(alpha) + 1)*sin(theta) + (tan(alpha) - a_g/g)*cos(theta)) = 0",
+            2,
+        ),  # (5.1), theta < 0, corrected
+    ],
+    ids=["(2.1) +", "(2.1) -", "(2.2)", "(3.1)", "(5.1) +", "(5.1) -"],
+)
+def test_terms_of_the_equations_of_motion_have_one_orientation(equation, count):
+    terms = terms_of_equation(equation)
+    assert len(terms) == count
+    assert is_homogeneous_equation(equation)
+    assert {quantity.orientation for quantity in terms.values()} == {LZ}
+
+
+@pytest.mark.parametrize(
+    "equation",
+    [
+        "theta/t**2/p**2 = -sin(alpha) - a_g/g*sin(alpha)",  # sin for cos: l_0
+        "theta/t**2 - p**2*theta = -p**2*a_g",  # without g: another dimension and orientation
+        "I*theta/t**2 = -m*g*b*sin(alpha)",  # b for R
+        "theta/t**2 = -p*a_g/g",  # p for p squared
+    ],
+)
+def test_wrong_equations_are_not_homogeneous(equation):
+    assert not is_homogeneous_equation(equation)
+
+
+def test_sum_of_different_orientations_inside_a_product_is_rejected():
+    with pytest.raises(InvalidArgumentError, match="one orientation"):
+        quantity_of("cos(alpha)*(1 + alpha)")
+    with pytest.raises(InvalidArgumentError, match="two sides"):
+        terms_of_equation("theta")
+
+
+def test_even_powers_pass_the_test_of_a_group_although_no_group_of_rocking():
+    # the limit of the method that the module docstring states: (4.5) removes the orientation of even powers
+    for group in ("alpha**2", "theta*alpha**2*g/a_g", "theta*alpha"):
+        assert is_group(group)
+    # the equation of motion tells them apart: scaled with alpha**2 its terms differ
+    assert is_homogeneous_equation("theta/t**2/p**2 = alpha*sgn(theta)")
+    assert not is_homogeneous_equation("theta/t**2/p**2 = alpha**2*sgn(theta)")
+
+
+def test_exponents_of_the_paper_give_its_groups():
+    by_block = scaling_of_exponents({"a_g/g": 1, "alpha": -2})
+    assert (by_block.scale, by_block.group) == (
+        "alpha",
+        {"a_g/g": 1, "alpha": -1},
+    )  # (4.10): theta/alpha, a_g/(g alpha)
+    by_pulse = scaling_of_exponents({"a_g/g": -2, "alpha": 1})
+    assert (by_pulse.scale, by_pulse.group) == ("a_g/g", {"a_g/g": -1, "alpha": 1})  # (4.11): theta g/a_g, g alpha/a_g
+    for scaling in (by_block, by_pulse):
+        assert is_group(f"theta/({scaling.scale})")
+        assert is_group("*".join(f"({name})**{exponent}" for name, exponent in scaling.group.items()))
+    with pytest.raises(InvalidArgumentError, match="sum is 1 or -1"):
+        scaling_of_exponents({"a_g/g": 3, "alpha": 0})

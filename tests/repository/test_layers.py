@@ -18,14 +18,14 @@ LAYERS = (
     ("benchmarks",),
     ("api/rocking_api", "rocking/cli", "workflow"),
     ("rocking/precompile",),
-    ("rocking/lookup",),
+    ("rocking/lookup", "rocking/suites", "rocking/dimensional"),
     ("rocking/spectra",),
     ("rocking/datasets",),
     ("rocking/boundary", "rocking/history", "rocking/interpolation"),
     ("rocking/solver", "rocking/closed_form", "rocking/groups"),
     ("rocking/model", "rocking/excitation", "rocking/orientation"),
     ("rocking/_numba",),
-    ("rocking/errors", "rocking/version"),
+    ("rocking/errors", "rocking/constants", "rocking/version"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as in pyproject.toml

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -11,93 +10,86 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
-from rocking.closed_form import case_1_2_peak_by_pulse
-from rocking.datasets.cube import read_spectrum
+from rocking.closed_form import case_1_2_peak_by_pulse, limit_amplitude
+from workflow.figures.spectrum_curves import Block, curve_variables, rows_of
 from workflow.figures.style import WIDTH, panel_letters, plotted, shades
 
-DASHED = {"color": "black", "linestyle": (0, (2, 3)), "linewidth": 0.6}
+PULSES = ("sine", "cosine")
+
+EXACT = 1e-9
+"""Relative difference up to which (4.13) and the solver are considered equal [-]."""
+
+HOLDS = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 0.7}
+APPROXIMATE = {"color": "black", "linestyle": (0, (1, 2)), "linewidth": 0.7}
 
 
 def data(
-    *,
-    sine: Sequence[Path],
-    cosine: Sequence[Path],
-    restitution: Sequence[float],
-    slenderness: Sequence[float],
-    frequency_ratio: Mapping[str, float],
+    *, restitution: Sequence[float], slenderness: Sequence[float], frequency_ratio: Mapping[str, float]
 ) -> xr.Dataset:
-    """Rows of the spectrum cubes, in the groups of (4.11): g theta_max/a_g over omega.
+    """Spectra in the groups of (4.11), g theta_max/a_g over omega, sampled with the solver up to their ends.
 
     Parameters
     ----------
-    sine, cosine : sequences of paths
-        Spectrum cubes, one for each restitution.
     restitution : sequence
         eta [-].
     slenderness : sequence
-        1/a [-], one row of panels each; nodes of the cubes.
+        1/a [-], one row of panels each.
     frequency_ratio : mapping
         low and high [-] of what is shown.
     """
-    found = xr.concat(
-        [xr.concat([_rows(path, slenderness) for path in paths], dim="restitution") for paths in (sine, cosine)],
-        dim="pulse",
+    blocks = [Block(pulse, s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
+    # theta/alpha times 1/a is g theta/a_g
+    curves = xr.Dataset(curve_variables(blocks, frequency_ratio, [block.slenderness for block in blocks]))
+    names = ("pulse", "slenderness", "restitution")
+    pulse, s, eta = (np.repeat(curves[f"curve_{name}"].values, curves.row_size.values) for name in names)
+    omega, peak = curves.frequency_ratio.values, curves.spectrum.values
+    closed = np.where(pulse == PULSES.index("sine"), case_1_2_peak_by_pulse(1 / s, omega, eta), np.nan)
+    follows = 1 / s > limit_amplitude(omega)  # the first impact follows the pulse, (3.31)
+    holds = follows & (np.abs(closed / peak - 1) < EXACT)
+    curves["closed_form"] = plotted("point", closed, "g theta_max/a_g of the sine in closed form", equation="4.13")
+    curves["closed_form_holds"] = plotted("point", holds.astype(np.int8), "whether it is the peak of the response")
+    curves["first_impact_follows_pulse"] = plotted(
+        "point", follows.astype(np.int8), "whether the first impact follows the sine", equation="3.31"
     )
-    omega = found.frequency_ratio.values
-    found = found[..., (omega >= frequency_ratio["low"]) & (omega <= frequency_ratio["high"])]
-    s, omega, eta = np.array(slenderness), found.frequency_ratio.values, np.array(restitution)
-    dims = ("restitution", "slenderness", "frequency_ratio")
-    closed = case_1_2_peak_by_pulse(1 / s[:, None], omega, eta[:, None, None])
-    spectra = found.values * s[:, None]  # theta/alpha times 1/a is g theta/a_g
-    return xr.Dataset(
-        {
-            "spectrum": plotted(("pulse", *dims), spectra, "g theta_max/a_g", equation="4.11"),
-            "closed_form": plotted(dims, closed, "g theta_max/a_g of the sine in closed form", equation="4.13"),
-        },
-        coords={
-            "restitution": plotted("restitution", eta, "coefficient of restitution"),
-            "slenderness": plotted("slenderness", s, "dimensionless slenderness g alpha/a_g"),
-            "frequency_ratio": plotted("frequency_ratio", omega, "frequency ratio omega_g/p"),
-        },
-        attrs={
-            "title": "Self-similar rocking spectra",
-            "summary": "Peak rotation over the whole response, free rocking included; missing if overturned.",
-            "pulse_names": "sine cosine",
-        },
-    )
-
-
-def _rows(path: Path, slenderness: Sequence[float]) -> xr.DataArray:
-    cube = read_spectrum(path).sel(alpha=0.0)
-    return cube.peak_rotation.sel(slenderness=list(slenderness), method="nearest", tolerance=1e-9).drop_vars(
-        ["alpha", "pulse"]
+    return curves.assign_attrs(
+        title="Self-similar rocking spectra",
+        summary="Peak rotation over the whole response, free rocking included. Each curve ends at the boundary of "
+        "overturning or at the edge of the panel.",
+        pulse_names=" ".join(PULSES),
+        window=[frequency_ratio["low"], frequency_ratio["high"]],
     )
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Rows: slenderness; columns: sine, with (4.13) dashed, and cosine."""
-    figure = Figure(figsize=(WIDTH, 6.4))
-    axes = figure.subplots(data.slenderness.size, 2, sharex=True, sharey="row", squeeze=False)
-    eta, omega = data.restitution.values, data.frequency_ratio.values
+    """Rows: slenderness; columns: sine, with (4.13), and cosine."""
+    rows, eta = np.unique(data.curve_slenderness), np.unique(data.curve_restitution)
+    figure = Figure(figsize=(WIDTH, 0.7 + 1.9 * rows.size))
+    axes = figure.subplots(rows.size, 2, sharex=True, sharey="row", squeeze=False)
     colours = shades(eta.size)
-    for row, s in zip(axes, data.slenderness.values, strict=True):
+    for row, s in zip(axes, rows, strict=True):
         for i, (ax, pulse) in enumerate(zip(row, data.attrs["pulse_names"].split(), strict=True)):
             for colour, one in zip(colours, eta, strict=True):
-                place = {"slenderness": s, "restitution": one}
-                ax.plot(omega, data.spectrum[i].sel(place), color=colour, linewidth=0.9)
-                if pulse == "sine":
-                    ax.plot(omega, data.closed_form.sel(place), **DASHED)
+                for curve in rows_of(data, pulse=i, slenderness=s, restitution=one):
+                    ax.plot(curve.frequency_ratio, curve.spectrum, color=colour, linewidth=0.9)
+                    ax.plot(curve.frequency_ratio, curve.closed_form.where(curve.closed_form_holds == 1), **HOLDS)
+                    during = curve.first_impact_follows_pulse == 0
+                    ax.plot(curve.frequency_ratio, curve.closed_form.where(during), **APPROXIMATE)
+            ax.set_title(rf"{pulse}, $g\alpha/a_g={s:.2f}$", loc="right")
+            ax.axhline(s, color="#999999", linewidth=0.5, zorder=0)
             ax.text(
-                0.98, 0.96, rf"{pulse}, $g\alpha/a_g={s:.2f}$", transform=ax.transAxes, ha="right", va="top"
+                0.995, s, r"$\theta_{\max}=\alpha$", transform=ax.get_yaxis_transform(), ha="right", va="bottom",
+                fontsize=6.5, color="#555555",
             )  # fmt: skip
         row[0].set_ylabel(r"$g\,\theta_{\max}/a_g$ [-]")
-        row[0].set_ylim(0, 1.15 * float(data.spectrum.sel(slenderness=s).max()))
+        shown = np.isin(np.repeat(data.curve_slenderness.values, data.row_size.values), s)
+        row[0].set_ylim(0, 1.08 * float(data.spectrum.values[shown].max()))
     for ax in axes[-1]:
         ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
-        ax.set_xlim(omega[0], omega[-1])
+        ax.set_xlim(data.attrs["window"])
     axes[0, 0].plot([], [], color=colours[eta.size // 2], label="solved event by event")
-    axes[0, 0].plot([], [], label="closed form (4.13)", **DASHED)
-    axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.9))
+    axes[0, 0].plot([], [], label="(4.13), exact", **HOLDS)
+    axes[0, 0].plot([], [], label="(4.13), approximate", **APPROXIMATE)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     steps = np.diff(eta, prepend=2 * eta[0] - eta[1] if eta.size > 1 else eta[0] - 0.02)
     norm = BoundaryNorm([*(eta - steps / 2), eta[-1] + steps[-1] / 2], eta.size)
     bar = figure.colorbar(ScalarMappable(norm, ListedColormap(colours)), ax=axes, ticks=eta, aspect=40, pad=0.01)

@@ -3,62 +3,67 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.datasets.cube import read_spectrum
+from workflow.figures.spectrum_curves import Block, curve_variables, peaks, rows_of
 from workflow.figures.style import BLACK, WIDTH, panel_letters, plotted, shades
+
+PULSES = ("sine", "cosine")
+
+LARGEST_DIFFERENCE = 10.0
+"""Largest difference to the slender block that the lower panels show [%]."""
 
 
 def data(
     *,
-    sine: Path,
-    cosine: Path,
     restitution: float,
     slenderness: Sequence[float],
+    alpha_deg: Sequence[float],
     frequency_ratio: Mapping[str, float],
 ) -> xr.Dataset:
-    """Rows of the spectrum cubes at all their angles: g theta_max/(a_g cos alpha) over omega.
+    """Spectra of each angle and of the slender limit, g theta_max/(a_g cos alpha) over omega, up to their ends.
 
     Parameters
     ----------
-    sine, cosine : path
-        Spectrum cubes of this restitution.
     restitution : float
         eta [-].
     slenderness : sequence
-        g tan(alpha)/a_g [-], one row of panels each; nodes of the cubes.
+        g tan(alpha)/a_g [-], one row of panels each.
+    alpha_deg : sequence
+        Slenderness angles [deg].
     frequency_ratio : mapping
         low and high [-] of what is shown.
     """
-    rows = xr.concat([_rows(path, slenderness) for path in (sine, cosine)], dim="pulse")
-    omega = rows.frequency_ratio.values
-    rows = rows[..., (omega >= frequency_ratio["low"]) & (omega <= frequency_ratio["high"])]
-    alpha, s = rows.alpha.values, np.array(slenderness)
-    return xr.Dataset(
-        {
-            "spectrum": plotted(
-                ("pulse", "alpha", "slenderness", "frequency_ratio"),
-                rows.values * s[:, None] * scale_of(alpha)[:, None, None],
-                "g theta_max/(a_g cos alpha)",
-                equation="6.1",
-                comment="missing where the block overturns",
-            ),
-        },
-        coords={
-            "alpha": plotted("alpha", alpha, "slenderness angle, 0 for the slender limit", units="rad"),
-            "slenderness": plotted("slenderness", s, "dimensionless slenderness g tan(alpha)/a_g"),
-            "frequency_ratio": plotted("frequency_ratio", rows.frequency_ratio.values, "frequency ratio omega_g/p"),
-        },
-        attrs={
-            "title": "Rocking spectra of blocks of several slenderness angles",
-            "summary": "Peak rotation over the whole response in the groups of (6.1).",
-            "pulse_names": "sine cosine",
-            "restitution": restitution,
-        },
+    angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
+    blocks = [Block(pulse, s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]
+    scale = [block.slenderness * float(scale_of(np.array(block.alpha))) for block in blocks]
+    curves = xr.Dataset(curve_variables(blocks, frequency_ratio, scale))
+    slender = [
+        curve_slenderness * peaks(Block(PULSES[pulse], curve_slenderness, restitution), omega)
+        for pulse, curve_slenderness, omega in zip(
+            curves.curve_pulse.values,
+            curves.curve_slenderness.values,
+            np.split(curves.frequency_ratio.values, np.cumsum(curves.row_size.values)[:-1]),
+            strict=True,
+        )
+    ]
+    curves["slender_spectrum"] = plotted(
+        "point",
+        np.concatenate(slender),
+        "g theta_max/a_g of the slender block",
+        comment="missing where it overturns",
+    )
+    return curves.assign_attrs(
+        title="Rocking spectra of blocks of several slenderness angles",
+        summary="Peak rotation over the whole response in the groups of (6.1). Each curve ends at the boundary of "
+        "overturning or at the edge of the panel.",
+        pulse_names=" ".join(PULSES),
+        window=[frequency_ratio["low"], frequency_ratio["high"]],
+        restitution=restitution,
     )
 
 
@@ -67,35 +72,38 @@ def scale_of(alpha: np.ndarray) -> np.ndarray:
     return 1 / np.sinc(alpha / np.pi)
 
 
-def _rows(path: Path, slenderness: Sequence[float]) -> xr.DataArray:
-    cube = read_spectrum(path)
-    return cube.peak_rotation.sel(slenderness=list(slenderness), method="nearest", tolerance=1e-9).drop_vars("pulse")
-
-
 def draw(data: xr.Dataset) -> Figure:
-    """Rows: slenderness; columns: pulses; a line for each angle, the slender limit in black."""
-    figure = Figure(figsize=(WIDTH, 0.9 + 1.7 * data.slenderness.size))
-    axes = figure.subplots(data.slenderness.size, 2, sharex=True, sharey="row", squeeze=False)
-    omega, angles = data.frequency_ratio.values, data.alpha.values
-    for row, s in zip(axes, data.slenderness.values, strict=True):
-        for i, (ax, pulse) in enumerate(zip(row, data.attrs["pulse_names"].split(), strict=True)):
-            for colour, alpha in zip([BLACK, *shades(angles.size - 1)], angles, strict=True):
-                slender = alpha == 0.0
-                ax.plot(
-                    omega,
-                    data.spectrum[i].sel(slenderness=s, alpha=alpha),
-                    color=colour,
-                    linewidth=1.6 if slender else 0.9,
-                    label="slender limit" if slender else rf"$\alpha={np.degrees(alpha):.0f}$°",
-                )
-            ax.text(
-                0.98, 0.96, rf"{pulse}, $g\tan\alpha/a_g={s:.2f}$", transform=ax.transAxes, ha="right", va="top"
-            )  # fmt: skip
-        row[0].set_ylabel(r"$g\,\theta_{\max}/(a_g\cos\alpha)$ [-]")
-        row[0].set_ylim(0, 1.15 * float(data.spectrum.sel(slenderness=s).max()))
+    """Rows: slenderness; columns: pulses; a line for each angle, and below it its difference to the slender block."""
+    rows = np.unique(data.curve_slenderness)
+    figure = Figure(figsize=(WIDTH, 0.8 + 1.95 * rows.size))
+    axes = figure.subplots(2 * rows.size, 2, sharex=True, sharey="row", squeeze=False, height_ratios=[2, 1] * rows.size)
+    for (row, below), s in zip(axes.reshape(-1, 2, 2), rows, strict=True):
+        for i, (ax, difference) in enumerate(zip(row, below, strict=True)):
+            _panel(ax, difference, data, i, s)
+            ax.set_title(rf"{data.attrs['pulse_names'].split()[i]}, $g\tan\alpha/a_g={s:.2f}$", loc="right")
+        row[0].set_ylabel("$g\\,\\theta_{\\max}/(a_g\\cos\\alpha)$")
+        below[0].set_ylabel("differ-\nence [%]")
+        shown = np.isin(np.repeat(data.curve_slenderness.values, data.row_size.values), s)
+        row[0].set_ylim(0, 1.08 * float(data.spectrum.values[shown].max()))
+        below[0].set_ylim(-LARGEST_DIFFERENCE, LARGEST_DIFFERENCE)
     for ax in axes[-1]:
         ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
-        ax.set_xlim(omega[0], omega[-1])
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=angles.size)
-    panel_letters(axes.ravel())
+        ax.set_xlim(data.attrs["window"])
+    figure.align_ylabels(axes[:, 0])
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    first = dict(zip(labels, handles, strict=True))  # a curve of several branches has several handles
+    figure.legend(first.values(), first.keys(), loc="outside upper center", ncols=len(first))
+    panel_letters(axes[::2].ravel())
     return figure
+
+
+def _panel(ax: Axes, difference: Axes, data: xr.Dataset, pulse: int, slenderness: float) -> None:
+    angles = np.unique(data.curve_alpha)
+    for colour, alpha in zip([BLACK, *shades(angles.size - 1)], angles, strict=True):
+        slender = alpha == 0.0
+        for curve in rows_of(data, pulse=pulse, slenderness=slenderness, alpha=alpha):
+            style = {"color": colour, "linewidth": 1.6 if slender else 0.9}
+            label = "slender limit" if slender else rf"$\alpha={np.degrees(alpha):.0f}$°"
+            ax.plot(curve.frequency_ratio, curve.spectrum, label=label, **style)
+            relative = 100 * (curve.spectrum / curve.slender_spectrum - 1)
+            difference.plot(curve.frequency_ratio, relative, **style)

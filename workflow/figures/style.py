@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from string import ascii_lowercase
 from typing import Any
 
 import matplotlib as mpl
@@ -47,7 +48,7 @@ def shades(count: int) -> list[Any]:
 
 def panel_letters(axes: Sequence[Axes]) -> None:
     """(a), (b), ... above the top left corner of each panel."""
-    for letter, ax in zip("abcdefghijkl", axes, strict=False):
+    for letter, ax in zip(ascii_lowercase, axes, strict=False):
         ax.set_title(f"({letter})", loc="left", fontweight="bold")
 
 

@@ -1,5 +1,6 @@
-# Definitions for all rules: file names, and digests by which Snakemake detects products that are out of date.
+# Definitions for all rules, and digests by which Snakemake detects products that are out of date.
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -9,6 +10,7 @@ sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
 from rocking.datasets.provenance import code_digest, settings_digest
+from rocking.suites.configuration import suite_configuration
 from workflow import records
 from workflow.configuration import ConfigurationError, check, restitutions
 from workflow.run_lock import RUN_ID, RunningError, acquire
@@ -17,27 +19,15 @@ from snakemake.exceptions import WorkflowError
 
 os.environ[RUN_ID] = str(os.getpid())  # the jobs end with this process
 
+CONFIG_FOLDER = Path(workflow.configfiles[0]).parent  # folders in a configuration are relative to it
+
 try:
-    check(config)
+    check(config, CONFIG_FOLDER)
 except ConfigurationError as error:
     sys.exit(f"Configuration refused: {error}")  # one line; WorkflowError would add where in this file it was raised
 
-ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
-PULSES = config["pulses"]
 PRODUCTS = {}  # path -> rule and digests, for the manifest
-
-
-wildcard_constraints:
-    pulse="[a-z0-9_]+",
-    eta=r"[01]\.[0-9]{2}",
-
-
-def spectrum_files(pulse, etas):
-    return [f"results/spectra/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
-
-
-def overturning_files(pulse, etas):
-    return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+FINISHED = []  # files of a complete run
 
 
 def record_of(job):

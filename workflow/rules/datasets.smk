@@ -1,6 +1,23 @@
 # Spectrum cubes and overturning boundaries: one job per pulse makes the files of all its coefficients of restitution,
 # because starting Python and loading the compiled solver takes longer than filling a cube. These jobs have priority, as
 # figures and claims depend on them.
+ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
+PULSES = config["pulses"]
+
+
+wildcard_constraints:
+    pulse="[a-z0-9_]+",
+    eta=r"[01]\.[0-9]{2}",
+
+
+def spectrum_files(pulse, etas):
+    return [f"results/spectra/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+
+
+def overturning_files(pulse, etas):
+    return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+
+
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",

@@ -2,18 +2,17 @@
 _figures = config["figures"]
 FIGURE_INPUTS = {
     "figure-04": {"boundaries": overturning_files("sine", restitutions(config, "figure-04"))},
-    "figure-08": {pulse: spectrum_files(pulse, restitutions(config, "figure-08")) for pulse in ("sine", "cosine")},
     "figure-09": {
         "boundaries": [overturning_files(pulse, restitutions(config, "figure-09"))[0] for pulse in ("sine", "cosine")]
     },
-    "figure-10": {
-        pulse: overturning_files(pulse, restitutions(config, "figure-10"))[0] for pulse in ("sine", "cosine")
+    **{
+        figure: {pulse: overturning_files(pulse, restitutions(config, figure))[0] for pulse in ("sine", "cosine")}
+        for figure in ("figure-10", "figure-master-spectra")
     },
-    "figure-13": {pulse: spectrum_files(pulse, restitutions(config, "figure-13"))[0] for pulse in ("sine", "cosine")},
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
-READ_BY_CLAIMS = ["figure-06", "figure-09", "figure-11", "figure-12"]
+READ_BY_CLAIMS = ["figure-06", "figure-09", "figure-11", "figure-12", "figure-master-spectra", "figure-master-housner"]
 
 for _figure, _files in FIGURES.items():
     _name = _figure.replace("-", "_")

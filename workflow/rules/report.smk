@@ -9,6 +9,8 @@ rule claims:
         collapse="results/figures/figure-06.nc",
         similar_blocks="results/figures/figure-09.nc",
         histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
+        master="results/figures/figure-master-spectra.nc",
+        housner="results/figures/figure-master-housner.nc",
     output:
         **CLAIM_FILES,
         record=record_of("claims"),
@@ -71,3 +73,6 @@ rule check_results:
         "Testing the finished products"
     script:
         "../scripts/check_results.py"
+
+
+FINISHED += [*rules.manifest.input, *rules.manifest.output, *rules.check_results.output]

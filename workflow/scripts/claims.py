@@ -1,15 +1,19 @@
-"""Checks each quantitative claim of the paper and writes the table of verdicts."""
+"""Checks each quantitative claim of the paper and writes the tables of verdicts and of misprints."""
 
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from rocking.boundary.curves import curves_at
+from rocking.closed_form import limit_amplitude
 from rocking.datasets.cube import read_dataset, read_spectrum
 from workflow.claims import boundaries as curves
 from workflow.claims import impact_times, non_slender, similarity, small_rotations, spectra
-from workflow.claims.claim import Claim
+from workflow.claims.claim import ABOUT, CLOSE, FAIR, PART, SAME, SMALL, VERDICTS, Claim, percent
+from workflow.claims.misprints import MISPRINTS
 from workflow.scripts.job import run
 
 
@@ -20,6 +24,8 @@ def main(
     collapse: Path,
     similar_blocks: Path,
     histories: Sequence[Path],
+    master: Path,
+    housner: Path,
     restitution: Sequence[float],
     table: Path,
     text: Path,
@@ -37,6 +43,8 @@ def main(
         Plotted data of figure 9.
     histories : sequence of paths
         Plotted data of figures 11 and 12.
+    master, housner : path
+        Plotted data of figure-master-spectra and figure-master-housner.
     restitution : sequence
         eta [-] at which the closed forms are compared with each other.
     table, text : path
@@ -44,53 +52,117 @@ def main(
     provenance : mapping
         Digests of the code and settings.
     """
-    traced = [curves_at(read_dataset(path), 0.0) for path in boundaries]  # these claims are about slender blocks
-    filled = [read_spectrum(path) for path in cubes]
     two_blocks = read_dataset(similar_blocks)
     pulses, eta = two_blocks.attrs["pulse_names"].split(), float(two_blocks.attrs["restitution"])  # of sections 5 and 6
     claims = [
-        *curves.exact_curves(traced),
-        *curves.completeness(filled),
-        *curves.limit(),
-        *curves.transcription(),
-        *impact_times.exact_impact(),
-        *impact_times.ad_hoc(restitution),
-        *impact_times.end_of_case_1_1(restitution),
-        *similarity.orientation(),
-        *similarity.collapse(read_dataset(collapse)),
-        *spectra.closed_form(filled),
-        *spectra.no_real_root(restitution),
-        *spectra.leading_term(),
-        *spectra.scale_law(filled),
-        *spectra.period(),
-        *non_slender.expanded_equation(),
-        *non_slender.uplift(eta),
+        *section_3([*boundaries], [*cubes], restitution),
+        *section_4([*cubes], collapse),
+        *non_slender.uplift(*non_slender.uplifts()),
         *non_slender.collapse(two_blocks),
-        *non_slender.dependence_on_alpha(eta),
-        *non_slender.convergence(eta),
-        *small_rotations.practical_similarity(pulses, eta),
-        *small_rotations.larger_slenderness(pulses, eta),
-        *small_rotations.histories([read_dataset(path) for path in histories]),
-        *small_rotations.pure_rocking(pulses, eta),
+        *non_slender.dependence_on_alpha(non_slender.threshold_cases(eta)),
+        *non_slender.tip_of_the_loop(non_slender.tips(eta)),
+        *non_slender.convergence(non_slender.distances_from_closed_forms(eta)),
+        *section_6(pulses, eta, histories),
+        *small_rotations.twofold_effect(read_dataset(master), read_dataset(housner)),
     ]
-    content = {"claims": [claim.record() for claim in claims], **provenance}
+    content = {
+        "claims": [claim.record() for claim in claims],
+        "misprints": [misprint.record() for misprint in MISPRINTS],
+        **provenance,
+    }
     table.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     text.write_text(as_markdown(claims), encoding="utf-8")
 
 
+def section_3(boundaries: Sequence[Path], cubes: Sequence[Path], restitution: Sequence[float]) -> Iterator[Claim]:
+    """Overturning of the slender block."""
+    yield from curves.exact_curves([curves_at(read_dataset(path), 0.0) for path in boundaries])
+    yield from curves.completeness([read_spectrum(path) for path in cubes])
+    yield from curves.limit_separates(*curves.sides_of_limit())
+    omega = np.linspace(2.0, 12.0, 201)
+    yield from curves.limit_value(omega, 1 / limit_amplitude(omega))
+    yield from curves.overturning_in_free_rocking(curves.time_near_equilibrium(restitution))
+    yield from impact_times.exact_impact(impact_times.impacts_after_pulse())
+    yield from impact_times.other_root(impact_times.other_roots())
+    on_curve = impact_times.case_1_1_curve(restitution)
+    yield from impact_times.impact_about_one(on_curve)
+    yield from impact_times.ad_hoc_function(impact_times.expansion_errors())
+    yield from impact_times.approximate_time(on_curve)
+    yield from impact_times.smallest_solutions(on_curve)
+    yield from impact_times.end_of_case_1_1(*impact_times.ends_of_case_1_1())
+
+
+def section_4(cubes: Sequence[Path], collapse: Path) -> Iterator[Claim]:
+    """Orientation, self-similarity and the spectra of the slender block."""
+    yield from similarity.table(similarity.computed_table())
+    yield from similarity.homogeneous_equations(similarity.equation_tests())
+    yield from similarity.odd_exponents(similarity.homogeneous_pairs())
+    yield from similarity.exponents_give_groups(similarity.scalings())
+    yield from similarity.groups(similarity.group_tests())
+    yield from similarity.collapse(read_dataset(collapse))
+    yield from similarity.any_excitation(similarity.histories_of_pulses())
+    of_sine = spectra.spectra_of([read_spectrum(path) for path in cubes])
+    for judge in (
+        spectra.closed_form,
+        spectra.peak_after_pulse,
+        spectra.approximation_near_limit,
+        spectra.no_real_root,
+        spectra.scale_law,
+        spectra.damping,
+    ):
+        yield from judge(of_sine)
+    yield from spectra.leading_term(spectra.slow_impacts())
+    yield from spectra.period(spectra.swings())
+
+
+def section_6(pulses: Sequence[str], restitution: float, histories: Sequence[Path]) -> Iterator[Claim]:
+    """The groups of (6.1)."""
+    spreads = small_rotations.spreads(pulses, restitution)
+    yield from small_rotations.practical_similarity(spreads)
+    yield from small_rotations.larger_slenderness(spreads)
+    yield from small_rotations.histories([read_dataset(path) for path in histories])
+    yield from small_rotations.pure_rocking(small_rotations.contacts(pulses, restitution))
+
+
+WORDS = f"""\
+Each claim has a criterion, stated without looking at the result. The words of the paper are taken to mean, as relative
+differences: "exact", "equal", "collapse": {SAME:.0e}; "coincides": {percent(CLOSE)}; "small", "weak", "practically",
+"accurate", "excellent": {percent(SMALL)}; "satisfactory": {percent(FAIR)}; "about": {percent(ABOUT)}. Verdict:
+"{VERDICTS[0]}" if all of what was tested meets the criterion, "{VERDICTS[1]}" if {percent(PART)} or more of it
+does, else "{VERDICTS[2]}". "Solver" is the event-by-event solution of this package. a = a_g/(g alpha), or
+a_g/(g tan alpha) for blocks that are not slender; omega = omega_g/p; eta: coefficient of restitution."""
+
+INTRODUCTION = """\
+These are slips of notation or printing, not of physics; what is said above is said of the right forms. The tests are in
+the repository."""
+
+
 def as_markdown(claims: Sequence[Claim]) -> str:
-    """The table of claims, one row each, with the count of each verdict above it."""
+    """The table of claims, one row each, with the count of each verdict above it, and the table of misprints."""
     counts = Counter(claim.verdict for claim in claims)
     lines = [
         "# Claims of the paper",
         "",
-        ", ".join(f"{verdict}: {count}" for verdict, count in sorted(counts.items())) + ".",
+        ", ".join(f"{verdict}: {counts[verdict]}" for verdict in VERDICTS) + ".",
         "",
-        "| place | paper | found | verdict |",
+        *WORDS.splitlines(),
+        "",
+        "| place | the paper says | criterion | found | verdict |",
+        "|---|---|---|---|---|",
+        *(
+            f"| {claim.place} | {claim.printed} | {claim.criterion} | {claim.found} | {claim.verdict} |"
+            for claim in claims
+        ),
+        "",
+        "# Misprints of the paper",
+        "",
+        *INTRODUCTION.splitlines(),
+        "",
+        "| place | printed | right | shown by |",
         "|---|---|---|---|",
-        *(f"| {claim.place} | {claim.printed} | {claim.found} | {claim.verdict} |" for claim in claims),
+        *(misprint.row() for misprint in MISPRINTS),
     ]
-    return "\n".join(line.replace("|tau - 1|", "abs(tau - 1)") for line in lines) + "\n"
+    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

@@ -16,6 +16,9 @@ from rocking.datasets.cube import AXES, MODEL_RESULT, VARIABLES, describe, scala
 from rocking.model.response import Outcome
 from workflow.scripts.job import run
 
+RESOLUTIONS = ("chord_error", "thinnest_region", "thinnest_uncounted_region", "end_distance", "node_distance")
+"""Attributes of `overturning_boundary` of which a file states the largest."""
+
 
 def main(
     *,
@@ -49,8 +52,7 @@ def curves_of(pulse: str, restitution: Sequence[float], alpha_deg: float, **wind
 def accuracy_of(parts: Sequence[xr.Dataset]) -> dict[str, Any]:
     """What the tracing states of its accuracy, over all angles: see `overturning_boundary`."""
     return {
-        "chord_error": max(part.chord_error for part in parts),
-        "thinnest_region": max(part.thinnest_region for part in parts),
+        **{name: max(part.attrs[name] for part in parts) for name in RESOLUTIONS},
         "unmeasured_chords": sum(part.unmeasured_chords for part in parts),
         "open_ends": sum(part.open_ends for part in parts),
     }
@@ -69,7 +71,10 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
         f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}. "
         "Largest distance of a chord from its curve: chord_error; width in 1/a below which regions are not resolved: "
-        "thinnest_region; ends of regions that are known to a step of the grid only: open_ends.",
+        "thinnest_region, and thinnest_uncounted_region where blocks overturn after many impacts; distance in log "
+        "omega within which the ends of the latter are known: end_distance; largest distance of the nodes in 1/a, "
+        "below which a region can be missed: node_distance; ends of regions that are known to a step of the grid "
+        "only: open_ends.",
         history="rocking.boundary.tracing.overturning_boundaries",
         id=f"overturning/{pulse}/eta-{restitution:.2f}",
     )

@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.lookup.collection import CubeCollection
+from rocking.model.checks import check
 from rocking.model.fields import BOUNDED_FIELDS, SOURCE
 from rocking.solver.bounded_response import BoundedResponse
-from rocking_api.models.params import LookupOptions, alpha_of, checked
+from rocking_api.models.params import FREQUENCY_RATIO, SLENDERNESS, LookupOptions, alpha_of
 
 CHUNK_SIZE = 50_000
 """Points between two checks of the stop flag [-]: some hundredths of a second."""
@@ -68,8 +69,8 @@ def evaluate(
     """
     return cubes.response(
         options.pulse,
-        slenderness=checked("slenderness", slenderness),
-        frequency_ratio=checked("frequency_ratio", frequency_ratio),
+        slenderness=check(SLENDERNESS, slenderness),
+        frequency_ratio=check(FREQUENCY_RATIO, frequency_ratio),
         restitution=restitution,
         alpha=alpha_of(options.alpha_deg),
         tolerance=options.tolerance,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -15,17 +14,15 @@ import xarray as xr
 from fastapi import Request, Response
 from numpy.typing import NDArray
 
+from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_stream, dataset_of, json_stream, netcdf_response
 from rocking_api.http.errors import SlowBodyError, TooLargeError, UnsupportedBodyError
 from rocking_api.http.memory_budget import Reservation
+from rocking_api.http.number_columns import GROUPS, Columns, check_columns, cut_arrays, parse_array, parse_csv
 from rocking_api.models.params import BatchParams, LookupOptions, check_value
 from rocking_api.models.responses import VERSION, columns_of
-
-_CHARACTER = re.compile(rb"\S")
-
-GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ async def limited_body(request: Request, limit: int, seconds: float, reservation
     return body.getvalue()
 
 
-def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_points: int) -> Batch:
+def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_points: int, stop: StopFlag) -> Batch:
     """Parse a batch. JSON holds everything; for the other formats, options and missing groups are query parameters.
 
     Raises
@@ -101,15 +98,15 @@ def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_point
         If JSON does not fit `BatchParams`.
     TooLargeError
         For more than `max_points` points.
+    StoppedError
+        If `stop` was set.
     """
     if form == "json":
         for name, value in parameters.items():
             raise InvalidArgumentError(name, value, "no parameters in the URL; a JSON body holds them all")
-        params = BatchParams.model_validate_json(body)
-        columns = {name: np.atleast_1d(np.array(getattr(params, name), dtype=np.float64)) for name in GROUPS}
-        options = LookupOptions(**{name: getattr(params, name) for name in LookupOptions.model_fields})
+        columns, options = _read_json(body, max_points, stop)
     else:
-        columns = _read_csv(body) if form == "csv" else _read_netcdf(body, max_points)
+        columns = parse_csv(body, max_points, stop) if form == "csv" else _read_netcdf(body, max_points)
         given = {name: value for name, value in parameters.items() if name != "format"}
         for name in GROUPS:
             if name in given:
@@ -140,25 +137,20 @@ def _number(name: str, text: str) -> float:
         raise InvalidArgumentError(name, text, "a number") from None
 
 
-def _read_csv(body: bytes) -> dict[str, NDArray[np.float64]]:
-    """Decode line by line: the whole text would take five times the memory of the body."""
-    lines = io.TextIOWrapper(io.BytesIO(body), encoding="utf-8-sig", newline="\n")
-    try:
-        names = [name.strip() for name in lines.readline().split(",")]
-        _check_columns(names)
-        has_rows = b"\n" in body and _CHARACTER.search(body, body.index(b"\n")) is not None
-        table = np.loadtxt(lines, delimiter=",", ndmin=2, comments=None) if has_rows else np.empty((0, len(names)))
-    except InvalidArgumentError:
-        raise
-    except ValueError as error:  # UnicodeDecodeError among them
-        allowed = "CSV: a header line, then numbers separated by commas"
-        raise InvalidArgumentError("body", str(error), allowed) from None
-    if table.shape[1] != len(names):
-        raise InvalidArgumentError("body", f"{table.shape[1]} columns", f"{len(names)}, as in the header line")
-    return dict(zip(names, table.T, strict=True))
+def _read_json(body: bytes, max_points: int, stop: StopFlag) -> tuple[Columns, LookupOptions]:
+    rest, arrays = cut_arrays(body)
+    params = BatchParams.model_validate_json(rest)
+    columns = {}
+    for name in GROUPS:
+        value = getattr(params, name)
+        if value == [] and name in arrays:
+            columns[name] = parse_array(name, body, arrays[name], max_points, stop)
+        else:
+            columns[name] = np.atleast_1d(np.array(value, dtype=np.float64))
+    return columns, LookupOptions(**{name: getattr(params, name) for name in LookupOptions.model_fields})
 
 
-def _read_netcdf(body: bytes, max_points: int) -> dict[str, NDArray[np.float64]]:
+def _read_netcdf(body: bytes, max_points: int) -> Columns:
     """Variables of any dimensions broadcast by dimension name; points follow in C order of the dimensions."""
     if not body.startswith((b"CDF\x01", b"CDF\x02")):
         raise InvalidArgumentError("body", repr(body[:4]), "netCDF-3, as written by Dataset.to_netcdf(engine='scipy')")
@@ -169,17 +161,11 @@ def _read_netcdf(body: bytes, max_points: int) -> dict[str, NDArray[np.float64]]
         columns = [dataset[name].astype(np.float64) for name in names]
     except Exception as error:  # noqa: BLE001  (whatever scipy and xarray meet in a damaged file)
         raise InvalidArgumentError("body", repr(error)[:100], "an undamaged netCDF-3 file of numbers") from None
-    _check_columns(names)
+    check_columns(names)
     points = math.prod(dataset.sizes.values())
     if points > max_points:  # before broadcasting
         raise TooLargeError("points", points, f"at most {max_points}")
     return {str(column.name): np.ravel(column.values) for column in xr.broadcast(*columns)}
-
-
-def _check_columns(names: list[str]) -> None:
-    for name in names:
-        if name not in GROUPS or names.count(name) > 1:
-            raise InvalidArgumentError("body", name, "columns " + ", ".join(GROUPS) + ", each at most once")
 
 
 def batch_response(batch: Batch, result: BatchResult, form: Form) -> Response:

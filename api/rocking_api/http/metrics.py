@@ -41,6 +41,7 @@ class Metrics:
         self._points = Counter(
             "rocking_points", "Blocks computed, by a data set or by the solver.", ["source"], registry=self.registry
         )
+        self._source = cache(self._points.labels)
         running = Gauge("rocking_heavy_running", "Requests of heavy work being computed.", registry=self.registry)
         waiting = Gauge("rocking_heavy_waiting", "Requests of heavy work that wait.", registry=self.registry)
         running.set_function(lambda: executor.running)
@@ -55,7 +56,7 @@ class Metrics:
     def points(self, source: str, count: int) -> None:
         """Count blocks by source, "cube" or "solver"."""
         if count:
-            self._points.labels(source).inc(count)
+            self._source(source).inc(count)
 
     def text(self) -> bytes:
         """In the text format of Prometheus."""

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
+from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
-from rocking.model.block import STANDARD_GRAVITY
 from rocking_api.models.params import Method, Params, PulseName, Tolerance, check_value
 from rocking_api.models.responses import VERSION, PointResponse
 
@@ -22,7 +22,8 @@ RANGES = {
 """Ranges of the service, far outside of practice, within which all numbers are representable as doubles."""
 
 
-def _quantity(name: str, text: str, **more: Any) -> Any:
+def quantity(name: str, text: str, **more: Any) -> Any:
+    """The field of a quantity with its range."""
     low, high, unit = RANGES[name]
     return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
 
@@ -42,12 +43,12 @@ class BlockParams(Params):
     """A block and a pulse in SI units."""
 
     pulse: PulseName
-    half_width: float = _quantity("half_width", "b; the base is 2b wide", examples=[0.2])
-    half_height: float = _quantity("half_height", "h", examples=[0.8])
-    peak_acceleration: float = _quantity("peak_acceleration", "a_g", examples=[4.0])
-    pulse_period: float = _quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
+    half_width: float = quantity("half_width", "b; the base is 2b wide", examples=[0.2])
+    half_height: float = quantity("half_height", "h", examples=[0.8])
+    peak_acceleration: float = quantity("peak_acceleration", "a_g", examples=[4.0])
+    pulse_period: float = quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
     restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
-    gravity: float = _quantity("gravity", "g", default=STANDARD_GRAVITY)
+    gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
     tolerance: Tolerance = 1e-4
 

@@ -8,53 +8,59 @@ from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking.errors import in_range
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_names
+from rocking.model import parameters
 from rocking.model.checks import check
-from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking.model.parameters import RESTITUTION, Parameter
 
-PULSES = [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)]
-_KNOWN = frozenset(PULSES)
+# Ranges of the service, far outside of practice and inside those of the library: searches around a point, and points
+# shifted by rounding for the error bound, stay in the latter.
+SLENDERNESS = parameters.SLENDERNESS.restricted(1e-9, math.inf)
+FREQUENCY_RATIO = parameters.FREQUENCY_RATIO.restricted(1e-6, 1e6)
+ALPHA_DEG = parameters.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
-# Ranges of the service, far outside of practice: beyond them the numbers of the solver leave the range of doubles.
-MIN_SLENDERNESS = 1e-9
-FREQUENCY_RATIO_RANGE = (1e-6, 1e6)
-MIN_ALPHA_DEG = 1e-6
-MAX_ALPHA_DEG = 89.9
+_KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
+"""Names that need no look at the registered pulses."""
 
 MAX_DURATION = 1e9
 """Duration of a history, tau = p t [-]."""
 
+
+def limits(parameter: Parameter) -> dict[str, Any]:
+    """The range of a parameter as keywords of JSON schema."""
+    schema = {}
+    if math.isfinite(parameter.lower):
+        schema["minimum" if parameter.closed in ("both", "left") else "exclusiveMinimum"] = parameter.lower
+    if math.isfinite(parameter.upper):
+        schema["maximum" if parameter.closed in ("both", "right") else "exclusiveMaximum"] = parameter.upper
+    return schema
+
+
+def _list_pulses(schema: dict[str, Any]) -> None:
+    """Add the names of all pulses, those that were registered until the schema is made among them."""
+    names = pulse_names()
+    schema["enum"] = [*names, *(f"-{name}" for name in names)]
+
+
 PulseName = Annotated[
-    str,
-    Field(description="pulse; a leading minus mirrors it", examples=["sine"], json_schema_extra={"enum": [*PULSES]}),
+    str, Field(description="pulse; a leading minus mirrors it", examples=["sine"], json_schema_extra=_list_pulses)
 ]
 Slenderness = Annotated[
     float,
     Field(
         description=f"{SLENDERNESS.help}; from 1 on the block does not uplift",
         examples=[0.4],
-        json_schema_extra={"minimum": MIN_SLENDERNESS},
+        json_schema_extra=limits(SLENDERNESS),
     ),
 ]
 FrequencyRatio = Annotated[
-    float,
-    Field(
-        description=FREQUENCY_RATIO.help,
-        examples=[5.0],
-        json_schema_extra={"minimum": FREQUENCY_RATIO_RANGE[0], "maximum": FREQUENCY_RATIO_RANGE[1]},
-    ),
+    float, Field(description=FREQUENCY_RATIO.help, examples=[5.0], json_schema_extra=limits(FREQUENCY_RATIO))
 ]
 Restitution = Annotated[
-    float,
-    Field(
-        description=RESTITUTION.help,
-        examples=[0.85],
-        json_schema_extra={"minimum": RESTITUTION.lower, "maximum": RESTITUTION.upper},
-    ),
+    float, Field(description=RESTITUTION.help, examples=[0.85], json_schema_extra=limits(RESTITUTION))
 ]
 AlphaDeg = Annotated[
     float | None,
@@ -154,36 +160,21 @@ class HistoryParams(Params):
     format: Format = None
 
 
-def checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """A slenderness or a frequency ratio within the range of the service.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If one is outside.
-    """
-    if name == "slenderness":
-        return in_range(name, value, MIN_SLENDERNESS, np.inf, closed="left")
-    return in_range(name, value, *FREQUENCY_RATIO_RANGE)
-
-
 def alpha_of(alpha_deg: float | None) -> float | None:
     """Slenderness angle [rad], None for the slender limit.
 
     Raises
     ------
     InvalidArgumentError
-        If it is neither 0 nor in [1e-6, 89.9] degrees.
+        If it is neither 0 nor in the range of `ALPHA_DEG`.
     """
-    if not alpha_deg:
-        return None
-    return math.radians(float(in_range("alpha_deg", alpha_deg, MIN_ALPHA_DEG, MAX_ALPHA_DEG, unit="deg")))
+    return math.radians(float(check(ALPHA_DEG, alpha_deg))) if alpha_deg else None
 
 
 _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": get_pulse,
-    "slenderness": partial(checked, "slenderness"),
-    "frequency_ratio": partial(checked, "frequency_ratio"),
+    "slenderness": partial(check, SLENDERNESS),
+    "frequency_ratio": partial(check, FREQUENCY_RATIO),
     "restitution": partial(check, RESTITUTION),
     "alpha_deg": alpha_of,
     "tolerance": partial(in_range, "tolerance", low=0.0, high=np.inf, closed="left"),
@@ -219,10 +210,9 @@ def check_point(params: ResponseParams) -> None:
     """
     if params.pulse not in _KNOWN:
         get_pulse(params.pulse)
-    lowest, highest = FREQUENCY_RATIO_RANGE
-    if not MIN_SLENDERNESS <= params.slenderness < math.inf:
-        checked("slenderness", params.slenderness)
-    if not lowest <= params.frequency_ratio <= highest:
-        checked("frequency_ratio", params.frequency_ratio)
+    if not SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper:
+        check(SLENDERNESS, params.slenderness)
+    if not FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper:
+        check(FREQUENCY_RATIO, params.frequency_ratio)
     if not RESTITUTION.lower <= params.restitution <= RESTITUTION.upper:
         check(RESTITUTION, params.restitution)

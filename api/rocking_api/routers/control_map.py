@@ -14,6 +14,7 @@ from pydantic import BaseModel, Field
 from rocking._numba.cancellation import StopFlag
 from rocking.datasets.cube import AXES, MODEL_RESULT, VARIABLES
 from rocking.errors import in_range
+from rocking.model.checks import check_window
 from rocking.model.response import Response as Found
 from rocking.solver.peak_response import peak_response
 from rocking_api.http.caching import not_modified
@@ -21,8 +22,8 @@ from rocking_api.http.encoding import CONTENT, csv_response, json_response, nego
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import (
-    FREQUENCY_RATIO_RANGE,
-    MIN_SLENDERNESS,
+    FREQUENCY_RATIO,
+    SLENDERNESS,
     AlphaDeg,
     Format,
     FrequencyRatio,
@@ -132,11 +133,8 @@ def _map(
 
 def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The columns and the rows, within the ranges of the service."""
-    least, most = FREQUENCY_RATIO_RANGE
-    left = float(in_range("frequency_ratio_min", params.frequency_ratio_min, least, most))
-    right = float(in_range("frequency_ratio_max", params.frequency_ratio_max, left, most, closed="right"))
-    low = float(in_range("slenderness_min", params.slenderness_min, MIN_SLENDERNESS, np.inf, closed="left"))
-    high = float(in_range("slenderness_max", params.slenderness_max, low, np.inf, closed="neither"))
+    left, right = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
+    low, high = check_window(SLENDERNESS, params.slenderness_min, params.slenderness_max)
     in_range("columns", params.columns, 2, np.inf, closed="left")
     in_range("rows", params.rows, 2, np.inf, closed="left")
     if params.columns * params.rows > service.settings.max_samples:

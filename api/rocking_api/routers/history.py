@@ -51,11 +51,12 @@ def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:
     reactions: dict[str, Any] = {name: motion[name].values.tolist() for name in COLUMNS if params.contact}
     if form == "csv":
         return csv_response(columns | reactions, "history")
-    contact = _contact(motion, reactions) if params.contact else None
+    contact = contact_response(motion, reactions) if params.contact else None
     return json_response(_answer(params, motion, columns, contact))
 
 
-def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
+def contact_response(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
+    """Reactions of a motion, by sample, and their extremes."""
     fields: dict[str, Any] = {name: [finite(value) for value in column] for name, column in reactions.items()}
     fields |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES}
     return ContactResponse.model_construct(

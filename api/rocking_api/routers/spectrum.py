@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
+from rocking.model.checks import check_window
 from rocking_api.execution.evaluation import evaluate_many
 from rocking_api.http.encoding import CONTENT, csv_stream, dataset_of, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
-from rocking_api.models.params import FREQUENCY_RATIO_RANGE, SpectrumParams
+from rocking_api.models.params import FREQUENCY_RATIO, SpectrumParams
 from rocking_api.models.responses import SpectrumResponse, columns_of
 from rocking_api.service import Service, ServiceDep
 
@@ -35,9 +36,7 @@ async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Requ
 
 def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
     """The frequency ratios of the curve, within the range of the service."""
-    smallest, largest = FREQUENCY_RATIO_RANGE
-    low = float(in_range("frequency_ratio_min", params.frequency_ratio_min, smallest, largest))
-    high = float(in_range("frequency_ratio_max", params.frequency_ratio_max, low, largest, closed="right"))
+    low, high = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
     in_range("points", params.points, 2, np.inf, closed="left")
     if params.points > service.settings.max_samples:
         raise TooLargeError("points", params.points, f"at most {service.settings.max_samples}")

@@ -26,9 +26,9 @@ def query(page: Page):
     return {name: values[0] for name, values in parse_qs(urlparse(page.url).query).items()}
 
 
-def pixels(page: Page, canvas):
+def pixels(page: Page, selector):
     """Red, green, blue of a canvas, 0 to 255, shape (height, width, 3)."""
-    url = page.evaluate("id => document.getElementById(id).toDataURL()", canvas)
+    url = page.evaluate("selector => document.querySelector(selector).toDataURL()", selector)
     image = imread(io.BytesIO(base64.b64decode(url.partition(",")[2])))
     return np.rint(255 * image[..., :3])
 

@@ -84,7 +84,7 @@ def test_every_frame_shows_the_map_of_the_controls(open_page, service):
     expect_drawn(page, "half_sine")
     assert time.monotonic() - started < 5.0
     page.locator("#eta").fill("0.9")
-    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.drawn).restitution === 0.9")
+    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.drawn ?? '{}').restitution === 0.9")
     service.seconds = 0.0
     settle(page)
     assert page.evaluate("stale") == []
@@ -95,14 +95,14 @@ def test_the_fine_map_follows_the_coarse_one_of_a_slow_server(open_page, service
     page = open_page()
     settle(page)
     service.seconds = 0.7
-    asked = []
-    page.on("request", lambda request: asked.append(request) if "/v1/map" in request.url else None)
+    requests = []
+    page.on("request", lambda request: requests.append(request) if "/v1/map" in request.url else None)
     set_pulse(page, "cosine")
     expect_drawn(page, "cosine")
     service.seconds = 0.0
     settle(page)
-    assert [re.search(r"columns=(\d+)", request.url)[1] for request in asked] == ["120", "400"]
-    assert [request.failure for request in asked] == [None, None]
+    assert [re.search(r"columns=(\d+)", request.url)[1] for request in requests] == ["120", "400"]
+    assert [request.failure for request in requests] == [None, None]
 
 
 def test_outdated_views_are_cleared_if_the_server_hangs(open_page, service):

@@ -10,7 +10,7 @@ from tests.api.explorer.reading import BLOCK, POINT, pixels, place_of, query, se
 def test_the_map_shows_the_outcomes_of_the_solver(open_page):
     page = open_page()
     settle(page)
-    picture = pixels(page, "map")
+    picture = pixels(page, "#map")
     points = [(8.0, 0.6), (3.0, 0.95), (11.0, 0.3), (3.0, 0.5), (1.0, 0.3), (6.0, 0.12)]
     shown = [picture[round(place["y"]), round(place["x"])] for place in (place_of(page, *point) for point in points)]
     found = [rocking.peak_response("sine", frequency_ratio=w, slenderness=s, restitution=0.85) for w, s in points]
@@ -28,12 +28,14 @@ def test_the_map_shows_the_outcomes_of_the_solver(open_page):
 def test_another_restitution_gives_other_curves(open_page):
     page = open_page()
     settle(page)
-    before = pixels(page, "map")
+    before = pixels(page, "#map")
     page.locator("#eta").fill("0.9")
-    page.wait_for_function("() => JSON.parse(document.getElementById('map').dataset.curves).restitution === 0.9")
+    page.wait_for_function(
+        "() => JSON.parse(document.getElementById('map').dataset.curves ?? '{}').restitution === 0.9"
+    )
     settle(page)
     assert query(page)["restitution"] == "0.9"
-    changed = (pixels(page, "map") != before).any(axis=-1).mean()
+    changed = (pixels(page, "#map") != before).any(axis=-1).mean()
     assert 0.005 < changed < 0.9
     page.go_back()
     expect(page.locator("#eta-value")).to_have_text("0.85")
@@ -48,8 +50,8 @@ def test_a_click_opens_the_history_of_that_block(open_page):
     chosen = {name: float(query(page)[name]) for name in ("frequency_ratio", "slenderness")}
     assert chosen["frequency_ratio"] == pytest.approx(6.0, rel=0.01)
     assert chosen["slenderness"] == pytest.approx(0.4, abs=0.005)
-    truth = rocking.peak_response("sine", **chosen, restitution=0.85)
-    expect(page.locator("#map-readout")).to_contain_text(f"{float(truth.peak_rotation):.4f} α")
+    expected = rocking.peak_response("sine", **chosen, restitution=0.85)
+    expect(page.locator("#map-readout")).to_contain_text(f"{float(expected.peak_rotation):.4f} α")
     expect(page.locator("#motion-caption")).to_contain_text("It survives (comes to rest)")
     page.go_back()
     expect(page.locator("#rotation")).to_be_hidden()
@@ -93,5 +95,5 @@ def test_it_fits_a_phone_in_light_and_dark(open_page, path, scheme):
     page = open_page(path, viewport={"width": 360, "height": 740}, color_scheme=scheme)
     settle(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
-    brightness = pixels(page, "map")[3, 3].mean()  # a corner outside the frame
+    brightness = pixels(page, "#map")[3, 3].mean()  # a corner outside the frame
     assert brightness > 200 if scheme == "light" else brightness < 60

@@ -60,7 +60,7 @@ def test_the_drawn_block_has_the_angle_of_the_history(open_page):
             share * end,
         )
         angle = float(page.locator("#stage").get_attribute("data-angle"))
-        rows, columns = np.nonzero((pixels(page, "stage") == STONE).all(axis=-1))
+        rows, columns = np.nonzero((pixels(page, "#stage") == STONE).all(axis=-1))
         _, across, _, up = np.cov(columns, -rows).ravel()
         # of a rectangle turned clockwise: covariance (h^2 - b^2)/3 sin cos, variance upwards (h^2 cos^2 + b^2 sin^2)/3
         b, h = np.tan(np.radians(20)), 1.0

@@ -52,5 +52,5 @@ export function responseLabel(found) {
   if (found.outcome === "NO_UPLIFT") return outcome;
   const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
   const beyond = found.exceeded_alpha ? "; it exceeds α" : "";
-  return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${beyond}`;
+  return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)} during the pulse${beyond}`;
 }

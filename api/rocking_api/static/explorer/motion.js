@@ -12,6 +12,7 @@ import { OUTCOMES, number } from "./labels.js";
 
 const section = document.getElementById("motion");
 const caption = document.getElementById("motion-caption");
+const chartsCaption = document.getElementById("charts-caption");
 const clock = document.getElementById("clock");
 const containers = [document.getElementById("rotation"), document.getElementById("acceleration-chart")];
 
@@ -59,6 +60,7 @@ function show(history, scenario) {
   drawCharts(history, units, Boolean(size));
   const notes = [validityNote(scenario), `It ${OUTCOMES[history.outcome]}.`].filter(Boolean);
   if (!(alpha_deg > 0)) notes.push(`The slender limit has no shape; drawn with α = ${number((alpha * 180) / Math.PI)}°.`);
+  if (history.outcome === "SAFE" && history.rotation.at(-1) !== 0) notes.push("The time history ends before it is at rest.");
   if (history.overturned) notes.push("The end of the overturning is drawn without ground motion.");
   caption.textContent = notes.join(" ");
   const tell = (tau) => {
@@ -82,13 +84,23 @@ function drawCharts(history, units, dimensional) {
   charts = [
     line(containers[0], 220, [axis(null, { size: 24 }), axis(names[1], SMALL)], [time, rotation], marks),
     line(containers[1], 150, [axis(names[0], { size: 26 }), axis(names[2], SMALL)], [time, acceleration], {
-      draw: [(u) => drawLines(u, [-units.ground, units.ground])],
+      draw: [(u) => drawLines(u, [-units.ground, units.ground]), () => (chartsCaption.textContent = lineNames(units))],
     }),
   ];
   for (const one of charts) {
     one.over.addEventListener("click", (event) => seek(one.posToVal(event.offsetX, "x") / units.time));
     one.hooks.setSize = [repeat];
   }
+}
+
+/** What the marks of the charts are; only those within the axes. */
+function lineNames(units) {
+  const visible = ({ scales }, height) => scales.y.max >= height || scales.y.min <= -height;
+  const dashed = [
+    ...(visible(charts[0], units.angle) ? ["α, past which its weight turns it over"] : []),
+    ...(visible(charts[1], units.ground) ? ["the acceleration that lifts it off"] : []),
+  ];
+  return `Circles: impacts. ${dashed.length ? `Dashed: ${dashed.join(", and ")}. ` : ""}Click a chart to go to that time.`;
 }
 
 function line(place, height, axes, data, hooks) {

@@ -101,8 +101,8 @@ function shadeOverturning(u, chosen) {
   ctx.save();
   for (const outcome of ["OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"]) {
     ctx.fillStyle = hatch(ctx, outcome, devicePixelRatio);
-    chosen.outcome.forEach((outcome, at) => {
-      if (outcome !== outcome) return;
+    chosen.outcome.forEach((found, at) => {
+      if (found !== outcome) return;
       const left = u.valToPos(Math.sqrt(omega[at] * omega[Math.max(at - 1, 0)]), "x", true);
       const right = u.valToPos(Math.sqrt(omega[at] * omega[Math.min(at + 1, omega.length - 1)]), "x", true);
       ctx.fillRect(left, bbox.top, right - left + 1, bbox.height);

@@ -1,0 +1,220 @@
+"""A block in metres under a recorded ground motion in the body, which is not stored."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from rocking._numba.cancellation import StopFlag
+from rocking.excitation.records.readers.read_record import parse_record
+from rocking.excitation.records.record import Record
+from rocking.history.contact import COLUMNS, contact_extremes
+from rocking.history.record_history import record_history
+from rocking.history.record_motion import build_record_motion
+from rocking.model.block import Block
+from rocking.suites.block_response import block_response
+from rocking.suites.pulse_fit import fit_pulse
+from rocking.suites.scales import ScaleThresholds, restitution_of
+from rocking_api.http.batch import limited_body
+from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.memory_budget import reservation_of
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.records import (
+    FittedPulse,
+    RecordDescription,
+    RecordHistoryParams,
+    RecordHistoryResponse,
+    RecordParams,
+    RecordResponse,
+    RecordResponseParams,
+    ScaleThreshold,
+)
+from rocking_api.models.responses import finite
+from rocking_api.routers.history import contact_response
+from rocking_api.service import Service, ServiceDep
+
+router = APIRouter(prefix="/v1/records", tags=["response"], route_class=ParamsRoute)
+
+_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "description": "file of the record: PEER AT2, ESM ASCII, K-NET or columns of numbers, known by its content",
+        "content": {
+            media_type: {
+                "schema": {"type": "string"},
+                "example": "time [s],acceleration [g]\n0,0\n0.01,0.4\n0.02,0.5\n0.03,0\n",
+            }
+            for media_type in ("text/plain", "text/csv", "application/octet-stream")
+        },
+    }
+}
+
+
+@router.post("/response", summary="A block in SI units under a record", openapi_extra=_BODY)
+async def post_response(
+    params: Annotated[RecordResponseParams, Query()], request: Request, service: ServiceDep
+) -> RecordResponse:
+    """Outcome, rotation, displacement, friction, by (2.2); on request the scales at which the outcome changes."""
+    record = await _read(params, request, service)
+    return await service.run_heavy(params, lambda stop: _response(params, record, stop), request)
+
+
+@router.post(
+    "/history",
+    summary="Motion of a block in SI units under a record",
+    response_model=RecordHistoryResponse,
+    responses=CONTENT,
+    openapi_extra=_BODY,
+)
+async def post_history(
+    params: Annotated[RecordHistoryParams, Query()], request: Request, service: ServiceDep
+) -> Response:
+    """Rotation and angular velocity from the first sample through free rocking; with `contact` also reactions."""
+    limit = service.settings.max_samples
+    if params.samples is not None and params.samples > limit:
+        raise TooLargeError("samples", params.samples, f"at most {limit}")
+    form = negotiated_form(request, params.format)
+    record = await _read(params, request, service)
+    if record.samples > limit and params.samples is None:
+        raise TooLargeError("samples", record.samples, f"at most {limit}; state `samples`")
+    return await service.run_heavy(params, lambda stop: _history(params, record, form, stop), request)
+
+
+async def _read(params: RecordParams, request: Request, service: Service) -> Record:
+    """The record in the body, parsed in a thread, one body at a time."""
+    params.check()
+    settings, reservation = service.settings, reservation_of(request)
+    body = await limited_body(request, settings.max_record_bytes, settings.arrival_seconds, reservation)
+
+    def read(stop: StopFlag) -> Record:
+        del stop  # the largest body takes two seconds
+        found = parse_record(
+            body, params.name, unit=params.unit, time_step=params.time_step, component=params.component
+        )
+        return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)
+
+    record = await service.run_parser(read, request, large=True)
+    reservation.replace(record.acceleration.nbytes)  # the body is released
+    return record
+
+
+def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
+    block = Block(params.half_width, params.half_height, params.gravity)
+    found = block_response(
+        record, block, scale=params.scale, restitution=params.restitution, thresholds=params.thresholds, stop=stop
+    )
+    motion = build_record_motion(
+        record,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=found.slenderness,
+        restitution=found.restitution,
+        alpha=block.alpha,
+        stop=stop,
+    )
+    contact = contact_extremes(motion)
+    refined = found.resampled
+    return RecordResponse(
+        query=params,
+        record=_description(record),
+        overturned=bool(found.response.overturned),
+        exceeded_alpha=bool(found.response.exceeded_alpha),
+        outcome=found.outcome.name,
+        rocking_model_applies=contact.rocking_applies,
+        meaning=contact.sentence,
+        impacts=int(found.response.impacts),
+        peak_rotation=finite(float(found.response.peak_rotation)),
+        peak_rotation_deg=finite(math.degrees(found.peak_rotation)),
+        top_displacement=finite(found.top_displacement),
+        alpha_deg=math.degrees(block.alpha),
+        half_diagonal=block.half_diagonal,
+        frequency_parameter=block.frequency_parameter,
+        restitution=found.restitution,
+        uplift_acceleration=block.uplift_acceleration,
+        slenderness=found.slenderness,
+        overturned_resampled=None if refined is None else bool(refined.overturned),
+        peak_rotation_resampled=None if refined is None else finite(float(refined.peak_rotation)),
+        thresholds=None if found.thresholds is None else _thresholds(found.thresholds, record),
+        friction_at_uplift=block.half_width / block.half_height,
+        friction_demand=finite(contact.largest_friction_demand),
+        friction_at_impact=contact.impulse_ratio,
+        smallest_normal_reaction=contact.smallest_normal_reaction,
+        pulse=_fitted(record, block, stop) if params.fit else None,
+        warnings=[*contact.warnings, *found.warnings],
+    )
+
+
+def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopFlag) -> Response:
+    block = Block(params.half_width, params.half_height, params.gravity)
+    motion = record_history(
+        record,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=block.uplift_acceleration / (params.scale * record.peak_acceleration),
+        restitution=restitution_of(block, params.restitution),
+        alpha=block.alpha,
+        samples=params.samples,
+        contact=params.contact,
+        stop=stop,
+    )
+    if form == "nc":
+        return netcdf_response(motion, "history")
+    sampled = ("time", "rotation", "angular_velocity", "ground_acceleration")
+    columns: dict[str, Any] = {name: motion[name].values.tolist() for name in sampled}
+    reactions: dict[str, Any] = {name: motion[name].values.tolist() for name in COLUMNS if params.contact}
+    if form == "csv":
+        return csv_response(columns | reactions, "history")
+    return json_response(
+        RecordHistoryResponse.model_construct(
+            query=params,
+            record=_description(record),
+            overturned=bool(motion.attrs["overturned"]),
+            outcome=motion.attrs["outcome"],
+            peak_rotation=finite(float(motion.attrs["peak_rotation"])),
+            impacts=int(motion.attrs["impacts"]),
+            impact_time=motion["impact_time"].values.tolist(),
+            contact=contact_response(motion, reactions) if params.contact else None,
+            **columns,
+        )
+    )
+
+
+def _description(record: Record) -> RecordDescription:
+    return RecordDescription(
+        name=record.name,
+        source=record.source,
+        samples=record.samples,
+        time_step=record.time_step,
+        peak_acceleration=record.peak_acceleration,
+        peak_velocity=record.peak_velocity,
+        peak_displacement=record.peak_displacement,
+        arias_intensity=record.arias_intensity,
+        significant_duration=record.significant_duration,
+        mean_period=finite(record.mean_period),
+        final_velocity=record.final_velocity,
+        digest=record.digest,
+    )
+
+
+def _thresholds(found: ScaleThresholds, record: Record) -> list[ScaleThreshold]:
+    return [
+        ScaleThreshold(
+            scale=float(scale), peak_acceleration=float(scale) * record.peak_acceleration, overturns_above=bool(above)
+        )
+        for scale, above in zip(found.scale, found.overturns_above, strict=True)
+    ]
+
+
+def _fitted(record: Record, block: Block, stop: StopFlag) -> FittedPulse:
+    fit = fit_pulse(record, blocks=block, stop=stop)
+    return FittedPulse(
+        pulse=fit.velocity.family,
+        period=fit.period,
+        peak_acceleration=fit.peak_acceleration,
+        centre=fit.velocity.centre,
+        cycles=finite(fit.velocity.cycles),
+        phase=finite(fit.velocity.phase),
+        explained=fit.explained,
+        scale_ratio=finite(float(fit.scale_ratio[0])),
+    )

@@ -1,0 +1,117 @@
+"""`rocking fragility`: probability that blocks reach a limit state under a suite of records."""
+
+from __future__ import annotations
+
+import json as json_format
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from rocking.cli.options import OutputOptions, with_options
+from rocking.cli.record import file_errors
+
+Configuration = Annotated[
+    str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
+]
+
+
+@with_options
+def fragility(configuration: Configuration, output: OutputOptions) -> None:
+    """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates."""
+    from rocking.cli import printing
+    from rocking.suites.configuration import suite_configuration
+    from rocking.suites.fragility import fragility as fragility_of
+    from rocking.suites.hazard import annual_rate
+    from rocking.suites.table import curve_table, fragility_table
+
+    path = Path(configuration)
+    with configuration_errors(), file_errors():
+        form = printing.output_format(output)
+        given = _read(path)
+        suite = suite_configuration(given.get("suite", given), path.parent)
+        found = fragility_of(
+            suite.motions(),
+            suite.blocks,
+            intensity=suite.intensity,
+            measure=suite.measure,
+            restitution=suite.restitution,
+            demand=suite.demand,
+            confidence=suite.confidence,
+        )
+    if suite.hazard is not None:
+        found = found.assign(annual_rate(found, suite.hazard).data_vars)
+    levels, curves = fragility_table(found), curve_table(found)
+    unit = found["intensity"].attrs["units"]
+    if form == "csv":
+        printing.print_csv(levels)
+        return
+    about = {"suite": suite.name, "records": found["record"].values.tolist(), "measure": suite.measure, "unit": unit}
+    if form == "json":
+        printing.print_json({**about, "confidence": suite.confidence, "levels": levels, "curves": _finite(curves)})
+        return
+    printing.print_text({**about, "records": len(about["records"])})
+    printing.print_table(_finite(levels))
+    typer.echo()
+    printing.print_table(_finite(curves))
+
+
+@contextmanager
+def configuration_errors() -> Iterator[None]:
+    """Convert an invalid configuration into an error of the command line that names the key."""
+    from rocking.errors import InvalidArgumentError
+
+    try:
+        yield
+    except InvalidArgumentError as error:
+        message = f"{error.parameter} = {error.value!r} is not allowed; allowed: {error.allowed}"
+        raise typer.BadParameter(message, param_hint="CONFIGURATION") from None
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """The mapping in a file, by the ending of its name.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the file cannot be read, holds no mapping, or is YAML without the package that reads it.
+    """
+    from rocking.errors import InvalidArgumentError
+
+    try:
+        text = path.read_text(encoding="utf-8")
+        if path.suffix == ".toml":
+            found: Any = tomllib.loads(text)
+        elif path.suffix == ".json":
+            found = json_format.loads(text)
+        else:
+            found = _yaml(text)
+    except (OSError, ValueError) as error:
+        raise InvalidArgumentError("file", str(path), f"a readable configuration ({error})") from None
+    if not isinstance(found, dict):
+        raise InvalidArgumentError("file", str(path), "a mapping of keys to values")
+    return found
+
+
+def _yaml(text: str) -> Any:
+    try:
+        import yaml  # of the extra `workflow`
+    except ModuleNotFoundError:
+        raise ValueError("YAML needs the package pyyaml; TOML and JSON need none") from None
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ValueError(" ".join(str(error).split())) from None
+
+
+def _finite(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
+    """Columns with None for numbers that are not finite."""
+    from rocking.cli.printing import number
+
+    return {
+        name: [number(value) if isinstance(value, float) else value for value in values]
+        for name, values in columns.items()
+    }

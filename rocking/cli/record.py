@@ -1,0 +1,162 @@
+"""`rocking record`: one block under a recorded ground motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated, Any
+
+import typer
+
+from rocking.cli.options import OutputOptions, with_options
+from rocking.model.parameters import RESTITUTION
+
+File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
+HalfWidth = Annotated[str, typer.Option(help="b, such as 0.2m.")]
+HalfHeight = Annotated[str, typer.Option(help="h, such as '80 cm'.")]
+RecordRestitution = Annotated[str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or housner: (2.4).")]
+Scale = Annotated[float, typer.Option(help="Factor of the record.")]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.")
+]
+TimeStep = Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")]
+Component = Annotated[str | None, typer.Option(help="Column or trace of a file with several.")]
+BaselineOrder = Annotated[
+    int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
+]
+Thresholds = Annotated[bool, typer.Option("--thresholds", help="Find all scales at which the outcome changes.")]
+Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.")]
+
+
+@with_options
+def record(
+    file: File,
+    half_width: HalfWidth,
+    half_height: HalfHeight,
+    output: OutputOptions,
+    restitution: RecordRestitution = "housner",
+    scale: Scale = 1.0,
+    unit: Unit = None,
+    time_step: TimeStep = None,
+    component: Component = None,
+    baseline_order: BaselineOrder = None,
+    thresholds: Thresholds = False,
+    fit: Fit = False,
+) -> None:
+    """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
+    from rocking.cli import printing
+    from rocking.cli.arguments import option_errors
+    from rocking.dimensional.units import si_value
+
+    with option_errors(), file_errors():
+        form = printing.output_format(output)
+        step = None if time_step is None else si_value("time_step", time_step, "s")
+        sizes = si_value("half_width", half_width, "m"), si_value("half_height", half_height, "m")
+        eta = restitution if restitution == "housner" else _number_of("restitution", restitution)
+        about, sentence = _solved(file, sizes, eta, scale, (unit, step, component, baseline_order), thresholds, fit)
+    if form == "json":
+        printing.print_json(about)
+    elif form == "csv":
+        printing.print_csv({name: [value] for name, value in about.items() if not isinstance(value, list)})
+    else:
+        typer.echo(sentence)
+        for warning in about.pop("warnings"):
+            typer.echo(f"warning: {warning}")
+        printing.print_text(about)
+
+
+@contextmanager
+def file_errors() -> Iterator[None]:
+    """Convert an error of a file into an error of the command line: file, line, what was found, what was expected."""
+    from rocking.errors import InvalidArgumentError, RecordFileError
+
+    try:
+        yield
+    except RecordFileError as error:
+        raise typer.BadParameter(str(error), param_hint="FILE") from None
+    except InvalidArgumentError as error:
+        if error.parameter != "path":
+            raise
+        raise typer.BadParameter(f"{error.value}: not {error.allowed}", param_hint="FILE") from None
+
+
+def _number_of(parameter: str, text: str) -> float:
+    from rocking.errors import InvalidArgumentError
+
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidArgumentError(parameter, text, "a number, or housner") from None
+
+
+def _solved(
+    file: str,
+    sizes: tuple[float, float],
+    restitution: str | float,
+    scale: float,
+    reading: tuple[str | None, float | None, str | None, int | None],
+    thresholds: bool,
+    fit: bool,
+) -> tuple[dict[str, Any], str]:
+    """What is printed, by name, and the outcome in words."""
+    from rocking.cli.printing import number
+    from rocking.excitation.records.readers.read_record import read_record
+    from rocking.model.block import Block
+    from rocking.suites.block_response import block_response
+    from rocking.suites.pulse_fit import fit_pulse
+
+    unit, step, component, order = reading
+    motion = read_record(file, unit=unit, time_step=step, component=component)
+    if order is not None:
+        motion = motion.baseline_corrected(order=order)
+    block = Block(*sizes)
+    found = block_response(motion, block, scale=scale, restitution=restitution, thresholds=thresholds)
+    response, refined = found.response, found.resampled
+    about: dict[str, Any] = {
+        "record": motion.name,
+        "source": motion.source,
+        "samples": motion.samples,
+        "time_step": motion.time_step,
+        "peak_acceleration": motion.peak_acceleration,
+        "peak_velocity": motion.peak_velocity,
+        "peak_displacement": motion.peak_displacement,
+        "arias_intensity": motion.arias_intensity,
+        "significant_duration": motion.significant_duration,
+        "mean_period": number(motion.mean_period),
+        "final_velocity": motion.final_velocity,
+        "scale": scale,
+        "half_width": block.half_width,
+        "half_height": block.half_height,
+        "frequency_parameter": block.frequency_parameter,
+        "alpha": block.alpha,
+        "uplift_acceleration": block.uplift_acceleration,
+        "restitution": found.restitution,
+        "slenderness": found.slenderness,
+        "outcome": found.outcome.name,
+        "overturned": bool(response.overturned),
+        "exceeded_alpha": bool(response.exceeded_alpha),
+        "impacts": int(response.impacts),
+        "peak_rotation": number(float(response.peak_rotation)),
+        "peak_rotation_deg": number(math.degrees(found.peak_rotation)),
+        "top_displacement": number(found.top_displacement),
+        "peak_rotation_resampled": None if refined is None else number(float(refined.peak_rotation)),
+        "overturned_resampled": None if refined is None else bool(refined.overturned),
+    }
+    if found.thresholds is not None:
+        about |= {
+            "threshold_scale": found.thresholds.scale.tolist(),
+            "overturns_above": found.thresholds.overturns_above.tolist(),
+        }
+    if fit:
+        fitted = fit_pulse(motion, blocks=block)
+        about |= {
+            "pulse": fitted.velocity.family,
+            "pulse_period": fitted.period,
+            "pulse_peak_acceleration": fitted.peak_acceleration,
+            "pulse_cycles": number(fitted.velocity.cycles),
+            "pulse_phase": number(fitted.velocity.phase),
+            "pulse_explained": fitted.explained,
+            "pulse_scale_ratio": number(float(fitted.scale_ratio[0])),
+        }
+    return about | {"warnings": list(found.warnings)}, found.outcome.sentence

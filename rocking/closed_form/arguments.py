@@ -1,0 +1,49 @@
+"""Arguments of the closed forms: ranges, and checks that they broadcast."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking.errors import broadcast
+from rocking.model.checks import check
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, Parameter
+
+Array = NDArray[np.float64]
+
+AMPLITUDE = Parameter("amplitude", "a", "-", 1.0, math.inf, "left", "amplitude of the pulse over g tan(alpha)")
+"""Below 1 the block does not uplift."""
+
+ANY_FREQUENCY_RATIO = replace(FREQUENCY_RATIO, lower=0.0, upper=math.inf, closed="neither")
+"""The formulas hold beyond the range of the solver."""
+
+POSITIVE_RESTITUTION = replace(RESTITUTION, closed="right")
+
+TIME = Parameter("time", "tau", "-", 0.0, math.inf, "left", "time p t since uplift")
+
+_RANGES = {parameter.name: parameter for parameter in (AMPLITUDE, ANY_FREQUENCY_RATIO, RESTITUTION)}
+
+
+def checked(**given: ArrayLike) -> list[Array]:
+    """The arguments as float64 arrays of their broadcast shape.
+
+    Parameters
+    ----------
+    **given : array_like
+        `amplitude`, `frequency_ratio` and `restitution` are checked against their ranges; others, such as times and
+        velocities, may have any value, nan included.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range, the shapes do not broadcast, or labelled arguments (xarray, pandas) differ in their
+        dimensions or indexes.
+    """
+    arrays = [
+        check(_RANGES[name], value) if name in _RANGES else np.asarray(value, dtype=np.float64)
+        for name, value in given.items()
+    ]
+    return broadcast(given, arrays)

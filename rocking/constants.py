@@ -1,0 +1,4 @@
+"""Physical constants."""
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity [m/s2] (ISO 80000-3)."""

@@ -1,0 +1,1 @@
+"""Recorded ground motions: the record, its measures, its processing, and the readers of files."""

@@ -1,0 +1,69 @@
+"""Processing of a record, each step on request only: baseline correction, band-limited resampling."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.errors import InvalidArgumentError, in_range
+
+Array = NDArray[np.float64]
+
+MAX_BASELINE_ORDER = 6
+"""Largest degree of a baseline [-]: higher ones follow the motion itself."""
+
+MAX_RATIO = 1000
+"""Largest numerator and denominator of the ratio of two time steps [-]."""
+
+RATIO_TOLERANCE = 1e-9
+"""Relative difference of a ratio of time steps from a fraction [-]: steps are often given in a few digits."""
+
+STOP_BAND = 8.0
+"""Parameter of the Kaiser window of the interpolation filter [-]: about 80 dB of attenuation in the stop band."""
+
+
+def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
+    """The acceleration `a` (samples,) less the derivative of a polynomial fitted to the velocity `v` (samples,).
+
+    The polynomial of degree `order` + 1 is zero at the first sample, as the velocity. Time is divided by the
+    `duration` [s]: the least-squares problem is then well conditioned for the degrees allowed.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `order` is out of range, or there are fewer than `order` + 2 samples.
+    """
+    in_range("order", order, 0, MAX_BASELINE_ORDER)
+    if order != int(order) or a.size < order + 2:
+        raise InvalidArgumentError("order", order, f"an integer, at least 2 smaller than the {a.size} samples")
+    time = np.linspace(0.0, 1.0, a.size)
+    powers = np.arange(1, int(order) + 2)
+    coefficients = np.linalg.lstsq(time[:, None] ** powers, v, rcond=None)[0]
+    slope = time[:, None] ** (powers - 1) @ (powers * coefficients)
+    return np.asarray(a - slope / duration)
+
+
+def resample(a: Array, dt: float, time_step: float) -> Array:
+    """The samples of the band-limited signal at the step `time_step`, zero outside of the record.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the ratio of the steps is not a fraction of integers up to `MAX_RATIO`, or fewer than 2 samples remain.
+    """
+    from scipy.signal import resample_poly  # noqa: PLC0415  # takes longer to load than the package
+
+    step = float(in_range("time_step", time_step, 0.0, math.inf, closed="neither", unit="s"))
+    ratio = Fraction(dt / step).limit_denominator(MAX_RATIO)
+    if not 1 <= ratio.numerator <= MAX_RATIO or abs(float(ratio) * step / dt - 1.0) > RATIO_TOLERANCE:
+        raise InvalidArgumentError(
+            "time_step", step, f"{dt:g} s times a fraction of integers up to {MAX_RATIO} in numerator and denominator"
+        )
+    count = math.floor((a.size - 1) * ratio * (1.0 + RATIO_TOLERANCE)) + 1
+    if count < 2:
+        raise InvalidArgumentError("time_step", step, f"at most the duration, {(a.size - 1) * dt:g} s")
+    found = resample_poly(a, ratio.numerator, ratio.denominator, window=("kaiser", STOP_BAND))
+    return np.asarray(found[:count], dtype=np.float64)

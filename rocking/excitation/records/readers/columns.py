@@ -1,0 +1,247 @@
+"""Columns of numbers, CSV or blank-separated: times and accelerations, or accelerations alone.
+
+Lines before the first row of numbers are the header. It may name the columns, with the unit in the name
+(`acceleration_g`, `acc (cm/s2)`), and hold settings such as `unit: g`, `dt = 0.01` or `sampling rate: 100 Hz`, also
+after a `#`. What it does not state has to be given as an argument.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.excitation.records.readers.lines import (
+    MAX_SAMPLES,
+    NUMBER,
+    TextFile,
+    agreed_step,
+    agreed_unit,
+    parse_unit,
+    to_float,
+)
+from rocking.excitation.records.record import Record
+
+STEP_TOLERANCE = 0.02
+"""Largest deviation of a time from the uniform grid, in steps [-]: times are often rounded to a few digits."""
+
+MAX_TIME = 1e12
+"""Largest time in a column of times [s]; times are often counted from an epoch."""
+
+MAX_HEADER = 200
+"""Largest number of lines before the first row of numbers."""
+
+_COMMENT = "#%!*/\"'"
+
+
+def read(file: TextFile, unit: str | None, time_step: float | None, component: str | None) -> Record:
+    """Read columns; arguments and errors as for `read_record`."""
+    first = _first_row(file)
+    separator = _separator(file.lines[first])
+    decimal_comma = separator == ";" and "," in file.lines[first]
+    table = _table(file, first, separator, decimal_comma)
+    names_line, names = _column_names(file, first, separator, table.shape[1])
+    settings = _settings(file, first)
+    times = _time_column(file, first, names, table)
+    stated_step, step_line = settings.step, settings.step_line
+    if times is not None:
+        measured = _uniform_step(file, first, table[:, times] * _time_factor(file, names_line, names[times]))
+        if stated_step is not None and abs(measured / stated_step - 1.0) > 1e-3:
+            raise file.error(
+                step_line, f"a time step of {stated_step:g} s", f"{measured:g} s, as the column of times says"
+            )
+        stated_step = measured
+    step = agreed_step(file, step_line if times is None else first, stated_step, time_step)
+    others = [k for k in range(table.shape[1]) if k != times]
+    chosen = _chosen(file, names_line, [names[k] for k in others], others, component)
+    if re.match(r"vel|dis", names[chosen], re.I) or re.search(r"[(\[](mm|cm|m)(/s)?[)\]]", names[chosen], re.I):
+        raise file.error(names_line, f"the column {names[chosen]}", "a column of accelerations")
+    in_name, stated_unit = _unit_in_name(names[chosen]), settings.unit
+    if in_name and stated_unit and in_name != stated_unit:
+        raise file.error(names_line, f"the unit {in_name} in a column name", f"{stated_unit}, as the header says")
+    agreed = agreed_unit(file, names_line if in_name else settings.unit_line, in_name or stated_unit, unit)
+    values = table[:, chosen]
+    file.check_values(values)
+    stem = file.name.rsplit(".", 1)[0]
+    named = component is not None or len(others) > 1
+    return Record(
+        values, step, agreed, name=f"{stem} {names[chosen]}" if named else stem, source=f"{file.name} (columns)"
+    )
+
+
+def _fields(line: str, separator: str | None) -> list[str]:
+    """The fields of a line; a separator at its end adds none."""
+    fields = [field.strip().strip("\"'") for field in line.strip().split(separator)]
+    return fields[:-1] if len(fields) > 1 and fields[-1] == "" else fields
+
+
+def _separator(line: str) -> str | None:
+    """The separator of a row of numbers; None for blanks."""
+    return next((mark for mark in (";", "\t", ",") if mark in line.strip()), None)
+
+
+def _is_row(line: str) -> bool:
+    """Whether all fields of a line are numbers."""
+    separator = _separator(line)
+    fields = _fields(line, separator)
+    if separator == ";":
+        fields = [field.replace(",", ".") for field in fields]
+    return bool(line.strip()) and all(NUMBER.fullmatch(field) for field in fields)
+
+
+def _first_row(file: TextFile) -> int:
+    """Index of the first row of numbers."""
+    for k, line in enumerate(file.lines[:MAX_HEADER]):
+        if _is_row(line):
+            return k
+    shown = next((line.strip() for line in file.lines if line.strip()), "an empty file")
+    raise file.error(None, shown, "the header of a known format (AT2, ESM, K-NET), or rows of numbers")
+
+
+def _table(file: TextFile, first: int, separator: str | None, decimal_comma: bool) -> NDArray[np.float64]:
+    """All rows (rows, columns); each has the columns of the first."""
+    rows: list[list[float]] = []
+    width = len(_fields(file.lines[first], separator))
+    last = max(k for k, line in enumerate(file.lines) if line.strip())
+    if last - first >= MAX_SAMPLES:
+        raise file.error(None, f"{last - first + 1} rows", f"at most {MAX_SAMPLES}")
+    for k in range(first, last + 1):
+        line = file.lines[k]
+        if not line.strip() and width > 1:
+            continue  # the times show whether a row is missing
+        fields = _fields(line, separator)
+        if decimal_comma:
+            fields = [field.replace(",", ".") for field in fields]
+        if len(fields) != width:
+            raise file.error(k, f"{len(fields)} columns", f"{width}, as in line {first + 1}")
+        wrong = next((field for field in fields if not NUMBER.fullmatch(field)), None)
+        if wrong is not None:
+            raise file.error(k, wrong or "an empty field", "a number")
+        rows.append([to_float(field) for field in fields])
+    return np.array(rows)
+
+
+def _column_names(file: TextFile, first: int, separator: str | None, width: int) -> tuple[int | None, list[str]]:
+    """Line and names of the columns, from the last header line with as many fields; numbered if there is none."""
+    for k in range(first - 1, -1, -1):
+        line = file.lines[k].strip().lstrip(_COMMENT).strip()
+        for mark in (separator, ",", ";", "\t"):
+            names = [name for name in _fields(line, mark) if name]
+            if len(names) == width and not any(re.search(r"[:=]", name) for name in names):
+                return k, names
+    return None, [f"column {k + 1}" for k in range(width)]
+
+
+@dataclass
+class _Settings:
+    """Unit and time step [s] that the header states, with the indices of their lines."""
+
+    unit: str | None = None
+    unit_line: int | None = None
+    step: float | None = None
+    step_line: int | None = None
+
+
+def _settings(file: TextFile, first: int) -> _Settings:
+    """Settings that header lines state as `key: value` or `key = value`."""
+    found = _Settings()
+    for k, line in enumerate(file.lines[:first]):
+        for key, text in re.findall(r"([A-Za-z][\w ()/.-]*?)\s*[:=]\s*([^,;:=]+?)\s*(?=[,;]|$|\s\w+\s*[:=])", line):
+            name = re.sub(r"[\s_.-]+", " ", key.lower()).strip()
+            if re.search(r"\bunits?\b", name):
+                unit = parse_unit(text)
+                if unit is None:
+                    raise file.error(k, text, "a unit of acceleration: m/s2, cm/s2, gal, mm/s2 or g")
+                found.unit, found.unit_line = unit, k
+            number = re.fullmatch(rf"({NUMBER.pattern})\s*(s|sec|seconds|ms|hz|sps)?\.?", text.strip(), re.I)
+            if re.fullmatch(
+                r"(dt|delta t|time step|timestep|step|sampling interval|sample interval|delta)( \(?s(ec)?\)?)?", name
+            ):
+                found.step, found.step_line = _stated_step(file, k, text, number, False), k
+            elif re.match(r"(sampling|sample) (rate|frequency)|fs$|frequency", name):
+                found.step, found.step_line = _stated_step(file, k, text, number, True), k
+    return found
+
+
+def _stated_step(file: TextFile, line: int, text: str, number: re.Match[str] | None, rate: bool) -> float:
+    """The time step [s] of a setting, an interval or a rate."""
+    units = ("hz", "sps") if rate else ("s", "sec", "seconds", "ms")
+    if number is None or (number[2] or units[0]).lower() not in units:
+        raise file.error(line, text, "a rate in Hz" if rate else "a time step in s")
+    value = file.positive(line, number[1], "a rate [Hz]" if rate else "a time step [s]")
+    return 1.0 / value if rate else value * (1e-3 if (number[2] or "").lower() == "ms" else 1.0)
+
+
+def _time_column(file: TextFile, first: int, names: list[str], table: NDArray[np.float64]) -> int | None:
+    """Index of the column of times: named so, or the first of two and more without names; None for one column."""
+    named = [k for k, name in enumerate(names) if re.match(r"(time|t|zeit|temps|tempo|tiempo)(\b|_|$)", name, re.I)]
+    if table.shape[1] == 1:
+        if named:
+            raise file.error(first, "a column of times only", "a column of accelerations")
+        return None
+    if len(named) > 1:
+        raise file.error(None, f"columns {', '.join(names[k] for k in named)}", "one column of times")
+    if named:
+        return named[0]
+    if names[0] == "column 1":
+        return 0
+    rises = bool((np.diff(table[:, 0]) > 0.0).all()) if len(table) > 1 else False
+    return 0 if rises else None
+
+
+def _time_factor(file: TextFile, line: int | None, name: str) -> float:
+    """Seconds in the unit of the column of times, seconds if its name states none."""
+    unit = re.fullmatch(r"[A-Za-z]+[\s_]*[(\[]?\s*([a-z]*)\.?\s*[)\]]?", name.strip(), re.I)
+    text = unit[1].lower() if unit else ""
+    if text in ("", "s", "sec", "second", "seconds") or name.startswith("column") or parse_unit(text):
+        return 1.0
+    if text in ("ms", "msec", "milliseconds"):
+        return 1e-3
+    raise file.error(line, name, "times in s or ms")
+
+
+def _uniform_step(file: TextFile, first: int, times: NDArray[np.float64]) -> float:
+    """The step of times that are uniform; the error names the first line that is not."""
+    if times.size < 2:
+        raise file.error(first, "one row", "at least 2")
+    if not np.abs(times).max() <= MAX_TIME:
+        raise file.error(None, f"a time of {np.abs(times).max():g} s", f"times up to {MAX_TIME:g} s")
+    step = float((times[-1] - times[0]) / (times.size - 1))
+    grid = times[0] + step * np.arange(times.size)
+    middle = float(np.median(np.diff(times)))
+    if not (middle > 0.0 and np.isfinite(middle)):
+        raise file.error(first + 1, f"times {times[0]:g} and {times[1]:g}", "times that increase")
+    if step > 0.0 and np.abs(times - grid).max() <= STEP_TOLERANCE * step:
+        return float(f"{step:.12g}")  # removes the rounding of the difference
+    wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
+    raise file.error(
+        first + wrong + 1, f"a step of {times[wrong + 1] - times[wrong]:g} s", f"uniform steps of {middle:g} s"
+    )
+
+
+def _chosen(file: TextFile, line: int | None, names: list[str], columns: list[int], component: str | None) -> int:
+    """The column of the component, by name or by the part of the name before the unit."""
+    if component is None:
+        if len(columns) == 1:
+            return columns[0]
+        raise file.error(line, f"components {', '.join(names)}", "the argument `component`: one of them")
+    plain = component.strip().lower()
+    whole = [column for column, name in zip(columns, names, strict=True) if name.lower() == plain]
+    parts = [
+        column for column, name in zip(columns, names, strict=True) if re.split(r"[\s_(\[]", name.lower())[0] == plain
+    ]
+    for found in (whole, parts):
+        if len(found) == 1:
+            return found[0]
+    raise file.error(line, f"components {', '.join(names)}", f"component {component}")
+
+
+def _unit_in_name(name: str) -> str | None:
+    """The unit in a column name, in brackets or after the last blank or underscore."""
+    bracketed = re.search(r"[(\[]([^)\]]*)[)\]]", name)
+    if bracketed:
+        return parse_unit(bracketed[1])
+    parts = re.split(r"[\s_,]+", name.strip())
+    return next((unit for k in range(1, len(parts)) if (unit := parse_unit("".join(parts[k:])))), None)

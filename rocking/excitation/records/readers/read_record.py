@@ -1,0 +1,114 @@
+"""`read_record`: reads an accelerogram file; the format is recognised by the content, not by the name."""
+
+from __future__ import annotations
+
+import math
+import re
+from os import PathLike
+from pathlib import Path
+
+from rocking.errors import InvalidArgumentError, RecordFileError, in_range, one_of
+from rocking.excitation.records.readers import columns, esm, knet, peer_at2, seismic
+from rocking.excitation.records.readers.lines import TextFile
+from rocking.excitation.records.record import UNITS, Record
+
+MAX_BYTES = 200_000_000
+"""Largest file that is read [bytes]."""
+
+
+def read_record(
+    path: str | PathLike[str],
+    *,
+    unit: str | None = None,
+    time_step: float | None = None,
+    component: str | None = None,
+) -> Record:
+    """Read a recorded ground acceleration from a file.
+
+    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, columns of times and accelerations or of
+    accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is corrected or resampled.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+    unit : str, optional
+        Unit of the samples, a key of `rocking.excitation.records.record.UNITS`. Required where the file states none;
+        refused where it states another.
+    time_step : float, optional
+        Time step [s], > 0; likewise.
+    component : str, optional
+        Name of the column or trace, where the file has several.
+
+    Raises
+    ------
+    RecordFileError
+        If the file is damaged, ambiguous or of an unknown format: with the line, what was found and what was expected.
+    InvalidArgumentError
+        If the file cannot be read, or an argument is out of range.
+    """
+    file = Path(path)
+    try:
+        with file.open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise InvalidArgumentError("path", str(path), f"a file that can be read ({error.strerror})") from None
+    return parse_record(content, file.name, unit=unit, time_step=time_step, component=component)
+
+
+def parse_record(
+    content: bytes,
+    name: str,
+    *,
+    unit: str | None = None,
+    time_step: float | None = None,
+    component: str | None = None,
+) -> Record:
+    """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
+
+    Other parameters and errors as for `read_record`.
+    """
+    if unit is not None:
+        one_of("unit", unit, UNITS)
+    if time_step is not None:
+        in_range("time_step", time_step, 0.0, math.inf, closed="neither", unit="s")
+    if len(content) > MAX_BYTES:
+        raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
+    if seismic.is_seismic(content):
+        return seismic.read(content, name, unit, time_step, component)
+    file = TextFile(name, re.split(r"\r\n|\n|\r", _text(content, name)))
+    try:
+        return _read_text(file, unit, time_step, component)
+    except RecordFileError:
+        raise
+    except InvalidArgumentError as error:  # samples that make no record, such as zeros only
+        raise file.error(None, f"{error.parameter} {error.value}", error.allowed) from None
+
+
+def _read_text(file: TextFile, unit: str | None, time_step: float | None, component: str | None) -> Record:
+    if esm.is_esm(file):
+        found = esm.read(file, unit, time_step)
+    elif knet.is_knet(file):
+        found = knet.read(file, unit, time_step)
+    elif peer_at2.header_line(file) is not None:
+        found = peer_at2.read(file, unit, time_step)
+    else:
+        return columns.read(file, unit, time_step, component)
+    if component is not None:
+        raise file.error(None, "a file with one component", "no argument `component`")
+    return found
+
+
+def _text(content: bytes, name: str) -> str:
+    """The text of a file in UTF-8, with or without a byte order mark, or in Latin-1."""
+    if not content.strip():
+        raise RecordFileError(name, None, "an empty file", "a recorded ground acceleration")
+    if b"\0" in content:
+        raise RecordFileError(name, None, "binary content", "text, or a SAC or miniSEED file")
+    if content.lstrip()[:1] in (b"<", b"{"):
+        start = content.lstrip()[:40].decode("latin-1").splitlines()[0]
+        raise RecordFileError(name, 1, start, "numbers or the header of a known format, not a web page or JSON")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")

@@ -1,0 +1,206 @@
+"""A recorded ground motion: uniformly sampled acceleration, linear between the samples, zero after the last."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking.constants import STANDARD_GRAVITY
+from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.excitation.records import measures
+from rocking.excitation.records.processing import baseline, resample
+
+UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01, "mm/s2": 0.001, "g": STANDARD_GRAVITY}
+"""Units of acceleration, each with its value in m/s2."""
+
+MAX_ACCELERATION = 1e6
+"""Largest acceleration of a record [m/s2]; a larger value is a fill value or a wrong unit."""
+
+
+@final
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Record:
+    """A recorded ground acceleration. Records are immutable; equal samples and steps make equal records.
+
+    Parameters
+    ----------
+    acceleration : array_like (samples,)
+        At least two samples, finite, not all of them zero.
+    time_step : float
+        Time between the samples [s], > 0.
+    unit : str
+        Unit of the samples, a key of `UNITS`: "m/s2", "cm/s2", "gal", "mm/s2" or "g". It has to be stated.
+    name : str
+        Name for output, such as station and component.
+    source : str
+        Where the record comes from, such as file, network or citation.
+
+    Attributes
+    ----------
+    acceleration : float64 array (samples,)
+        In m/s2, read-only.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described.
+    """
+
+    acceleration: NDArray[np.float64]
+    time_step: float
+    name: str
+    source: str
+
+    def __init__(self, acceleration: ArrayLike, time_step: float, unit: str, name: str = "", source: str = "") -> None:
+        factor = UNITS[one_of("unit", unit, UNITS)]
+        limit = MAX_ACCELERATION / factor
+        samples = in_range("acceleration", acceleration, -limit, limit, unit=unit)
+        if samples.ndim != 1 or samples.size < 2:
+            raise InvalidArgumentError("acceleration", f"shape {samples.shape}", "one dimension, at least 2 samples")
+        if not samples.any():
+            raise InvalidArgumentError("acceleration", "all samples 0", "a motion that is not zero")
+        step = in_range("time_step", time_step, 0.0, np.inf, closed="neither", unit="s")
+        if step.ndim:
+            raise InvalidArgumentError("time_step", time_step, "one number")
+        scaled = np.array(samples * factor)  # a copy, which the caller cannot change
+        scaled.flags.writeable = False
+        given = {"acceleration": scaled, "time_step": float(step), "name": name, "source": source}
+        for key, value in given.items():
+            object.__setattr__(self, key, value)
+
+    def __repr__(self) -> str:
+        """Name, length, step and peak acceleration."""
+        name = f" {self.name}" if self.name else ""
+        peak = self.peak_acceleration / STANDARD_GRAVITY
+        return f"<rocking.Record{name}: {self.samples} samples at {self.time_step:g} s, PGA {peak:.4g} g>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Record) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return self.acceleration.size
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample [s]."""
+        return (self.samples - 1) * self.time_step
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the samples from the first [s], shape (samples,)."""
+        return np.arange(self.samples, dtype=np.float64) * self.time_step
+
+    @cached_property
+    def digest(self) -> str:
+        """The sha256 of the step and the samples in m/s2 as little-endian float64, hexadecimal."""
+        values = np.concatenate([[self.time_step], self.acceleration])
+        return hashlib.sha256(values.astype("<f8").tobytes()).hexdigest()
+
+    @cached_property
+    def peak_acceleration(self) -> float:
+        """PGA, the largest absolute acceleration [m/s2]."""
+        return float(np.abs(self.acceleration).max())
+
+    @cached_property
+    def velocity(self) -> NDArray[np.float64]:
+        """Ground velocity at the samples [m/s], zero at the first, read-only; not corrected for a baseline."""
+        return measures.velocity(self.acceleration, self.time_step)
+
+    @cached_property
+    def displacement(self) -> NDArray[np.float64]:
+        """Ground displacement at the samples [m], zero at the first, read-only; not corrected for a baseline."""
+        velocity: NDArray[np.float64] = self.velocity
+        return measures.displacement(self.acceleration, velocity, self.time_step)
+
+    @property
+    def peak_velocity(self) -> float:
+        """PGV, the largest absolute velocity at the samples [m/s]."""
+        return float(np.abs(self.velocity).max())
+
+    @property
+    def peak_displacement(self) -> float:
+        """PGD, the largest absolute displacement at the samples [m]."""
+        return float(np.abs(self.displacement).max())
+
+    @property
+    def final_velocity(self) -> float:
+        """Velocity at the last sample [m/s]: the drift that an offset of the acceleration leaves."""
+        return float(self.velocity[-1])
+
+    @property
+    def final_displacement(self) -> float:
+        """Displacement at the last sample [m]."""
+        return float(self.displacement[-1])
+
+    @property
+    def mean_acceleration(self) -> float:
+        """Mean acceleration [m/s2], the offset of the baseline: the final velocity over the duration."""
+        return self.final_velocity / self.duration
+
+    @property
+    def arias_intensity(self) -> float:
+        """Arias intensity pi/(2 g) integral of a^2 dt [m/s] (Arias 1970)."""
+        return measures.arias_intensity(self.acceleration, self.time_step)
+
+    @property
+    def significant_duration(self) -> float:
+        """Time between 5 % and 95 % of the Arias intensity [s] (Trifunac & Brady 1975)."""
+        return measures.significant_duration(self.acceleration, self.time_step)
+
+    @property
+    def mean_period(self) -> float:
+        """Mean period T_m [s] (Rathje et al. 1998); nan if no frequency lies between 0.25 and 20 Hz."""
+        return measures.mean_period(self.acceleration, self.time_step)
+
+    def baseline_corrected(self, *, order: int = 1) -> Record:
+        """The record without the drift of its velocity.
+
+        The velocity is fitted by a polynomial of degree `order` + 1 that is zero at the first sample; its derivative, a
+        polynomial of degree `order`, is subtracted from the acceleration.
+
+        Parameters
+        ----------
+        order : int
+            Degree of what is subtracted from the acceleration, 0 to 6.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If `order` is out of range, or the record has too few samples for it.
+        """
+        kept = baseline(self.acceleration, self.velocity, self.duration, order)
+        return Record(kept, self.time_step, "m/s2", self.name, self._processed(f"baseline of order {order} removed"))
+
+    def resampled(self, time_step: float) -> Record:
+        """The record at another step, by band-limited interpolation with anti-aliasing.
+
+        The answers of the solver belong to a motion that is linear between the samples; comparing them with those of a
+        record resampled at a fraction of the step shows how much this assumption matters.
+
+        Parameters
+        ----------
+        time_step : float
+            The new step [s]; its ratio to the old one must be a fraction of integers up to 1000.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the step is not such a fraction, or fewer than 2 samples would remain.
+        """
+        samples = resample(self.acceleration, self.time_step, time_step)
+        return Record(
+            samples, time_step, "m/s2", self.name, self._processed(f"resampled from {self.time_step:g} s, band-limited")
+        )
+
+    def _processed(self, step: str) -> str:
+        return f"{self.source}; {step}" if self.source else step

@@ -1,0 +1,178 @@
+"""Many blocks under one recorded motion: slender ones by exact arcs one after another, rigid ones `LANES` at a time.
+
+A SIMD lane takes the next block as soon as its block is finished.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rocking._numba.cancellation import is_stopped
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.simd import LANES
+from rocking.errors import SearchError
+from rocking.solver.records.arc_flight import flight_by_arcs
+from rocking.solver.records.event_loop import (
+    final_outcome,
+    init_block_state,
+    on_impact,
+    start_flight,
+    update_peak,
+    write_response,
+)
+from rocking.solver.records.taylor_flight import process_step, start_steps
+from rocking.solver.records.taylor_step import take_step
+from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS
+from rocking.solver.taylor.flight import MAX_STEPS
+from rocking.solver.taylor.step import init_block
+
+
+@kernel
+def end_flight(block: Record, samples: FloatArray, ended: int, k: int, s: float, z: float, w: float) -> bool:
+    """End a flight in the interval `k` at time `s` with z and w; False if it was the last."""
+    update_peak(block, block.largest_z, block.impacts, 0)
+    if ended != IMPACT:
+        final_outcome(block, z, w, ended == OVERTURNS)
+        return False
+    on_impact(block, samples, k, s, w)
+    return True
+
+
+@entry
+def solve_slender(
+    samples: FloatArray,
+    step: FloatArray,
+    slenderness: FloatArray,
+    eta: FloatArray,
+    block: Record,
+    stop: FloatArray,
+    responses: Record,
+) -> int:
+    """Follow slender blocks from rest to their final outcome.
+
+    Parameters
+    ----------
+    samples : float array (3, samples)
+        Of `motion_samples`.
+    step : float array (cells,)
+        Length of a sample interval p dt of each block [tau].
+    slenderness, eta : float arrays (cells,)
+        1/a > 0, restitution in [0, 1] [-].
+    block
+        Solver state, a record `BLOCK_STATE`.
+    stop : uint8 array (1,)
+        Once another thread sets it to 1, the function returns within a flight; responses are missing.
+    responses : array (cells,) of `state.RESPONSE_RECORD`
+        Filled.
+
+    Returns
+    -------
+    int
+        Number of sample intervals followed.
+    """
+    stepped = 0
+    for cell in range(len(slenderness)):
+        if is_stopped(stop):
+            break
+        init_block_state(block, slenderness[cell], eta[cell], 0.0, step[cell])
+        while start_flight(block, samples) and not is_stopped(stop):
+            ended, k, s, z, w = flight_by_arcs(block, samples)
+            if not end_flight(block, samples, ended, k, s, z, w):
+                break
+        write_response(block, responses[cell])
+        stepped += block.stepped
+    return stepped
+
+
+@kernel
+def next_cell(
+    block: Record,
+    samples: FloatArray,
+    steps: Record,
+    lane: int,
+    following: int,
+    step: FloatArray,
+    slenderness: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    responses: Record,
+) -> int:
+    """Put the next block that uplifts into a lane; returns the cell after it."""
+    while following < len(slenderness):
+        cell = following
+        following += 1
+        init_block_state(block, slenderness[cell], eta[cell], alpha[cell], step[cell])
+        if start_flight(block, samples):
+            block.cell = cell
+            init_block(steps, lane, alpha[cell], 1.0)
+            start_steps(block, samples, steps, lane)
+            return following
+        write_response(block, responses[cell])
+    block.cell = -1
+    # the lane continues with a block at rest
+    steps.z0[lane], steps.w0[lane], steps.force[lane], steps.force_rate[lane], steps.limit[lane] = (
+        0.0,
+        0.0,
+        -1.0,
+        0.0,
+        1.0,
+    )
+    return following
+
+
+@entry
+def solve_rigid(
+    samples: FloatArray,
+    step: FloatArray,
+    slenderness: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    blocks: Record,
+    steps: Record,
+    stop: FloatArray,
+    responses: Record,
+) -> int:
+    """Follow rigid blocks from rest to their final outcome.
+
+    Parameters
+    ----------
+    samples, step, slenderness, eta, stop, responses
+        As for `solve_slender`.
+    alpha : float array (cells,)
+        Slenderness angle [rad], (0, pi/2).
+    blocks, steps
+        Solver state: an array (LANES,) of records `BLOCK_STATE`, and `step_state`.
+
+    Returns
+    -------
+    int
+        Number of sample intervals followed.
+    """
+    following, busy, stepped = 0, 0, 0
+    taken = np.zeros(LANES, dtype=np.int64)
+    for lane in range(LANES):
+        following = next_cell(blocks[lane], samples, steps, lane, following, step, slenderness, eta, alpha, responses)
+        if blocks[lane].cell >= 0:
+            busy += 1
+    while busy > 0 and not is_stopped(stop):
+        take_step(steps)
+        for lane in range(LANES):
+            block = blocks[lane]
+            if block.cell < 0:
+                continue
+            ended, s, z, w = process_step(block, samples, steps, lane)
+            taken[lane] += 1
+            if ended == IN_FLIGHT:
+                if taken[lane] >= MAX_STEPS + 8 * len(samples[0]):
+                    raise SearchError("a flight does not end")
+                continue
+            taken[lane] = 0
+            if end_flight(block, samples, ended, block.interval, s, z, w) and start_flight(block, samples):
+                start_steps(block, samples, steps, lane)
+                continue
+            write_response(block, responses[block.cell])
+            stepped += block.stepped
+            following = next_cell(block, samples, steps, lane, following, step, slenderness, eta, alpha, responses)
+            if block.cell < 0:
+                busy -= 1
+    return stepped

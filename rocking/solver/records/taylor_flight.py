@@ -1,0 +1,104 @@
+"""A flight of the rigid block under a recorded motion, by Taylor steps on pieces of the sample intervals.
+
+A piece ends at a sample and where q = 1 + sgn(theta) u changes its sign. At z = 0 the acceleration is
+-(sin(alpha)/alpha) q, so that the argument of `rocking.solver.taylor.flight` holds on each piece: where q > 0, z = 0 is
+crossed downwards only, once, and the sign of z at the end of a step decides; where q <= 0, z'' >= 0 for all z >= 0 up
+to |theta| = pi/2, and z has at most one minimum and no maximum.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking.solver.records.event_loop import cut_time, restoring_at
+from rocking.solver.records.samples import LATER, SHAPE
+from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS, PULSE_END
+from rocking.solver.taylor.events import evaluate_series
+from rocking.solver.taylor.flight import highest_peak, impact_in_step
+
+
+@kernel
+def start_piece(block: Record, samples: FloatArray, steps: Record, lane: int, at_cut: bool) -> None:
+    """Set the force and the limit of the step that starts at `block.s` in the interval; q is 0 there if `at_cut`."""
+    k, s, h = block.interval, block.s, block.h
+    q0, q1 = restoring_at(block, samples, block.sign, k), restoring_at(block, samples, block.sign, k + 1)
+    slope = (q1 - q0) / h
+    block.piece_end = h
+    restoring = q0 + q1 > 0.0
+    if q0 < 0.0 < q1 or q1 < 0.0 < q0:
+        cut = cut_time(q0, q1, h)
+        if s < cut and not at_cut:
+            block.piece_end = cut
+            restoring = q0 > 0.0
+        else:
+            restoring = q1 > 0.0
+    block.destabilised = int(not restoring)
+    steps.force[lane] = -1.0 if at_cut else (q0 - 1.0) + slope * s
+    steps.force_rate[lane] = slope
+    steps.limit[lane] = max(block.piece_end - s, 0.0)
+
+
+@kernel
+def start_steps(block: Record, samples: FloatArray, steps: Record, lane: int) -> None:
+    """Set a lane to the start of a flight."""
+    block.from_ground = 1
+    steps.z0[lane], steps.w0[lane] = 0.0, block.w0
+    start_piece(block, samples, steps, lane, block.starts_at_uplift == 1)
+
+
+@kernel
+def never_returns(block: Record, samples: FloatArray, z: float, w: float) -> bool:
+    """Whether a rigid block with rotation z and velocity w at the right end of the interval certainly overturns.
+
+    Beyond alpha and with w > 0, z'' > 0 as long as sin(alpha (z - 1)) > tan(alpha) |u|, and the sine increases up to
+    |theta| = pi/2; the largest later |u| bounds u.
+    """
+    alpha = block.alpha
+    if z >= 0.5 * math.pi / alpha:
+        return True
+    if z <= 1.0 or w <= 0.0:
+        return False
+    strongest = block.a * samples[LATER, block.interval]
+    return bool(math.sin(alpha * (z - 1.0)) > math.tan(alpha) * strongest)
+
+
+@kernel
+def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -> tuple[int, float, float, float]:
+    """Process the events of the last step of a lane, and prepare the next step if the flight continues.
+
+    Returns
+    -------
+    What ended the flight, or `IN_FLIGHT`; the time since the left end of the interval `block.interval`; z and w.
+    """
+    h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
+    destabilised = block.destabilised == 1
+    impact = impact_in_step(steps, lane, destabilised, block.from_ground == 1)
+    if impact >= 0.0:
+        h, z, w = impact, 0.0, min(evaluate_series(steps.rate, lane, steps.order - 1, impact), 0.0)
+    if not destabilised:
+        known = max(block.peak_rotation, block.largest_z)
+        block.largest_z = max(block.largest_z, highest_peak(steps, lane, 0.0, h, z, w, known))
+    if impact >= 0.0:
+        return IMPACT, block.s + h, z, w
+    if block.largest_z >= 0.5 * math.pi / block.alpha:
+        return OVERTURNS, block.s + h, z, w
+    block.from_ground = 0
+    steps.z0[lane], steps.w0[lane] = z, w
+    if h < steps.limit[lane]:  # the series is accurate on a part of the piece only
+        block.s += h
+        steps.force[lane] += steps.force_rate[lane] * h
+        steps.limit[lane] -= h
+        return IN_FLIGHT, block.s, z, w
+    if block.piece_end < block.h:
+        block.s = block.piece_end
+        start_piece(block, samples, steps, lane, True)
+        return IN_FLIGHT, block.s, z, w
+    block.stepped += 1
+    block.interval, block.s = block.interval + 1, 0.0
+    if never_returns(block, samples, z, w):
+        return OVERTURNS, 0.0, z, w
+    if block.interval == len(samples[SHAPE]) - 1:
+        return PULSE_END, 0.0, z, w
+    start_piece(block, samples, steps, lane, False)
+    return IN_FLIGHT, 0.0, z, w

@@ -1,0 +1,1 @@
+"""Suites of recorded motions: outcomes, fragility, annual rates, and pulses fitted to records."""

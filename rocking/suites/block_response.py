@@ -1,0 +1,177 @@
+"""A block in metres under a record: outcome, rotation, and how far it is from another outcome."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.records.record import Record
+from rocking.model.block import Block
+from rocking.model.outcome import Outcome
+from rocking.model.response import Response
+from rocking.solver.records.record_response import record_response
+from rocking.suites.scales import HIGHEST_SCALE, ScaleThresholds, restitution_of, scale_thresholds
+
+MARGIN = 0.05
+"""Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
+
+REFINEMENT = 8
+"""Samples into which one is divided by band-limited interpolation, for the comparison of samplings."""
+
+SAMPLING_DIFFERENCE = 0.05
+"""Relative difference of the peaks of both samplings above which a warning is given [-]."""
+
+DRIFT = 0.1
+"""Velocity at the end of a record over its largest above which a warning is given [-]."""
+
+MAX_RESAMPLED = 400_000
+"""Most samples of the refined record; a longer one is not compared."""
+
+
+@dataclass(frozen=True)
+class BlockResponse:
+    """Response of a block to a record.
+
+    Attributes
+    ----------
+    response : Response
+        In groups: peak rotation over alpha, outcome, impacts.
+    restitution : float
+        eta [-].
+    slenderness : float
+        g tan(alpha)/PGA of the scaled record [-].
+    peak_rotation : float
+        max |theta| [rad]; nan if it overturns.
+    top_displacement : float
+        Largest horizontal displacement of the top corner above the pivot [m]; nan if it overturns.
+    resampled : Response or None
+        The response to the record interpolated band-limited at an eighth of its step, without resampling the block;
+        None for a record that would be too long.
+    thresholds : ScaleThresholds or None
+        Scales of the record at which the outcome changes; None if they were not asked for.
+    warnings : tuple of str
+        Where the answer is in doubt.
+    """
+
+    response: Response
+    restitution: float
+    slenderness: float
+    peak_rotation: float
+    top_displacement: float
+    resampled: Response | None
+    thresholds: ScaleThresholds | None
+    warnings: tuple[str, ...]
+
+    @property
+    def outcome(self) -> Outcome:
+        """The final outcome."""
+        return Outcome(int(self.response.outcome))
+
+
+def block_response(
+    record: Record,
+    block: Block,
+    *,
+    scale: float = 1.0,
+    restitution: str | float = "housner",
+    thresholds: bool = False,
+    stop: StopFlag | None = None,
+) -> BlockResponse:
+    """Response of a block to a record, by (2.2).
+
+    Parameters
+    ----------
+    record : Record
+        Ground motion.
+    block : Block
+        Block.
+    scale : float
+        Factor of the record [-], (0, 1e6].
+    restitution : "housner" or float
+        (2.4), 0 where that is negative; or eta [-], [0, 1].
+    thresholds : bool
+        Whether to search the scales at which the outcome changes, up to ten times the scale of uplift or twice `scale`.
+    stop : StopFlag, optional
+        Cancels the work, which then raises `StoppedError`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    """
+    factor = in_range("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
+    if factor.ndim:
+        raise InvalidArgumentError("scale", scale, "one number")
+    eta = restitution_of(block, restitution)
+    uplift = block.uplift_acceleration / record.peak_acceleration
+
+    def solve(motion: Record) -> Response:
+        return record_response(
+            motion,
+            frequency_parameter=block.frequency_parameter,
+            slenderness=block.uplift_acceleration / (float(factor) * motion.peak_acceleration),
+            restitution=eta,
+            alpha=block.alpha,
+            stop=stop,
+        )
+
+    found = solve(record)
+    refined = None
+    if record.samples * REFINEMENT <= MAX_RESAMPLED:
+        refined = solve(record.resampled(record.time_step / REFINEMENT))
+    searched = None
+    if thresholds:
+        highest = min(max(10.0 * uplift, 2.0 * float(factor)), HIGHEST_SCALE)
+        searched = scale_thresholds(record, block, restitution=eta, highest=highest, stop=stop)
+    peak = float(found.peak_rotation) * block.alpha
+    return BlockResponse(
+        response=found,
+        restitution=eta,
+        slenderness=uplift / float(factor),
+        peak_rotation=peak,
+        top_displacement=2.0 * block.half_height * math.sin(peak),
+        resampled=refined,
+        thresholds=searched,
+        warnings=(
+            *_of_record(record),
+            *_of_sampling(found, refined),
+            *_of_thresholds(float(factor), searched),
+        ),
+    )
+
+
+def _of_record(record: Record) -> list[str]:
+    share = abs(record.final_velocity) / record.peak_velocity if record.peak_velocity > 0.0 else 0.0
+    if share <= DRIFT:
+        return []
+    return [f"the velocity of the record ends at {100.0 * share:.0f} % of its largest: its baseline is not corrected"]
+
+
+def _of_sampling(found: Response, refined: Response | None) -> list[str]:
+    if refined is None:
+        return []
+    if bool(found.overturned) != bool(refined.overturned):
+        other = Outcome(int(refined.outcome)).sentence
+        return [f"the record is sampled too coarsely for this answer: interpolated band-limited, the block {other}"]
+    peak, other_peak = float(found.peak_rotation), float(refined.peak_rotation)
+    if abs(other_peak - peak) <= SAMPLING_DIFFERENCE * peak or math.isnan(peak):
+        return []
+    peaks = f"{other_peak:.3g} alpha instead of {peak:.3g} alpha"
+    return [f"the record is sampled coarsely: interpolated band-limited, the peak rotation is {peaks}"]
+
+
+def _of_thresholds(scale: float, searched: ScaleThresholds | None) -> list[str]:
+    if searched is None:
+        return []
+    near = [float(value) for value in searched.scale if abs(value / scale - 1.0) < MARGIN]
+    texts = []
+    if near:
+        places = ", ".join(f"{value:.4g}" for value in near)
+        texts.append(f"the outcome changes within {100.0 * MARGIN:g} % of this scale: at {places}")
+    if not searched.overturns_above.all():
+        texts.append(
+            "the outcome is not monotone in the scale: above the first overturning there are scales it survives"
+        )
+    return texts

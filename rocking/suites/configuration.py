@@ -1,0 +1,246 @@
+"""Configuration of a suite of records: which files, blocks, levels and limit states.
+
+A configuration is a mapping, as read from a file, with exactly these keys:
+
+- name: of the suite and of its folder of results; letters, digits, `-`, `_` and `.`
+- records: `folder`, relative to the file of the configuration; `pattern` of the file names; `unit`, `time_step` [s] and
+  `component`, as for `rocking.read_record`, null where the files state them; `baseline_order` of the baseline that is
+  removed (`Record.baseline_corrected`), null for none
+- blocks: list of `half_width` and `half_height` [m]
+- restitution: housner, or eta [-]
+- measure: as for `rocking.fragility`
+- intensity: list of levels; or `low`, `high` and `points`, spaced evenly in the logarithm
+- demand: list of limit states, as for `rocking.fragility`
+- confidence: of the intervals [-]
+- map: `intensity`, and `half_diagonal` [m] and `alpha_deg`, each a list or `low`, `high` and `points`, spaced evenly;
+  null for none
+- hazard: `intensity` and annual `rate` of exceedance [1/year], two lists; null for none
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.excitation.records.processing import MAX_BASELINE_ORDER
+from rocking.excitation.records.readers.read_record import read_record
+from rocking.excitation.records.record import UNITS, Record
+from rocking.model.block import Block
+from rocking.model.checks import check
+from rocking.model.parameters import RESTITUTION
+from rocking.suites.fragility import check_demands
+from rocking.suites.hazard import check_hazard_curve
+from rocking.suites.intensity import MEASURES
+
+Array = NDArray[np.float64]
+
+MAX_POINTS = 10_000
+"""Most levels, and most points of one axis of the map."""
+
+
+@dataclass(frozen=True)
+class RecordFiles:
+    """Where the records are, and what their files do not state: attributes as in the table above."""
+
+    folder: Path
+    pattern: str
+    unit: str | None
+    time_step: float | None
+    component: str | None
+    baseline_order: int | None
+
+    def paths(self) -> list[Path]:
+        """The files, in the order of their names.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If there is none.
+        """
+        found = sorted(path for path in self.folder.glob(self.pattern) if path.is_file()) if self.pattern else []
+        if not found:
+            raise InvalidArgumentError(
+                "records", f"{self.folder}/{self.pattern}", "a folder and a pattern of its files"
+            )
+        return found
+
+    def read(self, path: Path) -> Record:
+        """The motion of a file, without its baseline if an order is given; named after the file, without its suffix.
+
+        Raises
+        ------
+        InvalidArgumentError, RecordFileError
+            As `rocking.read_record`.
+        """
+        motion = read_record(path, unit=self.unit, time_step=self.time_step, component=self.component)
+        corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
+        return Record(corrected.acceleration, corrected.time_step, "m/s2", path.stem, corrected.source)
+
+
+@dataclass(frozen=True)
+class BlockMap:
+    """Grid of sizes and shapes at one level of intensity.
+
+    Attributes
+    ----------
+    intensity : float
+        The level, in the unit of the measure.
+    half_diagonal : array
+        R [m], ascending.
+    alpha : array
+        Slenderness angles [rad], ascending.
+    """
+
+    intensity: float
+    half_diagonal: Array
+    alpha: Array
+
+
+@dataclass(frozen=True)
+class SuiteConfiguration:
+    """A checked configuration, in SI units."""
+
+    name: str
+    records: RecordFiles
+    blocks: tuple[Block, ...]
+    restitution: str | float
+    measure: str
+    intensity: Array
+    demand: tuple[str | float, ...]
+    confidence: float
+    map: BlockMap | None
+    hazard: tuple[Array, Array] | None
+
+    def motions(self) -> list[Record]:
+        """The motions of all files, in the order of their names."""
+        return [self.records.read(path) for path in self.records.paths()]
+
+
+def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfiguration:
+    """Check a configuration.
+
+    Parameters
+    ----------
+    given : mapping
+        As described above.
+    folder : Path
+        Folder of its file, to which `records.folder` is relative.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For the first key that is missing, unknown or has an invalid value; `parameter` is the key, such as
+        `map.alpha_deg`.
+    """
+    _keys("suite", given, SuiteConfiguration.__annotations__)
+    measure = one_of("measure", given["measure"], MEASURES)
+    hazard = None
+    if given["hazard"] is not None:
+        _keys("hazard", given["hazard"], ("intensity", "rate"))
+        hazard = check_hazard_curve((given["hazard"]["intensity"], given["hazard"]["rate"]))
+    return SuiteConfiguration(
+        name=_name(given["name"]),
+        records=_record_files(given["records"], folder),
+        blocks=_blocks(given["blocks"]),
+        restitution="housner" if given["restitution"] == "housner" else float(check(RESTITUTION, given["restitution"])),
+        measure=measure,
+        intensity=_levels("intensity", given["intensity"], logarithmic=True),
+        demand=tuple(check_demands(given["demand"])),
+        confidence=_number("confidence", given["confidence"], 0.0, 1.0),
+        map=None if given["map"] is None else _map(given["map"]),
+        hazard=hazard,
+    )
+
+
+def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
+    """Refuse a section whose keys are not exactly these."""
+    expected = list(keys)
+    if not isinstance(given, Mapping):
+        raise InvalidArgumentError(section, given, "a mapping with the keys " + ", ".join(expected))
+    if {*given} != {*expected}:
+        wrong = [f"no {key}" for key in expected if key not in given]
+        wrong += [f"unknown {key}" for key in given if key not in expected]
+        raise InvalidArgumentError(section, ", ".join(wrong), "exactly the keys " + ", ".join(expected))
+
+
+def _number(parameter: str, value: Any, low: float, high: float, closed: str = "neither") -> float:
+    number = in_range(parameter, value, low, high, closed=closed)
+    if number.ndim:
+        raise InvalidArgumentError(parameter, value, "one number")
+    return float(number)
+
+
+def _name(value: Any) -> str:
+    if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", value):
+        raise InvalidArgumentError("name", value, "letters, digits, - _ and .")
+    return value
+
+
+def _record_files(given: Any, folder: Path) -> RecordFiles:
+    _keys("records", given, RecordFiles.__annotations__)
+    for key in ("folder", "pattern"):
+        if not isinstance(given[key], str) or not given[key]:
+            raise InvalidArgumentError(f"records.{key}", given[key], "a text")
+    if "/" in given["pattern"]:
+        raise InvalidArgumentError("records.pattern", given["pattern"], "a pattern of file names, such as *.csv")
+    step, order = given["time_step"], given["baseline_order"]
+    if order is not None and (type(order) is not int or not 0 <= order <= MAX_BASELINE_ORDER):
+        raise InvalidArgumentError(
+            "records.baseline_order", order, f"null, or an integer from 0 to {MAX_BASELINE_ORDER}"
+        )
+    return RecordFiles(
+        folder / given["folder"],
+        given["pattern"],
+        None if given["unit"] is None else one_of("records.unit", given["unit"], UNITS),
+        None if step is None else _number("records.time_step", step, 0.0, math.inf),
+        None if given["component"] is None else str(given["component"]),
+        order,
+    )
+
+
+def _blocks(given: Any) -> tuple[Block, ...]:
+    if not isinstance(given, list) or not given:
+        raise InvalidArgumentError("blocks", given, "a list of half_width and half_height [m]")
+    blocks = []
+    for place, item in enumerate(given):
+        _keys(f"blocks[{place}]", item, ("half_width", "half_height"))
+        sizes = {name: _number(f"blocks[{place}].{name}", value, 0.0, math.inf) for name, value in item.items()}
+        blocks.append(Block(**sizes))
+    return tuple(blocks)
+
+
+def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:
+    """A list of values, or `points` values from `low` to `high`."""
+    if not isinstance(given, Mapping):
+        levels = np.atleast_1d(in_range(parameter, given, 0.0, math.inf, closed="neither"))
+        if levels.ndim != 1 or not 1 <= levels.size <= MAX_POINTS or not np.all(np.diff(levels) > 0.0):
+            raise InvalidArgumentError(parameter, given, f"1 to {MAX_POINTS} ascending values")
+        return levels
+    _keys(parameter, given, ("low", "high", "points"))
+    low = _number(f"{parameter}.low", given["low"], 0.0, math.inf)
+    high = _number(f"{parameter}.high", given["high"], low, math.inf)
+    points = given["points"]
+    if type(points) is not int or not 2 <= points <= MAX_POINTS:
+        raise InvalidArgumentError(f"{parameter}.points", points, f"an integer from 2 to {MAX_POINTS}")
+    # rounded so that the values in files are short, and equal on every machine
+    spaced = np.geomspace(low, high, points) if logarithmic else np.linspace(low, high, points)
+    return np.array([float(f"{value:.12g}") for value in spaced])
+
+
+def _map(given: Any) -> BlockMap:
+    _keys("map", given, ("intensity", "half_diagonal", "alpha_deg"))
+    angles = _levels("map.alpha_deg", given["alpha_deg"], logarithmic=False)
+    in_range("map.alpha_deg", angles, 0.0, 89.0, closed="right", unit="deg")
+    return BlockMap(
+        _number("map.intensity", given["intensity"], 0.0, math.inf),
+        _levels("map.half_diagonal", given["half_diagonal"], logarithmic=False),
+        np.radians(angles),
+    )

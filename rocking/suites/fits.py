@@ -1,0 +1,368 @@
+"""Fragility curves fitted to outcomes by maximum likelihood, with intervals.
+
+A fragility curve gives the probability that a limit state is reached at an intensity x:
+
+- lognormal: P = Phi(ln(x/median)/beta), Phi the normal distribution (Baker 2015, eq. 1);
+- logistic: P = 1/(1 + exp(-ln(x/median)/s)).
+
+The outcomes at one level are taken as Bernoulli trials of the probability at that level, and the curve maximises their
+likelihood (Baker 2015, eq. 11). With z = a + b ln x, median = exp(-a/b) and 1/b = beta or s, its logarithm is concave
+in (a, b), so that the maximum is unique where it exists.
+
+One record gives the outcomes of every level, and these depend on each other. The estimate remains consistent, but the
+usual standard errors, which take all outcomes as independent, are too small. The intervals here are those of
+independent records (`_covariance`; Liang & Zeger 1986 on such estimates). The variance of ln(dispersion) is taken as
+1/(2 (n - 1)) at least, which n records would have whose intensities were known exactly. In 800 suites of 10, 20 and 40
+records with a lognormal answer, intervals of 95 % held the median in 95 to 97 % of them and the dispersion in 92 to 95
+% (`tests/suites/test_fits.py` repeats a part).
+
+References
+----------
+Baker J. W. (2015), Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake
+Spectra 31(1), 579-599. Liang K.-Y., Zeger S. L. (1986), Longitudinal data analysis using generalized linear models,
+Biometrika 73(1), 13-22. Satterthwaite F. E. (1946), An approximate distribution of estimates of variance components,
+Biometrics Bulletin 2(6), 110-114. Clopper C. J., Pearson E. S. (1934), The use of confidence or fiducial limits
+illustrated in the case of the binomial, Biometrika 26(4), 404-413.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import minimize
+from scipy.special import expit, log_expit, log_ndtr, ndtr
+from scipy.stats import beta, chi2
+from scipy.stats import t as student
+
+Array = NDArray[np.float64]
+
+LARGEST_SLOPE = 1e8
+"""b at which a fit counts as a step [-]; it is reached only by data that are separated to rounding."""
+
+
+class FitStatus(IntEnum):
+    """Whether the outcomes determine a curve."""
+
+    FITTED = 0
+    SEPARATED = 1
+    NONE_REACHES = 2
+    ALL_REACH = 3
+    NO_TREND = 4
+
+    @property
+    def sentence(self) -> str:
+        """What it means."""
+        return _SENTENCES[self]
+
+
+_SENTENCES = {
+    FitStatus.FITTED: "the likelihood has a maximum",
+    FitStatus.SEPARATED: "no record survives above a level at which another one does not: the curve is a step",
+    FitStatus.NONE_REACHES: "no record reaches the limit state at any level: the median is above the highest level",
+    FitStatus.ALL_REACH: "every record reaches the limit state at every level: the median is below the lowest level",
+    FitStatus.NO_TREND: "the probability does not increase over the levels: there is no such curve",
+}
+
+
+@dataclass(frozen=True)
+class Link:
+    """A distribution, symmetric about 0, whose logarithm is concave.
+
+    Attributes
+    ----------
+    cdf, log_cdf : callable
+        F(z) and ln F(z).
+    slope : callable
+        d ln F/dz.
+    curvature : callable
+        -d2 ln F/dz2, >= 0, from z and the slope at z.
+    deviation : float
+        Its standard deviation [-].
+    """
+
+    cdf: Callable[[Array], Array]
+    log_cdf: Callable[[Array], Array]
+    slope: Callable[[Array], Array]
+    curvature: Callable[[Array, Array], Array]
+    deviation: float
+
+
+def _normal_slope(z: Array) -> Array:
+    return np.asarray(np.exp(-0.5 * z * z - 0.5 * math.log(2.0 * math.pi) - log_ndtr(z)))
+
+
+LINKS = {
+    "lognormal": Link(ndtr, log_ndtr, _normal_slope, lambda z, slope: slope * (z + slope), 1.0),
+    "logistic": Link(
+        expit,
+        log_expit,
+        lambda z: np.asarray(expit(-z)),
+        lambda _, slope: slope * (1.0 - slope),
+        math.pi / math.sqrt(3.0),
+    ),
+}
+"""The curves by name."""
+
+
+@dataclass(frozen=True)
+class CurveFit:
+    """A fitted fragility curve. Ends of intervals are 0 or infinite where the data do not bound them.
+
+    Attributes
+    ----------
+    status : FitStatus
+        Whether there is a curve; the numbers below are nan where there is none.
+    median : float
+        Intensity of probability 1/2, in the unit of the intensity.
+    median_interval : (float, float)
+        Its confidence interval. Without a fitted curve it is the distribution-free one: the median is above the levels
+        at which the binomial interval is below 1/2, and below those at which it is above.
+    dispersion : float
+        Standard deviation of the logarithm of the intensity at which the limit state is reached [-]: beta of the
+        lognormal curve, s pi/sqrt(3) of the logistic one. 0 for a step.
+    dispersion_interval : (float, float)
+        Its confidence interval.
+    log_likelihood : float
+        ln of the likelihood of all outcomes, taken as independent [-].
+    deviance : float
+        Twice what ln of the likelihood lacks of that of the observed fractions [-], >= 0.
+    largest_deviation : float
+        Largest difference of the curve from the observed fraction at a level [-].
+    """
+
+    status: FitStatus
+    median: float
+    median_interval: tuple[float, float]
+    dispersion: float
+    dispersion_interval: tuple[float, float]
+    log_likelihood: float
+    deviance: float
+    largest_deviation: float
+
+
+def curve_probability(model: str, intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
+    """The probability of a fitted curve [-]; arguments as in `CurveFit`, which broadcast; nan without a curve.
+
+    A dispersion of 0 is a step, 1/2 at the median; a negative one a curve that falls.
+    """
+    link = LINKS[model]
+    distance = np.log(np.asarray(intensity, dtype=np.float64)) - np.log(np.asarray(median, dtype=np.float64))
+    width = np.asarray(dispersion, dtype=np.float64) / link.deviation
+    with np.errstate(divide="ignore", invalid="ignore"):
+        z = np.where((width == 0.0) & (distance == 0.0), 0.0, distance / width)
+    return np.asarray(link.cdf(z))
+
+
+def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple[Array, Array]:
+    """Clopper-Pearson intervals of probabilities [-], which cover with the given confidence at least.
+
+    Parameters
+    ----------
+    count : int array
+        Successes, 0 to `trials`, any shape.
+    trials : int
+        Trials of each, > 0.
+    confidence : float
+        [-], (0, 1).
+    """
+    successes, tail = np.asarray(count), 0.5 * (1.0 - confidence)
+    with np.errstate(invalid="ignore"):
+        low = np.where(successes > 0, beta.ppf(tail, successes, trials - successes + 1), 0.0)
+        high = np.where(successes < trials, beta.isf(tail, successes + 1, trials - successes), 1.0)
+    return low, high
+
+
+def fit_curve(
+    reached: ArrayLike,
+    intensity: ArrayLike,
+    *,
+    model: str = "lognormal",
+    confidence: float = 0.95,
+    falling: bool = False,
+) -> CurveFit:
+    """Fit a fragility curve to the outcomes of records at levels.
+
+    Parameters
+    ----------
+    reached : bool array, (levels, records)
+        Whether the limit state is reached.
+    intensity : float array, (levels,)
+        Levels, > 0.
+    model : {"lognormal", "logistic"}
+        Kind of curve.
+    confidence : float
+        Of the intervals [-], (0, 1).
+    falling : bool
+        Whether the probability falls with the intensity; the dispersion is then negative.
+    """
+    outcomes = np.asarray(reached, dtype=bool)
+    direction = -1.0 if falling else 1.0
+    x = direction * np.log(np.asarray(intensity, dtype=np.float64))
+    free = _free_interval(outcomes, np.asarray(intensity, dtype=np.float64), confidence, falling)
+    unknown = (math.nan, free, math.nan, (0.0, math.inf), math.nan, math.nan, math.nan)
+    if not outcomes.any():
+        return CurveFit(FitStatus.NONE_REACHES, *unknown)
+    if outcomes.all():
+        return CurveFit(FitStatus.ALL_REACH, *unknown)
+    last_survivor, first_reached = x[~outcomes.all(axis=1)].max(), x[outcomes.any(axis=1)].min()
+    if last_survivor <= first_reached:
+        median = math.exp(direction * 0.5 * (last_survivor + first_reached))
+        fractions = outcomes.mean(axis=1)
+        step = curve_probability(model, np.exp(direction * x), median, 0.0)
+        # at the level of the step itself any fraction is possible in the limit
+        at_step = np.isclose(x, direction * math.log(median), rtol=0.0, atol=1e-12)
+        likelihood = _log_likelihood(fractions, np.where(at_step, fractions, fractions.round()), outcomes.shape[1])
+        deviation = float(np.abs(step - fractions)[~at_step].max(initial=0.0))
+        return CurveFit(FitStatus.SEPARATED, median, free, 0.0, (0.0, math.inf), likelihood, 0.0, deviation)
+    parameters = _maximise(LINKS[model], outcomes.mean(axis=1), x)
+    if parameters is None:
+        return CurveFit(FitStatus.NO_TREND, *unknown)
+    return _described(LINKS[model], outcomes, x, direction, parameters, confidence)
+
+
+def _maximise(link: Link, fractions: Array, x: Array) -> tuple[float, float] | None:
+    """(a, b) of z = a + b x at the largest likelihood; None if b is not positive there."""
+    centre, width = float(x.mean()), float(np.ptp(x))
+    scaled = (x - centre) / width
+    design = np.stack([np.ones_like(scaled), scaled])
+
+    def loss(parameters: Array) -> tuple[float, Array]:
+        z = parameters @ design
+        value = -(fractions @ link.log_cdf(z) + (1.0 - fractions) @ link.log_cdf(-z))
+        return float(value), -design @ (fractions * link.slope(z) - (1.0 - fractions) * link.slope(-z))
+
+    def hessian(parameters: Array) -> Array:
+        z = parameters @ design
+        weight = fractions * link.curvature(z, link.slope(z)) + (1.0 - fractions) * link.curvature(-z, link.slope(-z))
+        return np.asarray((design * weight) @ design.T)
+
+    found = minimize(
+        loss,
+        np.array([0.0, 1.0]),
+        jac=True,
+        hess=hessian,
+        method="trust-exact",
+        options={"gtol": 1e-10, "maxiter": 500},
+    )
+    a, b = (float(value) for value in found.x)
+    b /= width
+    return (a - b * centre, b) if 0.0 < b < LARGEST_SLOPE and found.fun < _flat_loss(fractions) else None
+
+
+def _flat_loss(fractions: Array) -> float:
+    """The loss of one probability for all levels; no curve that rises need reach it."""
+    mean = float(fractions.mean())
+    return -fractions.size * (mean * math.log(mean) + (1.0 - mean) * math.log1p(-mean))
+
+
+def _described(
+    link: Link,
+    outcomes: NDArray[np.bool_],
+    x: Array,
+    direction: float,
+    parameters: tuple[float, float],
+    confidence: float,
+) -> CurveFit:
+    a, b = parameters
+    z = a + b * x
+    fractions, records = outcomes.mean(axis=1), outcomes.shape[1]
+    up, down = link.slope(z), link.slope(-z)
+    design = np.stack([np.ones_like(x), x])
+    median, spread = math.exp(-direction * a / b), 1.0 / b
+    median_interval, dispersion_interval = (0.0, math.inf), (0.0, math.inf)
+    covariance = _covariance(
+        design,
+        np.where(outcomes, link.curvature(z, up)[:, None], link.curvature(-z, down)[:, None]),
+        np.where(outcomes, up[:, None], -down[:, None]),
+    )
+    if covariance is not None:
+        quantile = float(student.ppf(0.5 + 0.5 * confidence, records - 1))
+        of_median = np.array([-1.0 / b, a / b**2])
+        half_width = quantile * math.sqrt(float(of_median @ covariance @ of_median))
+        median_interval = (median * _exp(-half_width), median * _exp(half_width))
+        variance = max(float(covariance[1, 1]) / b**2, 0.5 / (records - 1))
+        low, high = _spread_factors(variance, confidence)
+        dispersion_interval = (spread * link.deviation * low, spread * link.deviation * high)
+    fitted = link.cdf(z)
+    likelihood = records * float(fractions @ link.log_cdf(z) + (1.0 - fractions) @ link.log_cdf(-z))
+    if direction < 0.0:
+        dispersion_interval = (-dispersion_interval[1], -dispersion_interval[0])
+    return CurveFit(
+        FitStatus.FITTED,
+        median,
+        median_interval,
+        direction * spread * link.deviation,
+        dispersion_interval,
+        likelihood,
+        2.0 * (_log_likelihood(fractions, fractions, records) - likelihood),
+        float(np.abs(fitted - fractions).max()),
+    )
+
+
+def _covariance(design: Array, curvature: Array, slope: Array) -> Array | None:
+    """Covariance (2, 2) of (a, b) when records are independent and the levels of a record need not be.
+
+    The jackknife over records with one Newton step for each: the change of (a, b) without record i is the inverse of
+    the information of the others times the score of i.
+
+    Parameters
+    ----------
+    design : (2, levels) array
+        1 and x.
+    curvature, slope : (levels, records) arrays
+        Of the logarithm of the likelihood of each outcome, by z.
+
+    Returns
+    -------
+    array or None
+        None where the other records do not determine (a, b).
+    """
+    records = slope.shape[1]
+    own = np.einsum("al,bl,lr->rab", design, design, curvature)
+    others = own.sum(axis=0) - own
+    if records < 2 or not np.all(np.linalg.det(others) > 0.0):
+        return None
+    changes = np.linalg.solve(others, (design @ slope).T[:, :, None])[:, :, 0]
+    return np.asarray((records - 1) / records * changes.T @ changes)
+
+
+def _spread_factors(variance: float, confidence: float) -> tuple[float, float]:
+    """Ends of the interval of a spread over its estimate, from the variance of the logarithm of the estimate.
+
+    The square of the estimate is taken as that of a normal sample with nu degrees of freedom, chi^2/(nu + 1), with the
+    nu whose logarithm has this variance, psi'(nu/2)/4, psi'(x) = 1/x + 1/(2 x^2) (Satterthwaite 1946). Unlike a normal
+    interval of the logarithm it allows for the estimate being too small in small samples.
+    """
+    freedom = (1.0 + math.sqrt(1.0 + 8.0 * variance)) / (4.0 * variance)
+    quantiles = chi2.ppf([0.5 + 0.5 * confidence, 0.5 - 0.5 * confidence], freedom)
+    with np.errstate(divide="ignore"):
+        low, high = np.sqrt((freedom + 1.0) / quantiles)
+    return float(low), float(high)
+
+
+def _exp(value: float) -> float:
+    return math.exp(value) if value < 700.0 else math.inf
+
+
+def _log_likelihood(fractions: Array, probabilities: Array, trials: int) -> float:
+    """ln of the likelihood of fractions of outcomes, without binomial coefficients; 0 ln 0 is 0."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        terms = fractions * np.log(probabilities), (1.0 - fractions) * np.log1p(-probabilities)
+    return trials * float(sum(np.where(np.isnan(term), 0.0, term).sum() for term in terms))
+
+
+def _free_interval(
+    outcomes: NDArray[np.bool_], intensity: Array, confidence: float, falling: bool
+) -> tuple[float, float]:
+    """Distribution-free interval of the median, from the binomial intervals of the levels."""
+    records = outcomes.shape[1]
+    low, high = binomial_interval(outcomes.sum(axis=1), records, confidence)
+    below, above = intensity[high < 0.5], intensity[low > 0.5]
+    if falling:
+        below, above = above, below
+    return float(below.max(initial=0.0)), float(above.min(initial=math.inf))

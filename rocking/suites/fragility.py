@@ -1,0 +1,262 @@
+"""Fragility of blocks under a suite of records: counts, intervals, fitted curves.
+
+The outcome is not monotone in the intensity: a block that overturns under a record can survive under the same record
+scaled up. Every level is therefore evaluated, and the probability at a level is estimated from the outcomes at that
+level. The curve of first exceedance, in which a record counts from the lowest level on at which it reaches the limit
+state, is given for comparison only: it is the usual result of incremental dynamic analysis, and its median is too low.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.records.record import Record
+from rocking.model.block import Block
+from rocking.suites.fits import LINKS, CurveFit, FitStatus, binomial_interval, curve_probability, fit_curve
+from rocking.suites.intensity import MEASURES
+from rocking.suites.outcomes import check_suite, suite_outcomes
+
+Array = NDArray[np.float64]
+
+MAX_THRESHOLD = 1e3
+"""Largest threshold of max |theta|/alpha [-]; at 90 degrees a block of alpha = 0.1 degrees is at 900."""
+
+COMPARISON = "for comparison: a record counts from the lowest level on at which it reaches the limit state"
+
+_MODEL_VARIABLES: dict[str, tuple[str, str]] = {
+    "median_intensity": ("intensity", "intensity of probability 1/2"),
+    "median_intensity_lower": ("intensity", "lower end of the confidence interval of the median"),
+    "median_intensity_upper": ("intensity", "upper end of the confidence interval of the median"),
+    "dispersion": ("1", "standard deviation of the logarithm of the intensity at which the limit state is reached"),
+    "dispersion_lower": ("1", "lower end of the confidence interval of the dispersion"),
+    "dispersion_upper": ("1", "upper end of the confidence interval of the dispersion"),
+    "log_likelihood": ("1", "logarithm of the likelihood of the outcomes"),
+    "deviance": ("1", "twice the difference of the log likelihood from that of the observed fractions"),
+    "largest_deviation": ("1", "largest difference of the fitted curve from the observed fraction at a level"),
+}
+
+
+def fragility(
+    records: Sequence[Record] | Record,
+    blocks: Sequence[Block] | Block,
+    *,
+    intensity: ArrayLike,
+    measure: str = "pga",
+    restitution: str | float = "housner",
+    demand: str | float | Sequence[str | float] = "overturning",
+    confidence: float = 0.95,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Probability that blocks reach a limit state under a suite of records, at levels of intensity.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        The suite. Its records count as independent and equally likely.
+    blocks : Block or sequence of Block
+        Rigid blocks (2.2). One block, not in a sequence, gives a result without the dimension `block`.
+    intensity : array_like, (levels,)
+        Levels, > 0, ascending, in the unit of the measure.
+    measure : str
+        "pga" [m/s2], "pgv" [m/s], "pga_ratio" PGA/(g tan alpha), "pgv_ratio" p PGV/(g tan alpha) or "frequency_ratio"
+        omega_p/p: see `rocking.suites.intensity`.
+    restitution : "housner" or float
+        (2.4), 0 where that is negative; or eta [-], [0, 1].
+    demand : "overturning", "alpha", a number, or a sequence of these
+        The limit state: final overturning; passage of alpha at some time; max |theta|/alpha above a threshold [-],
+        (0, 1000], or overturning. One, not in a sequence, gives a result without the dimension `demand`.
+    confidence : float
+        Of all intervals [-], (0, 1).
+    threads : int, optional
+        Number of threads; by default all cores.
+    stop : StopFlag, optional
+        Cancels the work, which then raises `StoppedError`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (block, intensity, record): the outcomes, `peak_rotation`, `overturned`, `exceeded_alpha`, `outcome`,
+        `impacts`, and the `scale` of the record. Over (demand, block, intensity): `exceedances`, the number of records
+        that reach the limit state, their `fraction`, and its Clopper-Pearson interval `fraction_lower`,
+        `fraction_upper`. Over (demand, block, model), model = lognormal and logistic: `median_intensity`, `dispersion`,
+        their intervals, `fit_status` and measures of fit (`rocking.suites.fits`); `fitted` also over intensity.
+        `survives_above_first` marks the records that do not reach the limit state at some level above the first at
+        which they do, and `records_surviving_above_first` names them. `first_exceedances`, `first_median_intensity`,
+        ... are the curve of first exceedance, for comparison.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described.
+    StoppedError
+        If `stop` was set.
+    """
+    suite = check_suite(records, blocks, intensity, measure, restitution)
+    limits = check_demands(demand)
+    in_range("confidence", confidence, 0.0, 1.0, closed="neither")
+    outcomes = suite_outcomes(suite, threads=threads, stop=stop)
+    found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence))
+    found.attrs |= {"confidence": confidence}
+    if isinstance(blocks, Block):
+        found = found.isel(block=0)
+    return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found
+
+
+def fragility_of_outcomes(
+    outcomes: xr.Dataset, demand: Sequence[str | float] = ("overturning",), confidence: float = 0.95
+) -> xr.Dataset:
+    """Counts, intervals and fitted curves from the outcomes of a suite, as `fragility` describes them.
+
+    Parameters
+    ----------
+    outcomes : xarray.Dataset
+        Result of `rocking.suites.outcomes.suite_outcomes`.
+    demand : sequence
+        Limit states.
+    confidence : float
+        Of all intervals [-], (0, 1).
+    """
+    limits = check_demands(list(demand))
+    levels = outcomes["intensity"].values
+    falling = not MEASURES[outcomes.attrs["measure"]].scales_amplitude
+    reached = np.stack([_reached(outcomes, limit) for limit in limits])  # (demand, block, intensity, record)
+    order = -1 if falling else 1  # from the mildest level on
+    first = np.logical_or.accumulate(reached[:, :, ::order], axis=2)[:, :, ::order]
+    survives = np.asarray((first & ~reached).any(axis=2))
+    names = outcomes["record"].values.astype(str)
+    named = [["; ".join(names[np.asarray(own)]) for own in of_demand] for of_demand in survives]
+    by_level, by_model = ("demand", "block", "intensity"), ("demand", "block", "model")
+    found = xr.Dataset(
+        {
+            "survives_above_first": (
+                ("demand", "block", "record"),
+                survives.astype(np.int8),
+                {
+                    "units": "1",
+                    "long_name": "the limit state is not reached at a level above the first at which it is",
+                    "flag_values": np.array([0, 1], dtype=np.int8),
+                    "flag_meanings": "no yes",
+                },
+            ),
+            "records_surviving_above_first": (
+                ("demand", "block"),
+                np.array(named, dtype=str),
+                {"long_name": "names of the records with survives_above_first"},
+            ),
+        },
+        {
+            "demand": ("demand", np.array([label(limit) for limit in limits]), {"long_name": "limit state"}),
+            "model": ("model", np.array([*LINKS]), {"long_name": "kind of fitted curve"}),
+            **outcomes.coords,
+        },
+        {"measure": outcomes.attrs["measure"]},
+    )
+    for prefix, outcome, remark in (("", reached, {}), ("first_", first, {"comment": COMPARISON})):
+        for name, (unit, meaning, values) in _counted(outcome, confidence).items():
+            found[prefix + name] = (by_level, values, {"units": unit, "long_name": meaning, **remark})
+        fits = _fits(outcome, levels, confidence, falling)
+        found[f"{prefix}fit_status"] = (by_model, _each(fits, "status").astype(np.int8), _STATUS_ATTRIBUTES | remark)
+        for name, (unit, meaning) in _MODEL_VARIABLES.items():
+            known = outcomes["intensity"].attrs["units"] if unit == "intensity" else unit
+            about = {"units": known, "long_name": meaning, **remark}
+            found[prefix + name] = (by_model, _each(fits, name), about)
+    curves = [
+        curve_probability(
+            model,
+            levels,
+            *(found[name].sel(model=model).values[..., None] for name in ("median_intensity", "dispersion")),
+        )
+        for model in LINKS
+    ]
+    found["fitted"] = (
+        (*by_model, "intensity"),
+        np.stack(curves, axis=2),
+        {"units": "1", "long_name": "probability of the fitted curve"},
+    )
+    return found
+
+
+_STATUS_ATTRIBUTES: dict[str, Any] = {
+    "units": "1",
+    "long_name": "whether the outcomes determine a curve",
+    "flag_values": np.array([int(status) for status in FitStatus], dtype=np.int8),
+    "flag_meanings": " ".join(status.name.lower() for status in FitStatus),
+    "comment": "; ".join(f"{status.name.lower()}: {status.sentence}" for status in FitStatus),
+}
+
+
+def label(limit: str | float) -> str:
+    """The name of a limit state in results: overturning, alpha, or such as `0.5 alpha`."""
+    return limit if isinstance(limit, str) else f"{limit:g} alpha"
+
+
+def check_demands(demand: str | float | Iterable[str | float]) -> list[str | float]:
+    """The limit states, thresholds as floats.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If one is not allowed, there is none, or two are equal.
+    """
+    given = [demand] if isinstance(demand, str) or np.ndim(demand) == 0 else list(demand)  # type: ignore[arg-type]
+    found: list[str | float] = []
+    for limit in given:
+        if isinstance(limit, str):
+            if limit not in ("overturning", "alpha"):
+                raise InvalidArgumentError("demand", limit, "overturning, alpha, or a threshold of max |theta|/alpha")
+            found.append(limit)
+        else:
+            found.append(float(in_range("demand", limit, 0.0, MAX_THRESHOLD, closed="right")))  # type: ignore[arg-type]
+    if not found or len({label(limit) for limit in found}) != len(found):
+        raise InvalidArgumentError("demand", demand, "one or more different limit states")
+    return found
+
+
+def _reached(outcomes: xr.Dataset, limit: str | float) -> NDArray[np.bool_]:
+    """Whether each record reaches a limit state, (block, intensity, record)."""
+    overturned = outcomes["overturned"].values.astype(bool)
+    if limit == "overturning":
+        return overturned
+    if limit == "alpha":
+        return outcomes["exceeded_alpha"].values.astype(bool)
+    with np.errstate(invalid="ignore"):
+        return overturned | (outcomes["peak_rotation"].values > limit)
+
+
+def _counted(reached: NDArray[np.bool_], confidence: float) -> dict[str, tuple[str, str, NDArray[Any]]]:
+    count, trials = reached.sum(axis=-1), reached.shape[-1]
+    low, high = binomial_interval(count, trials, confidence)
+    return {
+        "exceedances": ("1", "number of records that reach the limit state", count.astype(np.int32)),
+        "fraction": ("1", "fraction of records that reach the limit state", count / trials),
+        "fraction_lower": ("1", "lower end of the Clopper-Pearson interval of the probability", low),
+        "fraction_upper": ("1", "upper end of the Clopper-Pearson interval of the probability", high),
+    }
+
+
+def _fits(reached: NDArray[np.bool_], levels: Array, confidence: float, falling: bool) -> list[list[list[CurveFit]]]:
+    return [
+        [
+            [fit_curve(own, levels, model=model, confidence=confidence, falling=falling) for model in LINKS]
+            for own in block
+        ]
+        for block in reached
+    ]
+
+
+def _each(fits: list[list[list[CurveFit]]], name: str) -> Array:
+    """One number of each fit; `median_intensity_lower` is the first of `median_interval`, and so on."""
+    name = name.replace("median_intensity", "median")
+    for end, suffix in enumerate(("_lower", "_upper")):
+        if name.endswith(suffix):
+            interval = name.removesuffix(suffix) + "_interval"
+            return np.array([[[getattr(fit, interval)[end] for fit in block] for block in one] for one in fits])
+    return np.array([[[float(getattr(fit, name)) for fit in block] for block in one] for one in fits])

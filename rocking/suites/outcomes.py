@@ -1,0 +1,206 @@
+"""Outcomes of blocks under the records of a suite, each at several levels of intensity."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.records.record import Record
+from rocking.model.block import Block
+from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking.solver.records.record_response import record_response
+from rocking.suites.intensity import Measure, measure_of
+from rocking.suites.scales import restitution_of
+
+Array = NDArray[np.float64]
+
+FIELDS = (PEAK_ROTATION, OVERTURNED, EXCEEDED_ALPHA, OUTCOME, IMPACTS)
+"""Fields of the response that are kept for every record, level and block."""
+
+DIMENSIONS = ("block", "intensity", "record")
+
+BLOCK_COORDINATES: dict[str, tuple[str, str]] = {
+    "half_width": ("m", "half width b of the block"),
+    "half_height": ("m", "half height h of the block"),
+    "half_diagonal": ("m", "half diagonal R of the block"),
+    "alpha": ("rad", "slenderness angle of the block"),
+    "frequency_parameter": ("rad s-1", "frequency parameter p of the block"),
+    "uplift_acceleration": ("m s-2", "ground acceleration of uplift, g tan(alpha)"),
+    "gravity": ("m s-2", "acceleration of gravity"),
+}
+"""Properties of `Block` that the data sets hold, with unit and meaning."""
+
+RECORD_COORDINATES: dict[str, tuple[str, str]] = {
+    "peak_acceleration": ("m s-2", "peak ground acceleration as recorded"),
+    "peak_velocity": ("m s-1", "peak ground velocity as recorded"),
+    "mean_period": ("s", "mean period of the record"),
+    "time_step": ("s", "time between samples"),
+}
+"""Properties of `Record` that the data sets hold, with unit and meaning."""
+
+
+@dataclass(frozen=True)
+class Suite:
+    """Arguments of a fragility analysis, checked.
+
+    Attributes
+    ----------
+    records : tuple of Record
+        One or more.
+    blocks : tuple of Block
+        One or more.
+    levels : (levels,) array
+        Intensities, > 0, ascending, in the unit of the measure.
+    measure : Measure
+        Measure of intensity.
+    restitution : (blocks,) array
+        eta [-] of each block.
+    """
+
+    records: tuple[Record, ...]
+    blocks: tuple[Block, ...]
+    levels: Array
+    measure: Measure
+    restitution: Array
+
+
+def check_suite(
+    records: Sequence[Record] | Record,
+    blocks: Sequence[Block] | Block,
+    intensity: ArrayLike,
+    measure: str,
+    restitution: str | float,
+) -> Suite:
+    """The arguments of `rocking.fragility`, checked.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If there is no record or no block, the levels do not ascend, or a value is not allowed.
+    """
+    chosen = measure_of(measure)
+    motions = (records,) if isinstance(records, Record) else tuple(records)
+    bodies = (blocks,) if isinstance(blocks, Block) else tuple(blocks)
+    if not motions or not all(isinstance(motion, Record) for motion in motions):
+        raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
+    if not bodies or not all(isinstance(body, Block) for body in bodies):
+        raise InvalidArgumentError("blocks", blocks, "one or more objects of rocking.Block")
+    levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=chosen.unit))
+    if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):
+        raise InvalidArgumentError("intensity", intensity, "one or more levels, ascending")
+    for motion in motions:
+        if not math.isfinite(chosen.of(motion, bodies[0])):
+            raise InvalidArgumentError("records", motion, f"records with a finite {chosen.meaning}")
+    eta = np.array([restitution_of(body, restitution) for body in bodies])
+    return Suite(motions, bodies, levels, chosen, eta)
+
+
+def different_names(names: Sequence[str]) -> list[str]:
+    """A different name for each record: its own, with a number where several have it or it has none."""
+    count, used = Counter(names), Counter[str]()
+    found = []
+    for place, name in enumerate(names, start=1):
+        used[name] += 1
+        number = f" ({used[name]})" if count[name] > 1 else ""
+        found.append(name + number if name else f"record {place}")
+    return found
+
+
+def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag | None = None) -> xr.Dataset:
+    """The response of every block to every record at every level, by the solver for (2.2).
+
+    Parameters
+    ----------
+    suite : Suite
+        Checked arguments.
+    threads : int, optional
+        Number of threads; by default all cores.
+    stop : StopFlag, optional
+        Cancels the work, which then raises `StoppedError`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `peak_rotation`, `overturned`, `exceeded_alpha`, `outcome`, `impacts` and `scale` over (block, intensity,
+        record), the properties of the blocks and of the records as coordinates.
+    """
+    shape = tuple(map(len, (suite.blocks, suite.levels, suite.records)))
+    fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in FIELDS}
+    scales = np.empty(shape)
+    alpha = np.array([block.alpha for block in suite.blocks])[:, None]
+    uplift = np.array([block.uplift_acceleration for block in suite.blocks])[:, None]
+    for k, record in enumerate(suite.records):
+        own = np.array([suite.measure.of(record, block) for block in suite.blocks])[:, None]
+        p = np.array([block.frequency_parameter for block in suite.blocks])[:, None]
+        ratio = suite.levels / own
+        scale, frequency = (ratio, p) if suite.measure.scales_amplitude else (np.ones_like(ratio), p / ratio)
+        found = record_response(
+            record,
+            frequency_parameter=frequency,
+            slenderness=uplift / (scale * record.peak_acceleration),
+            restitution=suite.restitution[:, None],
+            alpha=alpha,
+            threads=threads,
+            stop=stop,
+        )
+        scales[:, :, k] = scale
+        for name, values in fields.items():
+            values[:, :, k] = getattr(found, name)
+    return described_outcomes(suite, fields | {"scale": scales})
+
+
+def described_outcomes(suite: Suite, values: dict[str, NDArray[Any]]) -> xr.Dataset:
+    """The arrays of `suite_outcomes` as a data set, with coordinates, units and meanings."""
+    attributes = {field.name: {"units": field.unit, **field.attributes} for field in FIELDS}
+    attributes["scale"] = {"units": "1", "long_name": "factor by which the record is multiplied"}
+    measure = suite.measure
+    names = different_names([record.name for record in suite.records])
+    coordinates: dict[str, Any] = {
+        "intensity": ("intensity", suite.levels, {"units": measure.unit, "long_name": measure.meaning}),
+        "record": ("record", np.array(names), {"long_name": "name of the record"}),
+        "restitution": (
+            "block", suite.restitution, {"units": "1", "long_name": "coefficient of restitution eta", "equation": "2.3"}
+        ),
+        "digest": (
+            "record",
+            np.array([record.digest for record in suite.records]),
+            {"long_name": "sha256 of the time step and the samples in m/s2"},
+        ),
+    }  # fmt: skip
+    for dimension, items, properties in (
+        ("block", suite.blocks, BLOCK_COORDINATES),
+        ("record", suite.records, RECORD_COORDINATES),
+    ):
+        for name, (unit, meaning) in properties.items():
+            column = np.array([getattr(item, name) for item in items])
+            coordinates[name] = (dimension, column, {"units": unit, "long_name": meaning})
+    return xr.Dataset(
+        {name: (DIMENSIONS, array, attributes[name]) for name, array in values.items()},
+        coordinates,
+        {"measure": measure.name},
+    )
+
+
+def join_outcomes(parts: Sequence[xr.Dataset], measure: str) -> xr.Dataset:
+    """Outcomes of several groups of records, of the same blocks and levels, as those of one suite."""
+    joined = xr.concat(
+        parts,
+        "record",
+        data_vars="minimal",
+        coords="minimal",
+        compat="override",
+        join="override",
+        combine_attrs="override",
+    )
+    names = different_names(joined["record"].values.astype(str).tolist())
+    attributes = joined["record"].attrs
+    return joined.assign_coords(record=("record", np.array(names), attributes)).assign_attrs(measure=measure)

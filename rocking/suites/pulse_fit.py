@@ -1,0 +1,152 @@
+"""A pulse fitted to the velocity of a record, and how far it may stand for the record.
+
+The fit describes a record: period, amplitude and phase of its dominant pulse. It does not replace it. What the pulse
+leaves out, the cycles before and after it and the higher frequencies, moves blocks as well, so that the amplitude at
+which the pulse overturns a block is usually larger than that of the record: the fitted pulse is unconservative. The fit
+therefore comes with the ratio of the two amplitudes for blocks of several sizes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking.boundary.amplitude import critical_amplitude
+from rocking.errors import InvalidArgumentError, one_of
+from rocking.excitation.pulses import AbstractPulse
+from rocking.excitation.records.record import Record
+from rocking.model.block import Block
+from rocking.suites.scales import overturning_scale
+from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
+
+Array = NDArray[np.float64]
+
+COMPARED_ALPHA = 0.2
+"""Slenderness angle of the blocks of the comparison [rad]: five times as high as wide."""
+
+COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)
+"""Their half diagonals R [m]."""
+
+HIGHEST_AMPLITUDE = 1000.0
+"""Largest a = a_g/(g tan alpha) searched for overturning [-]."""
+
+
+@dataclass(frozen=True, repr=False)
+class PulseFit:
+    """The pulse that takes most of the energy of the velocity of a record.
+
+    Attributes
+    ----------
+    pulse : AbstractPulse
+        Shape of its acceleration, of unit peak, for `rocking.peak_response` and the others.
+    period : float
+        T_p [s]; omega_g = 2 pi/T_p.
+    peak_acceleration : float
+        a_g of the pulse [m/s2], > 0.
+    velocity : VelocityPulse
+        Velocity of the pulse: `family`, `amplitude` [m/s], `centre` [s], and for Mavroeidis & Papageorgiou `cycles` [-]
+        and `phase` [rad].
+    explained : float
+        Share of the sum of squares of the velocity of the record that the pulse takes away [-], [0, 1].
+    blocks : tuple of Block
+        Blocks of the comparison, with the restitution (2.4).
+    record_scale : (blocks,) array
+        Lowest factor at which the record overturns each block [-]; nan if it does not up to
+        a_g = 1000 g tan(alpha).
+    pulse_scale : (blocks,) array
+        Lowest factor at which the pulse does.
+    """
+
+    pulse: AbstractPulse
+    period: float
+    peak_acceleration: float
+    velocity: VelocityPulse
+    explained: float
+    blocks: tuple[Block, ...]
+    record_scale: Array
+    pulse_scale: Array
+
+    @property
+    def scale_ratio(self) -> Array:
+        """Overturning scale of the pulse over that of the record (blocks,); above 1 the pulse is unconservative."""
+        return np.asarray(self.pulse_scale / self.record_scale)
+
+    def __repr__(self) -> str:
+        """Family, period, amplitude, share of energy, and the ratio of the scales for each block."""
+        ratios = ", ".join(
+            f"{ratio:.2f} (R = {block.half_diagonal:g} m)"
+            for ratio, block in zip(self.scale_ratio.tolist(), self.blocks, strict=True)
+        )
+        return (
+            f"<rocking.PulseFit {self.velocity.family}: T  {self.period:.4g} s, a_g {self.peak_acceleration:.3g} m/s2, "
+            f"{100.0 * self.explained:.0f} % of the velocity; overturns at {ratios} times the record>"
+        )
+
+    def acceleration(self, time: ArrayLike) -> Array:
+        """Acceleration of the pulse [m/s2] at times [s] from the first sample of the record."""
+        phase = 2.0 * math.pi / self.period * (np.asarray(time, dtype=np.float64) - self.velocity.centre)
+        return np.asarray(self.peak_acceleration * self.pulse.acceleration(phase))
+
+
+def fit_pulse(
+    record: Record,
+    *,
+    family: str | None = None,
+    blocks: Sequence[Block] | Block | None = None,
+    stop: StopFlag | None = None,
+) -> PulseFit:
+    """Fit a pulse to the velocity of a record, and compare how both overturn blocks.
+
+    Parameters
+    ----------
+    record : Record
+        Its velocity is used as it is: an offset of the acceleration is fitted as well, see
+        `Record.baseline_corrected`.
+    family : str, optional
+        "mavroeidis_papageorgiou", "ricker" or "ricker_antisymmetric"; by default that which takes most energy.
+    blocks : Block or sequence of Block, optional
+        Blocks of the comparison; by default alpha = 0.2 rad, R = 1, 4 and 16 m.
+    stop : StopFlag, optional
+        Cancels the work, which then raises `StoppedError`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described, or the record has fewer than 16 samples or no velocity.
+    """
+    if not isinstance(record, Record):
+        raise InvalidArgumentError("record", record, "a rocking.Record, such as rocking.read_record returns")
+    families = FAMILIES if family is None else (one_of("family", family, FAMILIES),)
+    if blocks is None:
+        compared = tuple(Block.from_slenderness_angle(COMPARED_ALPHA, size) for size in COMPARED_HALF_DIAGONALS)
+    else:
+        compared = (blocks,) if isinstance(blocks, Block) else tuple(blocks)
+        if not all(isinstance(block, Block) for block in compared):
+            raise InvalidArgumentError("blocks", blocks, "objects of rocking.Block")
+    fits = [fit_velocity(record.velocity, record.time_step, name) for name in families]
+    best = max(fits, key=lambda fit: fit.explained)
+    pulse, peak = best.acceleration_pulse()
+    of_record = []
+    for block in compared:
+        highest = HIGHEST_AMPLITUDE * block.uplift_acceleration / record.peak_acceleration
+        of_record.append(overturning_scale(record, block, highest=highest, stop=stop))
+    of_pulse = [_overturning_acceleration(pulse, best.period, block, stop) / peak for block in compared]
+    return PulseFit(pulse, best.period, peak, best, best.explained, compared, np.array(of_record), np.array(of_pulse))
+
+
+def _overturning_acceleration(pulse: AbstractPulse, period: float, block: Block, stop: StopFlag | None) -> float:
+    """Lowest peak acceleration [m/s2] at which a pulse overturns a block with the restitution (2.4), by (2.2)."""
+    found = critical_amplitude(
+        pulse,
+        frequency_ratio=2.0 * math.pi / period / block.frequency_parameter,
+        restitution=block.inelastic_restitution,
+        alpha=block.alpha,
+        highest_amplitude=HIGHEST_AMPLITUDE,
+        stop=stop,
+    )
+    return block.uplift_acceleration * float(found.amplitude[0]) if found.amplitude.size else math.nan

@@ -1,0 +1,163 @@
+"""Scales of a record at which the outcome for a block changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.records.record import Record
+from rocking.model.block import Block
+from rocking.model.checks import check
+from rocking.model.parameters import RESTITUTION
+from rocking.solver.records.record_response import record_response
+
+Array = NDArray[np.float64]
+
+SCAN_RATIO = 1.002
+"""Ratio of the scales that are tried in turn [-]: ranges of one outcome that are narrower can be missed."""
+
+SCALE_TOLERANCE = 1e-6
+"""Relative width to which a change of outcome is bisected [-]."""
+
+HIGHEST_SCALE = 1e6
+"""Largest factor of a record [-]."""
+
+_PARTS = 16
+"""Scales between the two ends of an interval that is bisected, solved by one call."""
+
+_SCANNED = 200
+"""Scales of one call when only the lowest change is sought."""
+
+
+@dataclass(frozen=True)
+class ScaleThresholds:
+    """Scales at which the outcome changes, ascending; arrays (thresholds,).
+
+    Attributes
+    ----------
+    scale : float array [-]
+        Factor of the record; the block overturns at it, and survives within a relative `SCALE_TOLERANCE` of it.
+    overturns_above : bool array
+        True where the block overturns just above and survives just below.
+    searched : (float, float)
+        Lowest and highest scale searched [-].
+    """
+
+    scale: Array
+    overturns_above: NDArray[np.bool_]
+    searched: tuple[float, float]
+
+
+def restitution_of(block: Block, restitution: str | float) -> float:
+    """eta [-] of a block from "housner", (2.4) and 0 where that is negative, or from a number in [0, 1].
+
+    Raises
+    ------
+    InvalidArgumentError
+        For anything else.
+    """
+    if isinstance(restitution, str):
+        if restitution != "housner":
+            raise InvalidArgumentError("restitution", restitution, f"'housner' or a number in {RESTITUTION.interval}")
+        return block.inelastic_restitution
+    return float(check(RESTITUTION, restitution))
+
+
+def scale_thresholds(
+    record: Record,
+    block: Block,
+    *,
+    restitution: str | float = "housner",
+    highest: float | None = None,
+    stop: StopFlag | None = None,
+) -> ScaleThresholds:
+    """Every scale of a record at which the outcome for a block changes, by (2.2).
+
+    Scales that differ by 0.2 % are solved from that of uplift on, and each pair between which the outcome changes is
+    bisected. A range of one outcome that is narrower can be missed.
+
+    Parameters
+    ----------
+    record : Record
+        Ground motion.
+    block : Block
+        Block.
+    restitution : "housner" or float
+        (2.4), or eta [-], [0, 1].
+    highest : float, optional
+        Highest scale searched [-], (0, 1e6]; by default ten times that of uplift.
+    stop : StopFlag, optional
+        Cancels the work, which then raises `StoppedError`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    """
+    uplift = block.uplift_acceleration / record.peak_acceleration
+    top = 10.0 * uplift if highest is None else float(in_range("highest", highest, 0.0, HIGHEST_SCALE, closed="right"))
+    if top <= uplift:
+        return ScaleThresholds(np.empty(0), np.empty(0, dtype=np.bool_), (uplift, uplift))
+    count = math.ceil(math.log(top / uplift) / math.log(SCAN_RATIO)) + 1
+    scales = np.geomspace(uplift, top, count).astype(np.float64)
+    solve = _solver(record, block, restitution_of(block, restitution), stop)
+    overturned = solve(scales)
+    edges = np.flatnonzero(overturned[1:] != overturned[:-1])
+    found = [_bisected(solve, float(scales[k]), float(scales[k + 1]), bool(overturned[k + 1])) for k in edges.tolist()]
+    return ScaleThresholds(np.array(found, dtype=np.float64), overturned[edges + 1], (uplift, top))
+
+
+def overturning_scale(
+    record: Record,
+    block: Block,
+    *,
+    restitution: str | float = "housner",
+    highest: float | None = None,
+    stop: StopFlag | None = None,
+) -> float:
+    """Lowest scale of a record at which it overturns a block [-]; nan if there is none. As `scale_thresholds`."""
+    uplift = block.uplift_acceleration / record.peak_acceleration
+    top = 10.0 * uplift if highest is None else float(in_range("highest", highest, 0.0, HIGHEST_SCALE, closed="right"))
+    solve = _solver(record, block, restitution_of(block, restitution), stop)
+    low = uplift
+    while low < top:
+        scales: Array = low * np.power(SCAN_RATIO, np.arange(1.0, _SCANNED + 1.0))
+        overturned = solve(scales)
+        if overturned.any():
+            high = float(scales[overturned.argmax()])
+            return _bisected(solve, high / SCAN_RATIO, high, True)
+        low = float(scales[-1])
+    return math.nan
+
+
+def _solver(record: Record, block: Block, eta: float, stop: StopFlag | None) -> Callable[[Array], NDArray[np.bool_]]:
+    """Whether the block overturns, as a function of the scales."""
+    uplift = block.uplift_acceleration / record.peak_acceleration
+
+    def overturns(scales: Array) -> NDArray[np.bool_]:
+        return record_response(
+            record,
+            frequency_parameter=block.frequency_parameter,
+            slenderness=uplift / scales,
+            restitution=eta,
+            alpha=block.alpha,
+            stop=stop,
+        ).overturned
+
+    return overturns
+
+
+def _bisected(solve: Callable[[Array], NDArray[np.bool_]], low: float, high: float, above: bool) -> float:
+    """The end of the interval of a change that overturns, once the interval is narrow; `above` is the upper end."""
+    while high / low - 1.0 > SCALE_TOLERANCE:
+        edges: Array = np.geomspace(low, high, _PARTS + 2).astype(np.float64)
+        changed = solve(edges[1:-1]) == above
+        first = int(changed.argmax()) if changed.any() else _PARTS
+        low, high = float(edges[first]), float(edges[first + 1])
+    return high if above else low

@@ -1,0 +1,87 @@
+"""Fragility as columns, for CSV, JSON and text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from rocking.suites.fits import FitStatus
+
+LEVEL_COLUMNS = ("exceedances", "fraction", "fraction_lower", "fraction_upper", "first_exceedances")
+"""Variables over (demand, block, intensity) that the table of levels holds."""
+
+CURVE_COLUMNS = (
+    "median_intensity",
+    "median_intensity_lower",
+    "median_intensity_upper",
+    "dispersion",
+    "dispersion_lower",
+    "dispersion_upper",
+    "largest_deviation",
+    "first_median_intensity",
+)
+"""Variables over (demand, block, model) that the table of curves holds."""
+
+
+def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
+    """One row for each limit state, block and level of a result of `rocking.fragility`.
+
+    Returns
+    -------
+    dict
+        Columns demand, half_width [m], half_height [m], intensity (unit of the measure), the counts and fractions with
+        their interval, and the fitted probability of each model, such as `lognormal`.
+    """
+    found = _with_dimensions(fragility)
+    order = ("demand", "block", "intensity")
+    columns = {name: found[name].transpose(*order).values for name in LEVEL_COLUMNS}
+    for model in found["model"].values.tolist():
+        columns[model] = found["fitted"].sel(model=model).transpose(*order).values
+    return _rows(found, {"intensity": found["intensity"].values, **columns})
+
+
+def curve_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
+    """One row for each limit state, block and model: the fitted curve, its intervals, and the records named.
+
+    Returns
+    -------
+    dict
+        Columns demand, half_width [m], half_height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if
+        there are annual rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
+    """
+    found = _with_dimensions(fragility)
+    order = ("demand", "block", "model")
+    status = np.vectorize(lambda code: FitStatus(code).name, otypes=[str])(found["fit_status"].transpose(*order).values)
+    numbers = [*CURVE_COLUMNS, *(["annual_rate"] if "annual_rate" in found else [])]
+    columns = {name: found[name].transpose(*order).values for name in numbers}
+    named = found["records_surviving_above_first"].transpose("demand", "block").values[:, :, None]
+    models = {"model": found["model"].values, "fit_status": status}
+    return _rows(found, {**models, **columns, "records_surviving_above_first": named})
+
+
+def _with_dimensions(fragility: xr.Dataset) -> xr.Dataset:
+    """The result with the dimensions demand and block, also where it was made for one of them."""
+    found = fragility
+    if "block" not in found.dims:
+        own = [name for name, value in found.coords.items() if value.ndim == 0 and name not in ("demand",)]
+        found = found.reset_coords(own).expand_dims("block").set_coords(own)
+    return found if "demand" in found.dims else found.expand_dims("demand")
+
+
+def _rows(found: xr.Dataset, columns: dict[str, Any]) -> dict[str, list[Any]]:
+    """Columns that broadcast to (demand, block, last), one row each, after the limit state and the block."""
+    before = {
+        "demand": found["demand"].values.astype(str)[:, None, None],
+        "half_width": _by_block(found, "half_width"),
+        "half_height": _by_block(found, "half_height"),
+    }
+    everything = {**before, **columns}
+    shape = np.broadcast_shapes(*(np.shape(values) for values in everything.values()))
+    return {name: np.broadcast_to(values, shape).ravel().tolist() for name, values in everything.items()}
+
+
+def _by_block(found: xr.Dataset, name: str) -> Any:
+    values = found[name]
+    return (values if values.ndim == 1 else values.isel(demand=0)).values[:, None]

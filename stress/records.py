@@ -1,0 +1,141 @@
+"""Random blocks under random recorded motions against the multi-precision integration: `python -m stress.records`.
+
+Motions of 20 to 300 samples: noise, bursts, sampled sines, motions that start or end with a jump, and spikes, sample
+intervals of 0.003 to 0.5 in p t; restitution 0 and 1 included. A peak is right if its error is at most 1000 roundings
+times max(1, amplification), where the amplification is the relative change of the peak per relative change of the
+amplitude. Cases whose amplification is beyond `LARGEST_AMPLIFICATION` are counted, not judged: the last bits of the
+input decide there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.exact_response import CAPPED
+from reference.records import response_and_amplification
+from rocking.excitation.records.record import Record
+from rocking.solver.records.record_response import record_response
+
+ROUNDING = 2.2e-16
+ALLOWED = 1000
+LARGEST_AMPLIFICATION = 1e9
+
+
+@dataclass(frozen=True)
+class Case:
+    """A motion and the groups of a block."""
+
+    motion: Record
+    groups: dict[str, float | None]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Comparison of one case; `error` is relative to what is allowed, nan where no peak is compared."""
+
+    right: bool
+    judged: bool
+    error: float
+    outcome: int
+    amplification: float
+
+
+def random_case(seed: int) -> Case:
+    """Return the case of a seed."""
+    random = np.random.default_rng(seed)
+    interval = 10.0 ** random.uniform(-2.5, -0.3)
+    p = random.uniform(1.0, 6.0)
+    samples = _random_motion(random, int(random.integers(20, 300)), interval)
+    special = random.uniform()
+    eta = 0.0 if special < 0.05 else 1.0 if special < 0.1 else random.uniform() if special < 0.4 else None
+    rigid = random.uniform() < 0.4
+    groups = {
+        "frequency_parameter": p,
+        "slenderness": random.uniform(0.08, 0.98),
+        "restitution": random.uniform(0.7, 1.0) if eta is None else eta,
+        "alpha": 10.0 ** random.uniform(-2.0, 0.1) if rigid else None,
+    }
+    return Case(Record(samples, interval / p, unit="m/s2", name=f"random {seed}"), groups)
+
+
+def _random_motion(random: np.random.Generator, count: int, interval: float) -> NDArray[np.float64]:
+    tau = np.arange(count) * interval
+    kind = random.integers(5)
+    if kind == 0:
+        walk = np.convolve(random.standard_normal(count), np.ones(int(random.integers(1, 8))), "same")
+        return np.asarray(walk * np.exp(-(((tau / tau[-1] - 0.4) / 0.3) ** 2)))
+    if kind == 1:
+        burst = random.uniform(size=count) < 0.1
+        return np.asarray(np.where(burst, random.standard_normal(count), 0.01 * random.standard_normal(count)))
+    if kind == 2:
+        return np.asarray(np.sin(random.uniform(1.0, 8.0) * tau + random.uniform(0.0, 6.3)) + 1e-3)
+    if kind == 3:
+        return np.asarray(np.cumsum(random.standard_normal(count)) + random.uniform(-3.0, 3.0))
+    spikes = np.zeros(count)
+    spikes[random.integers(0, count, 6)] = random.standard_normal(6)
+    return spikes
+
+
+def judge(case: Case) -> Verdict:
+    """Compare the solver with the reference."""
+    motion = case.motion
+    exact, amplification = response_and_amplification(motion.acceleration.tolist(), motion.time_step, **case.groups)
+    response = record_response(motion, **case.groups)  # type: ignore[arg-type]  # alpha may be None
+    outcome = int(response.outcome)
+    if exact.outcome == CAPPED or amplification > LARGEST_AMPLIFICATION:
+        return Verdict(True, False, math.nan, exact.outcome, amplification)
+    if outcome != exact.outcome:
+        return Verdict(False, True, math.inf, exact.outcome, amplification)
+    if exact.peak_rotation is None or exact.uplift_time is None:
+        return Verdict(True, True, math.nan, outcome, amplification)
+    # the reference has more digits than a double
+    difference = abs(float((exact.peak_rotation - float(response.peak_rotation)) / exact.peak_rotation))
+    error = difference / (ALLOWED * ROUNDING * max(1.0, amplification))
+    return Verdict(error <= 1.0, True, error, outcome, amplification)
+
+
+def summary(verdicts: list[Verdict]) -> dict[str, Any]:
+    """Return the counts and the largest error."""
+    errors = np.array([verdict.error for verdict in verdicts])
+    known = errors[~np.isnan(errors)]
+    return {
+        "cases": len(verdicts),
+        "wrong": sum(not verdict.right for verdict in verdicts),
+        "not judged": sum(not verdict.judged for verdict in verdicts),
+        "overturned": sum(verdict.outcome >= 2 for verdict in verdicts),
+        "without uplift": sum(verdict.outcome == 0 for verdict in verdicts),
+        "largest error over allowed": float(known.max(initial=0.0)),
+        "median error over allowed": float(np.median(known)) if known.size else math.nan,
+    }
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1, help="of the first case")
+    options = parser.parse_args()
+    verdicts = []
+    start = time.perf_counter()
+    for seed in range(options.seed, options.seed + options.cases):
+        verdicts.append(judge(random_case(seed)))
+        if not verdicts[-1].right:
+            print(f"seed {seed}: {verdicts[-1]}, {random_case(seed).groups}", flush=True)
+        if len(verdicts) % 100 == 0:
+            print(f"{len(verdicts)} cases, {time.perf_counter() - start:.0f} s", file=sys.stderr, flush=True)
+    found = summary(verdicts)
+    for name, value in found.items():
+        print(f"{name:28} {value:.6g}")
+    sys.exit(int(found["wrong"] > 0))
+
+
+if __name__ == "__main__":
+    main()

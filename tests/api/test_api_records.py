@@ -1,0 +1,152 @@
+"""POST /v1/records/response and /v1/records/history: a record in the body, a block in the query."""
+
+import io
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rocking
+from rocking.suites.block_response import block_response
+from tests.api.conftest import assert_problem, client_of
+
+ROOT = Path(__file__).parents[2]
+NAPA = (ROOT / "workflow/motions/napa_HNE.csv").read_bytes()
+BLOCK = {"half_width": 0.25, "half_height": 1.0}
+DAMAGED = b"time_s,acceleration_g\n0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n"
+
+
+def post(client, body=NAPA, route="response", **params):
+    return client.post(f"/v1/records/{route}", params=BLOCK | params, content=body)
+
+
+@pytest.fixture(scope="module")
+def motion():
+    return rocking.read_record(ROOT / "workflow/motions/napa_HNE.csv")
+
+
+def test_the_response_is_that_of_the_library(client, motion):
+    block = rocking.Block(0.25, 1.0)
+    expected = block_response(motion, block, scale=1.1)
+    found = post(client, scale=1.1, name="napa_HNE.csv").json()
+    assert found["peak_rotation"] == float(expected.response.peak_rotation)
+    assert found["peak_rotation_deg"] == pytest.approx(math.degrees(expected.peak_rotation))
+    assert found["top_displacement"] == pytest.approx(2.0 * math.sin(expected.peak_rotation))
+    assert found["impacts"] == int(expected.response.impacts)
+    assert found["outcome"] == "SAFE"
+    assert not found["overturned"]
+    assert found["meaning"] == "rocks and comes to rest"
+    assert found["record"]["digest"] == motion.digest
+    assert found["record"]["peak_acceleration"] == motion.peak_acceleration
+    assert found["record"]["name"] == "napa_HNE"
+    assert found["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
+    assert found["friction_demand"] > found["friction_at_uplift"] == 0.25
+    assert found["thresholds"] is None
+    assert found["pulse"] is None
+
+
+def test_a_block_that_overturns_has_no_peak(client):
+    found = post(client, scale=3.0).json()
+    assert found["overturned"]
+    assert found["exceeded_alpha"]
+    assert found["peak_rotation"] is found["top_displacement"] is None
+
+
+def test_thresholds_and_pulse_on_request(client, motion):
+    found = post(client, thresholds=True, fit=True, restitution=0.8).json()
+    scales = [threshold["scale"] for threshold in found["thresholds"]]
+    assert scales == sorted(scales)
+    assert found["thresholds"][0]["overturns_above"]
+    assert found["thresholds"][0]["peak_acceleration"] == pytest.approx(scales[0] * motion.peak_acceleration)
+    above = post(client, scale=scales[0] * (1 + 1e-5), restitution=0.8).json()
+    below = post(client, scale=scales[0] * (1 - 1e-5), restitution=0.8).json()
+    assert (above["overturned"], below["overturned"]) == (True, False)
+    assert found["pulse"]["pulse"] == "mavroeidis_papageorgiou"
+    assert found["pulse"]["scale_ratio"] == pytest.approx(1.6, abs=0.2)
+
+
+def test_history_in_three_formats(client, motion):
+    block = rocking.Block(0.25, 1.0)
+    expected = rocking.record_history(
+        motion,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=block.uplift_acceleration / motion.peak_acceleration,
+        restitution=block.inelastic_restitution,
+        alpha=block.alpha,
+        samples=300,
+        contact=True,
+    )
+    found = post(client, route="history", samples=300, contact=True).json()
+    np.testing.assert_array_equal(found["rotation"], expected.rotation)
+    np.testing.assert_array_equal(found["time"], expected.time)
+    np.testing.assert_array_equal(found["impact_time"], expected.impact_time)
+    assert len(found["contact"]["normal_reaction"]) == len(found["time"])
+    text = post(client, route="history", samples=300, format="csv").text
+    table = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1)
+    np.testing.assert_array_equal(table[:, 1], expected.rotation)
+    file = post(client, route="history", samples=300, format="nc").content
+    with xr.open_dataset(io.BytesIO(file)) as dataset:
+        np.testing.assert_array_equal(dataset.rotation, expected.rotation)
+    whole = post(client, route="history").json()
+    assert len(whole["time"]) > motion.samples
+
+
+def test_what_the_file_does_not_state_is_in_the_query(client, motion):
+    plain = "\n".join(map(repr, (100.0 * motion.acceleration).tolist())).encode()
+    found = post(client, plain, unit="cm/s2", time_step=0.005).json()
+    assert found["record"]["peak_acceleration"] == pytest.approx(motion.peak_acceleration)
+    problem = assert_problem(post(client, plain, time_step=0.005), 422, "record")
+    assert "unit" in problem["detail"]
+
+
+def test_baseline_is_removed_on_request_only(client):
+    plain, corrected = (post(client, **more).json()["record"] for more in ({}, {"baseline_order": 1}))
+    assert abs(corrected["final_velocity"]) < 0.5 * abs(plain["final_velocity"])
+    assert corrected["digest"] != plain["digest"]
+
+
+def test_a_damaged_file_is_explained_by_its_line(client):
+    problem = assert_problem(post(client, DAMAGED, name="damaged.csv"), 422, "record")
+    assert "damaged.csv, line 4: found what; expected a number" in problem["detail"]
+    assert problem["value"] == "what"
+
+
+@pytest.mark.parametrize("body", [b"", b"\0\1\2", b"<html>", b"{}", b"1\n2\n", b"a,b\n1,2\n"])
+def test_other_bodies_are_refused(client, body):
+    assert_problem(post(client, body, unit="g"), 422, "record")
+
+
+@pytest.mark.parametrize(
+    ("params", "name"),
+    [
+        ({"half_width": 0.0}, "half_width"),
+        ({"half_height": "x"}, "half_height"),
+        ({"scale": 0.0}, "scale"),
+        ({"restitution": 1.5}, "restitution"),
+        ({"restitution": "plastic"}, "restitution"),
+        ({"unit": "feet"}, "unit"),
+        ({"time_step": -1.0}, "time_step"),
+        ({"baseline_order": 7}, "baseline_order"),
+        ({"component": "Z"}, "record"),
+        ({"colour": 1}, "colour"),
+    ],
+)
+def test_invalid_parameters_are_named(client, params, name):
+    assert_problem(post(client, **params), 422, name)
+
+
+def test_body_is_limited(results):
+    with client_of(results, max_record_bytes=1000) as client:
+        problem = assert_problem(post(client), 413, "body")
+        assert "1000 bytes" in problem["allowed"]
+        assert_problem(post(client, route="history", samples=10**6), 413, "samples")
+
+
+def test_openapi_describes_the_body(client):
+    paths = client.get("/openapi.json").json()["paths"]
+    for route in ("response", "history"):
+        operation = paths[f"/v1/records/{route}"]["post"]
+        assert "text/csv" in operation["requestBody"]["content"]
+        assert {"half_width", "half_height", "scale", "unit"} <= {p["name"] for p in operation["parameters"]}

@@ -1,0 +1,168 @@
+"""`rocking record` and `rocking fragility`: three formats, errors that name the file, the line or the key."""
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+import rocking
+from rocking.cli.app import app
+from rocking.suites.block_response import block_response
+from rocking.suites.configuration import suite_configuration
+
+ROOT = Path(__file__).parents[2]
+NAPA = str(ROOT / "workflow/motions/napa_HNE.csv")
+SIZES = ["--half-width", "0.25m", "--half-height", "100 cm"]
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, list(arguments))
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def refused(*arguments):
+    result = CliRunner().invoke(app, list(arguments))
+    assert result.exit_code == 2, result.output
+    return " ".join(result.output.replace("│", " ").split())
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """A configuration of two records and few levels."""
+    given = yaml.safe_load((ROOT / "workflow/config/suite.yaml").read_text())["suite"]
+    given |= {"intensity": [2.0, 4.0, 6.0, 9.0], "map": None, "blocks": given["blocks"][:1]}
+    given["records"] |= {"folder": str(ROOT / "workflow/motions"), "pattern": "napa_*.csv"}
+    path = tmp_path_factory.mktemp("suite") / "suite.json"
+    path.write_text(json.dumps(given))
+    return path
+
+
+def test_record_in_three_formats():
+    block, motion = rocking.Block(0.25, 1.0), rocking.read_record(NAPA)
+    expected = block_response(motion, block, scale=1.1)
+    result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
+    assert result["peak_rotation"] == float(expected.response.peak_rotation)
+    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.peak_rotation))
+    assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.peak_rotation))
+    assert result["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
+    assert result["peak_acceleration"] == motion.peak_acceleration
+    assert result["warnings"] == list(expected.warnings)
+    (row,) = csv.DictReader(io.StringIO(run("record", NAPA, *SIZES, "--scale", "1.1", "--csv")))
+    assert float(row["peak_rotation"]) == result["peak_rotation"]
+    assert row["overturned"] == "false"
+    assert run("record", NAPA, *SIZES, "--scale", "1.1").startswith("rocks and comes to rest\n")
+
+
+def test_thresholds_and_pulse():
+    result = json.loads(run("record", NAPA, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--json"))
+    scales = np.array(result["threshold_scale"])
+    assert np.all(np.diff(scales) > 0.0)
+    assert result["overturns_above"][0] is True
+    block, motion = rocking.Block(0.25, 1.0), rocking.read_record(NAPA)
+    for scale, above in zip(scales[:6], result["overturns_above"], strict=False):
+        found = rocking.record_response(
+            motion,
+            frequency_parameter=block.frequency_parameter,
+            slenderness=block.uplift_acceleration / motion.peak_acceleration / (scale * np.array([1 - 2e-6, 1 + 2e-6])),
+            restitution=0.8,
+            alpha=block.alpha,
+        )
+        assert found.overturned.tolist() == [not above, above]
+    assert result["pulse"] == "mavroeidis_papageorgiou"
+    assert 0.0 < result["pulse_explained"] < 1.0
+
+
+def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
+    motion = rocking.read_record(NAPA)
+    path = tmp_path / "plain.txt"
+    path.write_text("\n".join(map(repr, (motion.acceleration * 100.0).tolist())))
+    given = ["--unit", "cm/s2", "--time-step", "5 ms"]
+    plain = json.loads(run("record", str(path), *SIZES, *given, "--json"))
+    assert plain["peak_rotation"] == pytest.approx(
+        json.loads(run("record", NAPA, *SIZES, "--json"))["peak_rotation"], rel=1e-6
+    )
+    assert "no unit of acceleration" in refused("record", str(path), *SIZES, "--time-step", "5 ms")
+    assert "no time step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")
+
+
+def test_baseline_is_removed_on_request_only():
+    plain, corrected = (
+        json.loads(run("record", NAPA, *SIZES, *more, "--json")) for more in ([], ["--baseline-order", "1"])
+    )
+    assert abs(corrected["final_velocity"]) < abs(plain["final_velocity"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nowhere.csv", *SIZES], "nowhere.csv: not a file that can be read"),
+        ([NAPA, "--half-width", "0.25", "--half-height", "1m"], "--half-width"),
+        ([NAPA, *SIZES, "--scale", "0"], "--scale"),
+        ([NAPA, *SIZES, "--restitution", "plastic"], "--restitution"),
+        ([NAPA, *SIZES, "--restitution", "1.5"], "--restitution"),
+        ([NAPA, *SIZES, "--unit", "feet"], "--unit"),
+        ([NAPA, *SIZES, "--baseline-order", "9"], "--order"),
+        ([NAPA, *SIZES, "--json", "--csv"], "--csv"),
+    ],
+)
+def test_invalid_options_are_named(arguments, message):
+    assert message in refused("record", *arguments)
+
+
+def test_damaged_file_is_explained_by_its_line(tmp_path):
+    path = tmp_path / "damaged.csv"
+    path.write_text("time_s,acceleration_g\n0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n")
+    message = refused("record", str(path), *SIZES)
+    assert "damaged.csv, line 4: found what; expected a number" in message
+
+
+def test_fragility_in_three_formats(small):
+    result = json.loads(run("fragility", str(small), "--json"))
+    assert result["records"] == ["napa_HNE", "napa_HNN"]
+    suite = suite_configuration(json.loads(small.read_text()), small.parent)
+    expected = rocking.fragility(suite.motions(), suite.blocks[0], intensity=suite.intensity)
+    chosen = [k for k, demand in enumerate(result["levels"]["demand"]) if demand == "overturning"]
+    assert [result["levels"]["exceedances"][k] for k in chosen] == expected.exceedances.values.tolist()
+    assert result["curves"]["fit_status"][0] in {"FITTED", "SEPARATED"}
+    assert result["curves"]["median_intensity"][0] == pytest.approx(float(expected.median_intensity[0]))
+    assert result["curves"]["annual_rate"][0] > 0.0
+    rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv"))))
+    assert len(rows) == 3 * 4
+    assert {row["demand"] for row in rows} == {"overturning", "alpha", "0.5 alpha"}
+    text = run("fragility", str(small))
+    assert "measure  pga" in text
+    assert "lognormal" in text
+
+
+def test_configuration_may_be_yaml_or_toml(small, tmp_path):
+    given = json.loads(small.read_text())
+    (tmp_path / "suite.yaml").write_text(yaml.safe_dump({"title": "a suite", "suite": given}))
+    assert run("fragility", str(tmp_path / "suite.yaml"), "--csv") == run("fragility", str(small), "--csv")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"measure": "sa"}, "measure = 'sa' is not allowed"),
+        ({"colour": 1}, "unknown colour"),
+        ({"blocks": []}, "blocks"),
+    ],
+)
+def test_invalid_configuration_names_the_key(small, tmp_path, change, message):
+    path = tmp_path / "suite.json"
+    path.write_text(json.dumps(json.loads(small.read_text()) | change))
+    assert message in refused("fragility", str(path))
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.toml", "x ="), ("a.json", "{"), ("a.yaml", "a: [1"), ("b.json", "[1]")])
+def test_unreadable_configuration_is_refused(name, text, tmp_path):
+    (tmp_path / name).write_text(text)
+    assert name in refused("fragility", str(tmp_path / name)).replace(" ", "")
+    assert "missing.yaml" in refused("fragility", "missing.yaml")

@@ -1,0 +1,221 @@
+"""Accelerogram files made up for the tests of the readers: good, odd but readable, and damaged ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+COUNT = 24
+STEP = 0.01
+
+
+def values(count: int = COUNT) -> NDArray[np.float64]:
+    """Return the samples of all files, six digits."""
+    k = np.arange(count)
+    return np.round(0.2 * np.sin(0.7 * k) * np.exp(-0.05 * k), 6)
+
+
+@dataclass(frozen=True)
+class File:
+    """A file, the arguments to read it with, and what is expected: samples, unit and step, or the text of the error."""
+
+    content: str | bytes
+    arguments: dict[str, Any] = field(default_factory=dict)
+    unit: str = "g"
+    samples: NDArray[np.float64] = field(default_factory=values)
+    step: float = STEP
+    error: str = ""
+
+    @property
+    def data(self) -> bytes:
+        return self.content if isinstance(self.content, bytes) else self.content.encode()
+
+
+def rows(width: int = 5, form: str = "{:15.6E}", count: int = COUNT) -> str:
+    """Return the samples as rows of numbers."""
+    x = values(count)
+    return "\n".join("".join(form.format(v) for v in x[k : k + width]) for k in range(0, count, width)) + "\n"
+
+
+TITLE = "PEER STRONG MOTION DATABASE RECORD\nTEST VALLEY 05/05/90, STATION 1, 090\n"
+
+
+def at2(header: str = "NPTS=    24, DT=  .01000 SEC", units: str = "G", body: str = rows()) -> str:
+    return f"{TITLE}ACCELERATION TIME HISTORY IN UNITS OF {units}\n{header}\n{body}"
+
+
+ESM_KEYS = {
+    "EVENT_NAME": "Test valley", "EVENT_ID": "IT-1990-0001", "NETWORK": "IT", "STATION_CODE": "ABC", "STREAM": "HNE",
+    "SAMPLING_INTERVAL_S": "0.010000", "NDATA": "24", "DURATION_S": "0.230000", "UNITS": "cm/s^2",
+    "DATA_TYPE": "ACCELERATION", "PROCESSING": "none", "HEADER_FORMAT": "DYNA 1.2",
+}  # fmt: skip
+
+
+def esm(changes: dict[str, str | None] | None = None, body: str = rows(1)) -> str:
+    keys: dict[str, str | None] = ESM_KEYS | (changes or {})
+    lines = [f"{key}: {value}" for key, value in keys.items() if value is not None]
+    lines += [f"USER{k}: " for k in range(64 - len(lines))]
+    return "\n".join(lines) + "\n" + body
+
+
+COUNTS = np.round(values() * 8388608 / 2000 * 980.665)
+KNET_HEADER = (
+    "Origin Time       1990/05/05 12:00:00\nLat.              37.000\nLong.             138.000\nDepth. (km)       10\n"
+    "Mag.              6.0\nStation Code      ABC001\nStation Lat.      37.1\nStation Long.     138.1\n"
+    "Station Height(m) 10\nRecord Time       1990/05/05 12:00:10\nSampling Freq(Hz) 100Hz\nDuration Time(s)  0.24\n"
+    "Dir.              N-S\nScale Factor      2000(gal)/8388608\nMax. Acc. (gal)   190.0\n"
+    "Last Correction   1990/05/05 12:00:00\nMemo.\n"
+)
+KNET_ROWS = "\n".join("".join(f"{int(v):9d}" for v in COUNTS[k : k + 8]) for k in range(0, COUNT, 8)) + "\n"
+KNET_VALUES = COUNTS * 2000 / 8388608
+
+
+def pairs(separator: str = ",", header: str = "time_s,acceleration_g\n", step: float = STEP, digits: int = 3) -> str:
+    lines = (f"{k * step:.{digits}f}{separator}{v:.6f}" for k, v in enumerate(values()))
+    return header + "\n".join(lines) + "\n"
+
+
+def single(header: str = "") -> str:
+    return header + "\n".join(f"{v:.6f}" for v in values()) + "\n"
+
+
+def replaced(text: str, old: str, new: str) -> str:
+    assert old in text, old
+    return text.replace(old, new, 1)
+
+
+THREE = "time_s,NS_g,EW_g\n" + "".join(f"{k * STEP:.2f},{v:.6f},{-2 * v:.6f}\n" for k, v in enumerate(values()))
+
+GOOD = {
+    "at2": File(at2()),
+    "at2 of cm/s/s": File(at2(units="CM/S/S"), unit="cm/s2"),
+    "at2 of m/s2": File(at2(units="M/S**2"), unit="m/s2"),
+    "esm": File(esm(), unit="cm/s2"),
+    "esm in m/s^2": File(esm({"UNITS": "m/s^2"}), unit="m/s2"),
+    "knet": File(KNET_HEADER + KNET_ROWS, unit="gal", samples=KNET_VALUES),
+    "csv": File(pairs()),
+    "csv, unit in brackets": File(pairs(header="Time [s],Acceleration [cm/s2]\n"), unit="cm/s2"),
+    "csv, unit as argument": File(pairs(header="t,a\n"), {"unit": "m/s2"}, unit="m/s2"),
+    "csv without names": File(pairs(header=""), {"unit": "g"}),
+    "csv of three components": File(THREE, {"component": "NS_g"}),
+    "another component by its short name": File(THREE, {"component": "ew"}, samples=-2 * values()),
+    "blanks": File(pairs(" ", "time acc_gal\n"), unit="gal"),
+    "tabs": File(pairs("\t", "time\tacc (m/s^2)\n"), unit="m/s2"),
+    "one column": File(single("# unit: g\n# dt = 0.01 s\n")),
+    "one column, all as arguments": File(single(), {"unit": "mm/s2", "time_step": 0.01}, unit="mm/s2"),
+    "one column with a rate": File(single("acceleration [g]\nsampling rate: 100 Hz\n")),
+    "one column with an interval in ms": File(single("unit=gal, dt=10 ms\n"), unit="gal"),
+}
+
+ODD = {
+    "at2 without comma": File(at2("NPTS=    24 DT=  .01000 SEC")),
+    "at2 without SEC": File(at2("NPTS=  24, DT= .01000")),
+    "at2 with the comma at the end": File(at2("NPTS=  24, DT= .01000 SEC,")),
+    "at2 with the old header": File(at2("   24    0.0100    NPTS, DT")),
+    "at2 with the old header without comma": File(at2("24 0.0100 NPTS DT")),
+    "at2 with DT first": File(at2("DT= .01 SEC, NPTS= 24")),
+    "at2 without equals signs": File(at2("NPTS 24 DT 0.01")),
+    "at2 with SEC attached": File(at2("NPTS=24, DT=.01SEC")),
+    "at2 in lower case": File(at2("npts=  24, dt= .01 sec").replace("UNITS OF G", "units of g")),
+    "at2 named TIME SERIES": File(at2().replace("HISTORY", "SERIES")),
+    "at2 with one value less": File(at2("NPTS=  25, DT= .01000 SEC")),
+    "at2 with values that touch": File(at2(body=rows(5, "{:13.6E}"))),
+    "at2 with D exponents": File(at2(body=rows().replace("E", "D"))),
+    "at2 with CRLF": File(at2().replace("\n", "\r\n")),
+    "at2 with old Mac line ends": File(at2().replace("\n", "\r")),
+    "at2 with one value a line": File(at2(body=rows(1))),
+    "at2 with blank lines at the end": File(at2() + "\n\n  \n"),
+    "at2 with another line in the header": File("COMMENT\n" + at2()),
+    "at2 with a byte order mark": File(b"\xef\xbb\xbf" + at2().encode()),
+    "at2 with Latin-1 text": File(at2().replace("VALLEY", "VALLÉE").encode("latin-1")),
+    "at2 that states the unit given": File(at2(), {"unit": "g", "time_step": 0.01}),
+    "esm with 60 header lines": File(esm().replace("USER0: \nUSER1: \nUSER2: \nUSER3: \n", ""), unit="cm/s2"),
+    "esm with CRLF": File(esm().replace("\n", "\r\n"), unit="cm/s2"),
+    "esm without data type": File(esm({"DATA_TYPE": None}), unit="cm/s2"),
+    "esm without unit": File(esm({"UNITS": ""}), {"unit": "gal"}, unit="gal"),
+    "knet with a scale of 3920": File(
+        KNET_HEADER.replace("2000(gal)", "3920(gal)") + KNET_ROWS, unit="gal", samples=COUNTS * 3920 / 8388608
+    ),
+    "csv with semicolons and decimal commas": File(pairs(";", "Zeit (s);a (g)\n").replace(".", ",")),
+    "csv with a trailing comma": File(pairs().replace("\n", ",\n").replace("acceleration_g,", "acceleration_g")),
+    "csv with comments": File("# station ABC\n# unit: cm/s2\n" + pairs(header="time,acceleration\n"), unit="cm/s2"),
+    "csv with quotes": File(pairs(header='"time","acceleration (g)"\n')),
+    "csv that starts at 10 s": File(
+        "t_s,a_g\n" + "".join(f"{10 + k * STEP:.2f},{v:.6f}\n" for k, v in enumerate(values()))
+    ),
+    "csv with rounded times": File(pairs(step=0.0078125, digits=4), step=0.0078125),
+    "csv with times in ms": File("time_ms,a_g\n" + "".join(f"{10 * k},{v:.6f}\n" for k, v in enumerate(values()))),
+    "csv with blank lines between the rows": File(pairs().replace("\n", "\n\n")),
+    "csv named like AT2 values": File(pairs(header="time (sec),acceleration (G)\n")),
+}
+
+DAMAGED = {
+    "nothing": File("", error="an empty file"),
+    "blank lines only": File("\n \n", error="an empty file"),
+    "a web page": File("<!DOCTYPE html><html></html>", error="line 1: found <!DOCTYPE"),
+    "json": File('{"a": 1}', error="web page or JSON"),
+    "prose": File("This is no record.\n", error="found This is no record"),
+    "zeros in bytes": File(b"1\n2\n\0\0", error="binary content"),
+    "at2 cut off": File(at2("NPTS=  4000, DT= .01 SEC"), error="line 4: found 4000 stated, 24 values"),
+    "at2 with header only": File(at2(body=""), error="0 acceleration values"),
+    "at2 with a word": File(replaced(at2(), "E-01", "E-0l"), error="expected a number"),
+    "at2 with overflowed columns": File(replaced(at2(), rows()[:15], " **************"), error="line 5: found \\*"),
+    "at2 with nan": File(replaced(at2(), rows()[:15], "            nan"), error="line 5: found nan"),
+    "at2 with a huge number": File(replaced(at2(), rows()[:15], "        1.0E999"), error="beyond the range"),
+    "at2 with a fill value": File(replaced(at2(), rows()[:15], "      -9.99E+09"), error="acceleration -9"),
+    "at2 with DT zero": File(at2("NPTS= 24, DT= 0.0 SEC"), error="line 4: found 0.0; expected the time step DT"),
+    "at2 with DT missing": File(at2("NPTS= 24, DT= SEC"), error="line 4"),
+    "at2 with NPTS no integer": File(at2("NPTS= 24.5, DT= .01 SEC"), error="an integer"),
+    "at2 with a negative NPTS": File(at2("NPTS= -24, DT= .01 SEC"), error="line 4"),
+    "at2 of velocity": File(at2(units="CM/S").replace("ACCELERATION", "VELOCITY"), error="line 3: found VELOCITY"),
+    "at2 of another unit than given": File(at2(), {"unit": "gal"}, error="the unit g; expected gal"),
+    "at2 of another step than given": File(at2(), {"time_step": 0.02}, error="a time step of 0.01 s; expected 0.02"),
+    "at2 of an unknown unit": File(at2(units="FURLONGS"), error="line 3: found FURLONGS"),
+    "at2 with a blank line inside": File(replaced(at2(), "\n ", "\n\n "), error="a blank line"),
+    "at2 with a component": File(at2(), {"component": "x"}, error="one component"),
+    "at2 of zeros": File(at2(body="0.0 " * 24), error="all samples 0"),
+    "esm without interval": File(esm({"SAMPLING_INTERVAL_S": None, "UNITS": "cm/s^2"}), error="found"),
+    "esm with another number of values": File(esm({"NDATA": "12000"}), error="12000 stated, 24 values"),
+    "esm of velocity": File(esm({"DATA_TYPE": "VELOCITY", "UNITS": "cm/s"}), error="found VELOCITY"),
+    "esm of an unknown unit": File(esm({"UNITS": "cm/s"}), error="found cm/s; expected a unit"),
+    "esm without a unit": File(esm({"UNITS": ""}), error="no unit of acceleration"),
+    "esm with a word": File(esm(body=rows(1) + "end\n"), error="line 89: found end"),
+    "knet cut in the header": File(KNET_HEADER[:300], error="found"),
+    "knet without counts": File(KNET_HEADER, error="found"),
+    "knet with a damaged scale": File(
+        KNET_HEADER.replace("2000(gal)/8388608", "2000(gal)") + KNET_ROWS, error="line 14: found 2000"
+    ),
+    "knet with a scale of zero": File(
+        KNET_HEADER.replace("2000(gal)", "0(gal)") + KNET_ROWS, error="line 14: found 0; expected a positive"
+    ),
+    "knet that is too short": File(
+        KNET_HEADER.replace("0.24", "300") + KNET_ROWS, error="line 12: found 30000 stated, 24 values"
+    ),
+    "csv without unit": File(pairs(header="time,acceleration\n"), error="no unit of acceleration"),
+    "csv of another unit than given": File(pairs(), {"unit": "m/s2"}, error="the unit g; expected m/s2"),
+    "csv with two units": File("unit: gal\n" + pairs(), error="the unit g in a column name; expected gal"),
+    "csv of velocity": File(pairs(header="time (s),velocity (m/s)\n"), {"unit": "g"}, error="velocity"),
+    "csv with a missing row": File(replaced(pairs(), "0.010,0.122560\n", ""), error="uniform steps"),
+    "csv with a repeated row": File(pairs() + pairs(header="").splitlines()[-1] + "\n", error="uniform steps"),
+    "csv with falling times": File("t,a_g\n2,1\n1,2\n0,1\n", error="times that increase"),
+    "csv with an empty field": File(replaced(pairs(), "0.122560", ""), error="line 3"),
+    "csv with a third field": File(replaced(pairs(), "0.122560", "0.122560,1"), error="line 3: found 3 columns"),
+    "csv with an infinite number": File(replaced(pairs(), "0.122560", "inf"), error="line 3: found inf"),
+    "csv of several components": File(THREE, error="components NS_g, EW_g; expected the argument"),
+    "csv without the component": File(THREE, {"component": "UD"}, error="expected component UD"),
+    "csv of one row": File("time_s,a_g\n0,1\n", error="one row"),
+    "csv of times only": File("time_s\n0.00\n0.01\n", {"unit": "g"}, error="a column of times only"),
+    "one column without step": File(single("unit: g\n"), error="no time step"),
+    "one column with a step of zero": File(single("unit: g\ndt: 0\n"), error="line 2: found 0; expected a time step"),
+    "one column with an unknown unit": File(
+        single("unit: stones\n"), {"time_step": 0.01}, error="line 1: found stones"
+    ),
+    "one column with a blank line": File(
+        replaced(single("acceleration_g\n"), "0.122560\n", "\n"), {"time_step": 0.01}, error="line 3"
+    ),
+    "numbers of another alphabet": File(pairs().replace("0", "٠"), error="found"),
+    "a damaged miniSEED": File(b"000001D " + b"\x01" * 600, {"unit": "g"}, error="miniSEED"),
+}

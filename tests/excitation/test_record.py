@@ -1,0 +1,132 @@
+"""The record: checks, units, digest, measures of motions with known ones, processing."""
+
+import hashlib
+import math
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking.constants import STANDARD_GRAVITY
+from rocking.errors import InvalidArgumentError
+from rocking.excitation.records.record import UNITS
+
+
+def sine_record(step: float = 0.005, cycles: int = 10, period: float = 0.5, peak: float = 2.0) -> rocking.Record:
+    times = np.arange(round(cycles * period / step) + 1) * step
+    return rocking.Record(peak * np.sin(2 * np.pi * times / period), step, unit="m/s2", name="sine")
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("m/s2", 1.0), ("cm/s2", 0.01), ("gal", 0.01), ("mm/s2", 1e-3), ("g", 9.80665)]
+)
+def test_units_are_converted_to_si(unit: str, factor: float) -> None:
+    record = rocking.Record([0.0, 0.5, -1.0], 0.01, unit=unit)
+    np.testing.assert_allclose(record.acceleration, np.array([0.0, 0.5, -1.0]) * factor, rtol=1e-15)
+    assert unit in UNITS
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ({"acceleration": [1.0]}, "acceleration"),
+        ({"acceleration": [[1.0, 2.0]]}, "acceleration"),
+        ({"acceleration": [0.0, 0.0, 0.0]}, "all samples 0"),
+        ({"acceleration": [1.0, math.nan]}, "nan"),
+        ({"acceleration": [1.0, 1e9]}, "acceleration"),
+        ({"time_step": 0.0}, "time_step"),
+        ({"time_step": -0.01}, "time_step"),
+        ({"time_step": [0.01, 0.02]}, "one number"),
+        ({"unit": "m/s"}, "unit"),
+    ],
+)
+def test_invalid_arguments_are_named(arguments: dict, named: str) -> None:
+    with pytest.raises(InvalidArgumentError, match=named):
+        rocking.Record(**({"acceleration": [0.0, 1.0], "time_step": 0.01, "unit": "g"} | arguments))
+
+
+def test_a_unit_is_required() -> None:
+    with pytest.raises(TypeError, match="unit"):
+        rocking.Record([0.0, 1.0], 0.01)  # type: ignore[call-arg]
+
+
+def test_records_cannot_be_changed() -> None:
+    given = np.array([0.0, 1.0, 2.0])
+    record = rocking.Record(given, 0.01, unit="m/s2")
+    given[0] = 5.0
+    assert record.acceleration[0] == 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        record.acceleration[0] = 1.0
+    with pytest.raises(AttributeError):
+        record.time_step = 2.0  # type: ignore[misc]
+
+
+def test_digest_and_equality_depend_on_samples_and_step_only() -> None:
+    record = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="m/s2", name="a")
+    same = rocking.Record([0.0, 100.0, 50.0], 0.01, unit="gal", name="b", source="other")
+    assert record == same
+    assert hash(record) == hash(same)
+    assert record.digest == hashlib.sha256(np.array([0.01, 0.0, 1.0, 0.5], "<f8").tobytes()).hexdigest()
+    assert record != rocking.Record([0.0, 1.0, 0.5], 0.02, unit="m/s2")
+
+
+def test_measures_of_a_sine() -> None:
+    record = sine_record()
+    omega, peak, duration = 2 * np.pi / 0.5, 2.0, 5.0
+    assert record.duration == pytest.approx(duration)
+    assert record.peak_acceleration == pytest.approx(peak, rel=1e-12)
+    assert record.peak_velocity == pytest.approx(2 * peak / omega, rel=1e-3)
+    assert record.peak_displacement == pytest.approx(peak / omega * duration, rel=1e-3)
+    assert record.arias_intensity == pytest.approx(math.pi / (2 * STANDARD_GRAVITY) * peak**2 * duration / 2, rel=1e-3)
+    assert record.significant_duration == pytest.approx(0.9 * duration, rel=0.02)
+    assert record.mean_period == pytest.approx(0.5, rel=0.05)
+    assert record.final_velocity == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_record_too_short_for_the_band_has_no_mean_period() -> None:
+    assert math.isnan(rocking.Record([0.0, 1.0], 10.0, unit="g").mean_period)
+
+
+@pytest.mark.parametrize("order", [0, 1, 2, 4])
+def test_baseline_correction_removes_a_polynomial_of_its_order(order: int) -> None:
+    clean = sine_record(cycles=40).acceleration
+    time = np.linspace(0.0, 1.0, clean.size)
+    drift = sum(1.0 * (k + 1) * time**k for k in range(order + 1))
+    record = rocking.Record(clean + drift, 0.005, unit="m/s2")
+    corrected = record.baseline_corrected(order=order)
+    left = rocking.Record(clean, 0.005, unit="m/s2").baseline_corrected(order=order)
+    np.testing.assert_allclose(
+        corrected.acceleration, left.acceleration, atol=1e-6
+    )  # the drift is linear between samples
+    assert abs(corrected.final_velocity) < 0.2 * abs(record.final_velocity)
+    assert record.mean_acceleration == pytest.approx(record.final_velocity / record.duration)
+
+
+@pytest.mark.parametrize("order", [-1, 7, 1.5])
+def test_baseline_orders_out_of_range_are_rejected(order: float) -> None:
+    with pytest.raises(InvalidArgumentError, match="order"):
+        sine_record().baseline_corrected(order=order)  # type: ignore[arg-type]
+
+
+def test_resampling_keeps_a_band_limited_signal() -> None:
+    times = np.arange(4000) * 0.01
+    envelope = np.exp(-(((times - 20.0) / 6.0) ** 2))
+    record = rocking.Record(envelope * np.sin(2 * np.pi * 3.0 * times), 0.01, unit="m/s2")
+    for step in (0.0025, 0.005, 0.02, 0.015):
+        found = record.resampled(step)
+        exact = np.exp(-(((found.times - 20.0) / 6.0) ** 2)) * np.sin(2 * np.pi * 3.0 * found.times)
+        np.testing.assert_allclose(found.acceleration, exact, atol=2e-3)
+        assert found.duration == pytest.approx(record.duration, abs=step)
+    finer = record.resampled(0.0025)
+    np.testing.assert_allclose(finer.acceleration[::4], record.acceleration, atol=1e-3)
+
+
+def test_steps_that_are_no_fraction_are_rejected() -> None:
+    with pytest.raises(InvalidArgumentError, match="fraction"):
+        sine_record().resampled(0.005 * math.pi)
+    with pytest.raises(InvalidArgumentError, match="duration"):
+        sine_record(cycles=1).resampled(2.0)
+
+
+def test_the_text_form_is_short() -> None:
+    assert repr(sine_record()) == "<rocking.Record sine: 1001 samples at 0.005 s, PGA 0.2039 g>"

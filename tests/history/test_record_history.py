@@ -1,0 +1,128 @@
+"""Time histories under records: against the responses, the equation of motion, and a direct integration."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import rocking
+from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError, StoppedError
+from tests.solver.records.tables import record
+
+MOTION = record("napa_HNE", 0.005)
+BLOCK = {"frequency_parameter": 2.2, "slenderness": 0.45, "restitution": 0.9}
+ALPHAS = [None, 0.2]
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_peak_is_that_of_the_response(alpha: float | None) -> None:
+    history = rocking.record_history(MOTION, **BLOCK, alpha=alpha, samples=200_000)
+    response = rocking.record_response(MOTION, **BLOCK, alpha=alpha)
+    assert history.attrs["peak_rotation"] == pytest.approx(float(response.peak_rotation), rel=1e-12)
+    assert float(np.abs(history.rotation).max()) == pytest.approx(float(response.peak_rotation), rel=1e-6)
+    assert history.attrs["impacts"] == response.impacts
+    assert history.attrs["outcome"] == "SAFE"
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_between_impacts_the_motion_satisfies_the_equation(alpha: float | None) -> None:
+    """The first long flight, integrated by scipy with a step at each sample."""
+    history = rocking.record_history(MOTION, **BLOCK, alpha=alpha)
+    p, angle = BLOCK["frequency_parameter"], alpha or 0.0
+    bounds = np.concatenate([[float(history.time[history.rotation != 0.0][0])], history.impact_time.values])
+    longest = int(np.diff(bounds).argmax())
+    inside = (history.time >= bounds[longest]) & (history.time <= bounds[longest + 1])
+    part = history.isel(time=np.flatnonzero(inside.values)[1:-1])
+    tau = part.tau.values
+    sign = math.copysign(1.0, float(part.rotation[part.sizes["time"] // 2]))
+
+    def rate(at: float, state: np.ndarray) -> list[float]:
+        u = np.interp(at / p, MOTION.times, MOTION.acceleration / MOTION.peak_acceleration) / BLOCK["slenderness"]
+        theta, velocity = state
+        if angle == 0.0:
+            return [velocity, theta - sign - u]
+        fall = angle * (sign - theta)
+        return [velocity, (-math.sin(fall) - u * math.tan(angle) * math.cos(fall)) / angle]
+
+    start = [float(part.rotation[0]), float(part.angular_velocity[0])]
+    found = solve_ivp(rate, (tau[0], tau[-1]), start, "DOP853", tau, rtol=1e-11, atol=1e-13, max_step=p * 0.005)
+    np.testing.assert_allclose(found.y[0], part.rotation.values, atol=1e-9)
+    np.testing.assert_allclose(found.y[1], part.angular_velocity.values, atol=1e-8)
+
+
+def test_impacts_reduce_the_velocity_by_the_restitution() -> None:
+    history = rocking.record_history(MOTION, **BLOCK)
+    before = rocking.record_history(MOTION, **BLOCK, samples=400_000)
+    for time in history.impact_time.values[:20:3]:
+        after = float(history.angular_velocity.sel(time=time))
+        place = int(np.searchsorted(before.time.values, time)) - 1
+        dt = (time - float(before.time[place])) * BLOCK["frequency_parameter"]
+        assert after == pytest.approx(0.9 * float(before.angular_velocity[place]), abs=5 * dt)
+        assert float(history.rotation.sel(time=time)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_tiny_angle_gives_the_slender_history() -> None:
+    slender = rocking.record_history(MOTION, **BLOCK)
+    rigid = rocking.record_history(MOTION, **BLOCK, alpha=1e-7, samples=None)
+    common = np.intersect1d(slender.time.values, rigid.time.values)
+    assert common.size > 6000
+    np.testing.assert_allclose(slender.rotation.sel(time=common), rigid.rotation.sel(time=common), atol=1e-9)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_an_overturning_block_is_followed_until_it_has_fallen(alpha: float | None) -> None:
+    history = rocking.record_history(MOTION, **(BLOCK | {"slenderness": 0.2}), alpha=alpha)
+    assert history.attrs["overturned"] == 1
+    last = float(abs(history.rotation[-1]))
+    assert last > 3.9  # the last sample before it passes 4, the first of pi/2 and 4
+    assert bool((abs(history.rotation[:-1]) <= last).all())
+
+
+def test_after_the_motion_the_block_rocks_freely() -> None:
+    """A short motion: the energy is constant between impacts after its end."""
+    motion = rocking.Record([0.0, 1.0, 1.0, -0.5], 0.1, unit="g")
+    history = rocking.record_history(motion, frequency_parameter=3.0, slenderness=0.4, restitution=0.8, samples=5000)
+    assert history.attrs["overturned"] == 0
+    z, w = np.abs(history.rotation.values), history.angular_velocity.values
+    free = (history.time.values > motion.duration) & (z > 0.0)
+    count = np.searchsorted(history.impact_time.values, history.time.values, side="right")
+    energy = w * w - (1.0 - z) ** 2
+    for flight in np.unique(count[free])[:4]:
+        np.testing.assert_allclose(energy[free & (count == flight)], energy[free & (count == flight)][0], atol=1e-9)
+    assert history.ground_acceleration.values[history.time.values > motion.duration].max() == 0.0
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_contact_forces_of_a_rocking_block(alpha: float | None) -> None:
+    history = rocking.record_history(MOTION, **BLOCK, alpha=alpha, contact=True)
+    rest = (history.rotation == 0.0) & (history.angular_velocity == 0.0) & (abs(history.ground_acceleration) < 1.0)
+    np.testing.assert_allclose(history.normal_reaction.values[rest], 1.0)
+    slope = math.tan(alpha or 0.0)
+    np.testing.assert_allclose(
+        history.horizontal_reaction.values[rest], slope * history.ground_acceleration.values[rest]
+    )
+    demand = history.friction_demand_over_slope.values
+    assert history.attrs["largest_friction_demand_over_slope"] >= demand.max() * (1 - 1e-12)
+    assert history.attrs["largest_friction_demand_over_slope"] == pytest.approx(demand.max(), rel=0.05)
+    assert history.attrs["smallest_normal_reaction"] <= history.normal_reaction.values.min() + 1e-12
+
+
+def test_without_uplift_nothing_moves() -> None:
+    history = rocking.record_history(MOTION, **(BLOCK | {"slenderness": 1.5}))
+    assert not history.rotation.any()
+    assert history.attrs["outcome"] == "NO_UPLIFT"
+
+
+@pytest.mark.parametrize(("change", "named"), [({"samples": 1}, "samples"), ({"duration": 0.0}, "duration")])
+def test_arguments_are_checked(change: dict, named: str) -> None:
+    with pytest.raises(InvalidArgumentError, match=named):
+        rocking.record_history(MOTION, **BLOCK, **change)
+
+
+def test_a_stopped_history_raises() -> None:
+    stop = StopFlag()
+    stop.set()
+    with pytest.raises(StoppedError):
+        rocking.record_history(MOTION, **BLOCK, stop=stop)

@@ -1,0 +1,152 @@
+"""The workflow on the suite of records of the repository, run by Snakemake."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+import rocking
+from rocking.datasets.cube import read_dataset
+from rocking.suites.configuration import suite_configuration
+from tests.workflow_fixtures import PROJECT, snakemake
+from workflow.configuration import ConfigurationError, check
+from workflow.verify import problems
+
+CONFIGURATION = PROJECT / "workflow/config/suite.yaml"
+RECORDS = ("napa_HNE", "napa_HNN", "synthetic_31", "synthetic_32", "synthetic_33")
+
+
+@pytest.fixture(scope="module")
+def suite_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder in which the workflow ran with suite.yaml; tests must not change it."""
+    directory = tmp_path_factory.mktemp("suite")
+    finished = snakemake(directory, module="workflow.run", configuration=CONFIGURATION)
+    assert finished.returncode == 0, finished.stdout
+    return directory
+
+
+@pytest.fixture(scope="module")
+def products(suite_run: Path) -> Path:
+    return suite_run / "results/suites/demonstration"
+
+
+def test_every_product_is_made_and_listed(products: Path) -> None:
+    listed = json.loads((products / "manifest.json").read_text())["products"]
+    expected = {f"records/{name}.csv.nc" for name in RECORDS} | {"outcomes.nc", "fragility.nc", "fragility.csv"}
+    expected |= {f"figures/{name}.{kind}" for name in ("curves", "outcomes", "map") for kind in ("svg", "png", "nc")}
+    assert set(listed) == expected
+    for name, entry in listed.items():
+        assert hashlib.sha256((products / name).read_bytes()).hexdigest() == entry["sha256"]
+    found = {path.relative_to(products).as_posix() for path in products.rglob("*") if path.is_file()}
+    assert found - expected == {"manifest.json"}
+
+
+def test_products_are_those_of_the_library(products: Path) -> None:
+    given = yaml.safe_load(CONFIGURATION.read_text())["suite"]
+    suite = suite_configuration(given, CONFIGURATION.parent)
+    direct = rocking.fragility(
+        suite.motions(), suite.blocks, intensity=suite.intensity, measure=suite.measure, demand=suite.demand
+    )
+    outcomes, fragility = (read_dataset(products / f"{name}.nc") for name in ("outcomes", "fragility"))
+    for name in ("peak_rotation", "outcome", "scale"):
+        np.testing.assert_array_equal(outcomes[name], direct[name])
+    for name in ("exceedances", "median_intensity", "dispersion_upper", "records_surviving_above_first"):
+        np.testing.assert_array_equal(fragility[name], direct[name])
+    assert outcomes.record.values.tolist() == list(RECORDS)
+    assert outcomes.digest.values.tolist() == [motion.digest for motion in suite.motions()]
+    rate = rocking.annual_rate(direct, suite.hazard)
+    np.testing.assert_allclose(fragility.annual_rate, rate.annual_rate)
+
+
+def test_map_is_that_of_single_blocks(products: Path) -> None:
+    outcomes = read_dataset(products / "outcomes.nc")
+    data = read_dataset(products / "figures/map.nc")
+    np.testing.assert_array_equal(data.probability, outcomes.map_overturned.mean("record"))
+    suite = suite_configuration(yaml.safe_load(CONFIGURATION.read_text())["suite"], CONFIGURATION.parent)
+    for i, j in ((0, 0), (4, 7), (18, 3)):
+        block = rocking.Block.from_slenderness_angle(float(outcomes.map_alpha[j]), float(outcomes.map_half_diagonal[i]))
+        direct = rocking.fragility(suite.motions(), block, intensity=[6.0])
+        np.testing.assert_array_equal(outcomes.map_overturned[i, j], direct.overturned[0])
+
+
+def test_table_has_a_row_for_each_limit_state_block_and_level(products: Path) -> None:
+    lines = (products / "fragility.csv").read_text().splitlines()
+    assert len(lines) == 1 + 3 * 3 * 36
+    assert lines[0].startswith("demand,half_width,half_height,intensity,exceedances,fraction")
+    assert {line.split(",")[0] for line in lines[1:]} == {"overturning", "alpha", "0.5 alpha"}
+
+
+def test_figures_hold_what_they_show(products: Path) -> None:
+    curves, outcomes = (read_dataset(products / f"figures/{name}.nc") for name in ("curves", "outcomes"))
+    assert curves.curve.shape == (2, 3, 300)
+    assert np.all(np.diff(curves.curve, axis=2) >= 0.0)
+    overturned = (outcomes.outcome_class == 4).sum("record") / outcomes.sizes["record"]
+    np.testing.assert_allclose(overturned, curves.fraction)
+
+
+def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run: Path, tmp_path: Path) -> None:
+    copy = Path(shutil.copytree(suite_run, tmp_path / "run"))
+    again = snakemake(copy, module="workflow.run", configuration=CONFIGURATION)
+    assert "Nothing to be done" in again.stdout
+    place = "results/suites/demonstration/records/napa_HNE.csv.nc"
+    before = (copy / place).read_bytes()
+    (copy / place).write_bytes(before[:-100])
+    assert [name for name in problems(copy) if "napa_HNE" in name]
+    remade = snakemake(copy, module="workflow.run", configuration=CONFIGURATION)
+    assert remade.returncode == 0, remade.stdout
+    assert remade.stdout.count("Responses to") == 1
+    assert (copy / place).read_bytes() == before
+    assert [*problems(copy)] == []
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "message"),
+    [
+        ("colour", 1, "suite.suite = 'unknown colour': allowed: exactly the keys name, records"),
+        ("name", "a/b", "suite.name = 'a/b': allowed: letters"),
+        ("records/folder", "nowhere", "suite.records = "),
+        ("records/pattern", "../*.csv", "suite.records.pattern = '../*.csv'"),
+        ("records/unit", "feet", "suite.records.unit = 'feet': allowed: one of m/s2"),
+        ("records/baseline_order", 1.5, "suite.records.baseline_order = 1.5: allowed: null, or an integer"),
+        ("blocks", [], "suite.blocks = []: allowed: a list of half_width and half_height"),
+        ("blocks", [{"half_width": 0.2}], "suite.blocks[0] = 'no half_height'"),
+        ("blocks", [{"half_width": 0.2, "half_height": -1.0}], "suite.blocks[0].half_height = -1.0"),
+        ("restitution", "plastic", "suite.restitution = 'plastic'"),
+        ("measure", "sa", "suite.measure = 'sa': allowed: one of pga, pgv"),
+        ("intensity", [3.0, 2.0], "suite.intensity = [3.0, 2.0]: allowed: 1 to 10000 ascending values"),
+        ("intensity/points", 1, "suite.intensity.points = 1: allowed: an integer from 2"),
+        ("intensity/high", 0.5, "suite.intensity.high = 0.5: allowed: (1, inf)"),
+        ("demand", ["sliding"], "suite.demand = 'sliding': allowed: overturning, alpha"),
+        ("confidence", 1.0, "suite.confidence = 1.0: allowed: (0, 1)"),
+        ("map/alpha_deg", [95.0], "suite.map.alpha_deg = 95.0: allowed: (0, 89] [deg]"),
+        ("hazard/rate", [1.0], "suite.hazard_curve"),
+    ],
+)
+def test_invalid_configuration_is_refused_in_one_line(place: str, value: Any, message: str) -> None:
+    configuration = yaml.safe_load(CONFIGURATION.read_text())
+    *sections, key = place.split("/")
+    part = configuration["suite"]
+    for name in sections:
+        part = part[name]
+    part[key] = value
+    with pytest.raises(ConfigurationError) as error:
+        check(configuration, CONFIGURATION.parent)
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_snakemake_shows_the_line(tmp_path: Path) -> None:
+    configuration = yaml.safe_load(CONFIGURATION.read_text())
+    configuration["suite"]["measure"] = "sa"
+    path = tmp_path / "suite.yaml"
+    path.write_text(yaml.safe_dump(configuration))
+    refused = snakemake(tmp_path, "--dry-run", configuration=path)
+    assert refused.returncode != 0
+    assert "Configuration refused: suite.measure = 'sa': allowed: one of pga" in refused.stdout

@@ -1,0 +1,124 @@
+# A suite of records (configuration with the key `suite`): one job per record file, so that a large suite spreads over
+# cores and machines, then counts, fitted curves and figures.
+SUITE = config["suite"]
+SUITE_FILES = {path.name: path for path in suite_configuration(SUITE, CONFIG_FOLDER).records.paths()}
+SUITE_FOLDER = f"results/suites/{SUITE['name']}"
+SUITE_FIGURES = {"curves": "fragility", "outcomes": "outcomes", **({"map": "outcomes"} if SUITE["map"] else {})}
+# what the response of a record does not depend on
+OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95, "hazard": None}
+
+
+def suite_record(job):
+    """Path of the record with the digests of the products of a job of this suite."""
+    return record_of(f"suites/{SUITE['name']}/{job}")
+
+
+wildcard_constraints:
+    file="|".join(map(re.escape, SUITE_FILES)),
+
+
+rule suite_record:
+    input:
+        file=lambda wildcards: str(SUITE_FILES[wildcards.file]),
+    output:
+        outcomes=f"{SUITE_FOLDER}/records/{{file}}.nc",
+        record=suite_record("records/{file}"),
+    log:
+        f"logs/suites/{SUITE['name']}/{{file}}.log",
+    benchmark:
+        f"logs/benchmarks/suite-{SUITE['name']}-{{file}}.tsv"
+    params:
+        suite=OUTCOME_SETTINGS,
+        provenance=provenance(
+            "suite_record",
+            ["scripts/suite_record.py"],
+            OUTCOME_SETTINGS,
+            [f"{SUITE_FOLDER}/records/{name}.nc" for name in SUITE_FILES],
+        ),
+    message:
+        "Responses to {wildcards.file}"
+    script:
+        "../scripts/suite_record.py"
+
+
+rule suite_fragility:
+    input:
+        files=expand(rules.suite_record.output.outcomes, file=SUITE_FILES),
+    output:
+        outcomes=f"{SUITE_FOLDER}/outcomes.nc",
+        fragility=f"{SUITE_FOLDER}/fragility.nc",
+        table=f"{SUITE_FOLDER}/fragility.csv",
+        record=suite_record("fragility"),
+    log:
+        f"logs/suites/{SUITE['name']}/fragility.log",
+    benchmark:
+        f"logs/benchmarks/suite-{SUITE['name']}-fragility.tsv"
+    params:
+        suite=SUITE,
+        provenance=provenance(
+            "suite_fragility",
+            ["scripts/suite_fragility.py"],
+            SUITE,
+            [f"{SUITE_FOLDER}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")],
+        ),
+    message:
+        "Fragility under the suite"
+    script:
+        "../scripts/suite_fragility.py"
+
+
+for _figure, _source in SUITE_FIGURES.items():
+    _files = {kind: f"{SUITE_FOLDER}/figures/{_figure}.{kind}" for kind in ("svg", "png", "nc")}
+
+    rule:
+        name:
+            f"suite_figure_{_figure}"
+        input:
+            **{_source: f"{SUITE_FOLDER}/{_source}.nc"},
+        output:
+            **_files,
+            record=suite_record(f"figures/{_figure}"),
+        log:
+            f"logs/suites/{SUITE['name']}/{_figure}.log",
+        benchmark:
+            f"logs/benchmarks/suite-{SUITE['name']}-{_figure}.tsv"
+        params:
+            figure=f"suite_{_figure}",
+            provenance=provenance(
+                f"suite_figure_{_figure}",
+                ["scripts/figure.py", f"figures/suite_{_figure}.py"],
+                {},
+                _files.values(),
+            ),
+        message:
+            f"Drawing {_figure} of the suite"
+        script:
+            "../scripts/figure.py"
+
+
+rule suite_manifest:
+    input:
+        products=list(PRODUCTS),
+        records=[
+            *expand(rules.suite_record.output.record, file=SUITE_FILES),
+            rules.suite_fragility.output.record,
+            *(suite_record(f"figures/{figure}") for figure in SUITE_FIGURES),
+        ],
+    output:
+        manifest=f"{SUITE_FOLDER}/manifest.json",
+        record=suite_record("manifest"),
+    log:
+        f"logs/suites/{SUITE['name']}/manifest.log",
+    benchmark:
+        f"logs/benchmarks/suite-{SUITE['name']}-manifest.tsv"
+    params:
+        sources=PRODUCTS,
+        title=config["title"],
+        code=code_digest(PROJECT / "workflow/scripts/manifest.py"),
+    message:
+        "Listing the products of the suite"
+    script:
+        "../scripts/manifest.py"
+
+
+FINISHED += [*rules.suite_manifest.input, *rules.suite_manifest.output]

@@ -1,0 +1,71 @@
+"""Fragility of the blocks of a suite from their outcomes under its records."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rocking.datasets.csv_text import csv_text
+from rocking.datasets.cube import describe, read_dataset, write_dataset
+from rocking.suites.configuration import suite_configuration
+from rocking.suites.fragility import fragility_of_outcomes
+from rocking.suites.hazard import annual_rate
+from rocking.suites.outcomes import join_outcomes
+from rocking.suites.table import fragility_table
+from workflow.scripts.job import run
+
+
+def main(
+    *,
+    files: Sequence[Path],
+    suite: Mapping[str, Any],
+    outcomes: Path,
+    fragility: Path,
+    table: Path,
+    provenance: Mapping[str, str],
+) -> None:
+    """Join the outcomes of all records, count them, and fit curves.
+
+    Parameters
+    ----------
+    files : sequence of paths
+        Outcomes under each motion.
+    suite : mapping
+        Configuration of the suite.
+    outcomes, fragility, table : path
+        Outputs: all outcomes; counts, intervals and curves, as netCDF and, by level, as CSV.
+    provenance : mapping
+        Digests of the code and settings.
+    """
+    chosen = suite_configuration(suite, Path())
+    joined = join_outcomes([read_dataset(path).drop_attrs(deep=False) for path in files], chosen.measure)
+    found = fragility_of_outcomes(joined, chosen.demand, chosen.confidence)
+    if chosen.hazard is not None:
+        found = found.assign(annual_rate(found, chosen.hazard).data_vars)
+    about = {
+        "history": "workflow.scripts.suite_fragility",
+        "suite": chosen.name,
+        "measure": chosen.measure,
+        **provenance,
+    }
+    described = {
+        outcomes: joined.assign_attrs(
+            title=f"Outcomes of the suite {chosen.name}",
+            summary="Response of rigid blocks (2.2) to each record at each level of intensity, solved event by event.",
+        ),
+        fragility: found.assign_attrs(
+            title=f"Fragility under the suite {chosen.name}",
+            summary="Number of records that reach a limit state at each level of intensity, with binomial intervals, "
+            "and "
+            "curves fitted by maximum likelihood; rocking.suites.fits states how.",
+            confidence=chosen.confidence,
+        ),
+    }
+    for path, dataset in described.items():
+        name = f"suites/{chosen.name}/{path.stem}"
+        write_dataset(describe(dataset, id=name, **about), path)
+    table.write_text(csv_text(fragility_table(found)), encoding="utf-8")
+    print(f"{fragility}: {joined.sizes['record']} records, {joined.sizes['block']} blocks")
+
+
+if __name__ == "__main__":
+    run(main, snakemake)  # noqa: F821  (given by Snakemake)
