@@ -1,6 +1,6 @@
 """Hyperbolic functions and the arc cosine of a SIMD vector.
 
-The functions of the C library take one number. All relative errors are below 4.5e-16.
+The functions of the C library take one number. All relative errors are below 6e-16.
 """
 
 from __future__ import annotations
