@@ -4,6 +4,7 @@ from . import orientation as orientation
 from .boundary.amplitude import Thresholds as Thresholds
 from .boundary.amplitude import critical_amplitude as critical_amplitude
 from .boundary.tracing import overturning_boundary as overturning_boundary
+from .dimensional.block import Block as Block
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError
@@ -16,10 +17,10 @@ from .history.record_history import record_history as record_history
 from .history.time_history import time_history as time_history
 from .lookup.cube import Cube as Cube
 from .lookup.open import open_cube as open_cube
-from .model.block import Block as Block
 from .model.response import Outcome as Outcome
 from .model.response import Response as Response
 from .solver.peak_response import peak_response as peak_response
+from .solver.records.amplification import record_amplification as record_amplification
 from .solver.records.record_response import record_response as record_response
 from .suites.fragility import fragility as fragility
 from .suites.hazard import annual_rate as annual_rate

@@ -199,8 +199,9 @@ FIGURES = section(
         "figure-05": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
         "figure-06": section(paper=_PULSE_AND_ETA, ours=_TWO_BLOCKS),
         "figure-07": section(
-            paper=section(pulses=PULSE_LIST, restitution=ETAS),
-            ours=section(slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION),
+            ours=section(
+                pulses=PULSE_LIST, restitution=ETAS, slenderness=SLENDERNESS, frequency_ratio=OMEGA, duration=DURATION
+            ),
         ),
         "figure-08": section(
             paper=section(restitution=ETAS), ours=section(slenderness=ROWS, frequency_ratio=_range(OMEGA))
@@ -209,7 +210,7 @@ FIGURES = section(
             paper=section(alpha_deg=ANGLE, half_diagonal=several(METRES, 2, 2), restitution=ETA),
             ours=section(pulse_period=several(SECONDS)),
         ),
-        "figure-10": section(paper=section(restitution=ETA)),
+        "figure-10": section(paper=section(restitution=ETA), ours=section(alpha_deg=ANGLES)),
         "figure-11": section(ours=section(slenderness=SLENDERNESS, duration=DURATION, **_HISTORIES)),
         "figure-12": section(paper=section(slenderness=SLENDERNESS), ours=section(duration=DURATION, **_HISTORIES)),
         "figure-13": section(

@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 
 from rocking.cli.fragility import fragility
+from rocking.cli.options import OutputOptions, ProblemOptions, SpectrumOptions, WindowOptions, with_options
 from rocking.cli.record import record
-from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking.version import __version__
 
 app = typer.Typer(
@@ -21,30 +21,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-_GROUPS = "In groups"
-_UNITS = "With units"
-
-Pulse = Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
-Slenderness = Annotated[float | None, typer.Option(help=f"{SLENDERNESS.help}.", rich_help_panel=_GROUPS)]
-FrequencyRatio = Annotated[float | None, typer.Option(help=f"{FREQUENCY_RATIO.help}.", rich_help_panel=_GROUPS)]
-Restitution = Annotated[
-    str,
-    typer.Option(
-        help=f"{RESTITUTION.help}, {RESTITUTION.interval}; housner for a block with units: (2.4), 0 where negative."
-    ),
-]
-Alpha = Annotated[
-    str | None,
-    typer.Option(help=f"{ALPHA.help}, such as '20 deg'.", rich_help_panel=_GROUPS),
-]
-HalfWidth = Annotated[str | None, typer.Option(help="b, such as 0.2m.", rich_help_panel=_UNITS)]
-HalfHeight = Annotated[str | None, typer.Option(help="h, such as '80 cm'.", rich_help_panel=_UNITS)]
-PeakAcceleration = Annotated[str | None, typer.Option(help="a_g, such as '4 m/s^2' or 0.4g.", rich_help_panel=_UNITS)]
-PulsePeriod = Annotated[str | None, typer.Option(help="T_p, such as 0.5s.", rich_help_panel=_UNITS)]
 FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
 FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-Csv = Annotated[bool, typer.Option("--csv", help="Print CSV.")]
 
 
 def _print_version(given: bool) -> None:
@@ -63,98 +41,83 @@ def main(
 
 
 @app.command()
+@with_options
 def response(
-    pulse: Pulse,
-    restitution: Restitution,
-    slenderness: Slenderness = None,
-    frequency_ratio: FrequencyRatio = None,
-    alpha: Alpha = None,
-    half_width: HalfWidth = None,
-    half_height: HalfHeight = None,
-    peak_acceleration: PeakAcceleration = None,
-    pulse_period: PulsePeriod = None,
-    json: Json = False,
-    csv: Csv = False,
+    block: ProblemOptions,
+    output: OutputOptions,
+    blocks: Annotated[
+        str | None,
+        typer.Option(
+            help="CSV file of many blocks, - for standard input; the header has units: 'width (m),height (cm),"
+            "peak_acceleration (g),period (s)', optionally name and restitution. Prints CSV.",
+            rich_help_panel="With units",
+        ),
+    ] = None,
 ) -> None:
-    """Outcome and peak rotation of one block, by the solver."""
-    from rocking.cli import arguments, output
+    """Outcome and peak rotation of one block or of many, by the solver."""
+    from rocking.cli import arguments, printing
 
     with arguments.option_errors():
-        params = arguments.read_params(
-            pulse, restitution, slenderness, frequency_ratio, alpha,
-            half_width, half_height, peak_acceleration, pulse_period,
-        )  # fmt: skip
-        output.response(params, output.output_format(json=json, csv=csv))
+        form = printing.output_format(output)
+        if blocks is None:
+            printing.response(arguments.read_params(block), form)
+        else:
+            printing.responses(arguments.read_blocks(blocks, block), form)
 
 
 @app.command()
+@with_options
 def history(
-    pulse: Pulse,
-    restitution: Restitution,
-    slenderness: Slenderness = None,
-    frequency_ratio: FrequencyRatio = None,
-    alpha: Alpha = None,
-    half_width: HalfWidth = None,
-    half_height: HalfHeight = None,
-    peak_acceleration: PeakAcceleration = None,
-    pulse_period: PulsePeriod = None,
-    duration: Annotated[float | None, typer.Option(help="Length in tau = p t.")] = None,
+    block: ProblemOptions,
+    output: OutputOptions,
+    duration: Annotated[
+        str | None, typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.")
+    ] = None,
     samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.")] = 400,
     contact: Annotated[
         bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.")
     ] = False,
-    json: Json = False,
-    csv: Csv = False,
 ) -> None:
     """Rotation and angular velocity of one block against time."""
-    from rocking.cli import arguments, output
+    from rocking.cli import arguments, printing
 
     with arguments.option_errors():
-        params = arguments.read_params(
-            pulse, restitution, slenderness, frequency_ratio, alpha,
-            half_width, half_height, peak_acceleration, pulse_period,
-        )  # fmt: skip
-        output.history(params, duration, samples, contact, output.output_format(json=json, csv=csv))
+        params = arguments.read_params(block)
+        length = arguments.read_duration(duration, params)
+        printing.history(params, length, samples, contact, printing.output_format(output))
 
 
 @app.command()
+@with_options
 def spectrum(
-    pulse: Pulse,
-    slenderness: Annotated[float, typer.Option(help=f"{SLENDERNESS.help}.")],
-    restitution: Annotated[float, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}.")],
-    alpha: Alpha = None,
+    block: SpectrumOptions,
+    output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
     points: Annotated[int, typer.Option(help="Points, spaced evenly in the logarithm.")] = 24,
-    json: Json = False,
-    csv: Csv = False,
 ) -> None:
-    """Peak rotation against the frequency ratio."""
-    from rocking.cli import arguments, output
+    """Peak rotation against the frequency ratio, or against the period."""
+    from rocking.cli import arguments, printing
 
     with arguments.option_errors():
-        window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
-        params = arguments.read_params(pulse, str(restitution), slenderness, window[0], alpha)
-        output.spectrum(params, window, points, output.output_format(json=json, csv=csv))
+        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max)
+        printing.spectrum(params, window, points, printing.output_format(output))
 
 
 @app.command()
+@with_options
 def boundary(
-    pulse: Pulse,
-    restitution: Annotated[float, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}.")],
-    alpha: Alpha = None,
+    block: WindowOptions,
+    output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.2,
     frequency_ratio_max: FrequencyRatioMax = 15.0,
-    json: Json = False,
-    csv: Csv = False,
 ) -> None:
     """Overturning boundary curves, traced with the solver."""
-    from rocking.cli import arguments, output
+    from rocking.cli import arguments, printing
 
     with arguments.option_errors():
-        window = arguments.frequency_window(frequency_ratio_min, frequency_ratio_max)
-        params = arguments.read_params(pulse, str(restitution), 1.0, window[0], alpha)
-        output.boundary(params, window, output.output_format(json=json, csv=csv))
+        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
+        printing.boundary(params, window, printing.output_format(output))
 
 
 app.command()(record)

@@ -3,30 +3,60 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
 import typer
 
+from rocking.cli.options import ProblemOptions, ShapeOptions, SpectrumOptions, WindowOptions
 from rocking.errors import InvalidArgumentError, in_range
-from rocking.groups import GroupSet, Problem, groups_of
 from rocking.model.block import Block
 from rocking.model.checks import check_window
 from rocking.model.parameters import FREQUENCY_RATIO
 
+if TYPE_CHECKING:
+    from rocking.dimensional.problem import BlockProblem
+    from rocking.dimensional.table import BlockTable
+
+_SI_UNITS = {
+    "width": "m",
+    "height": "m",
+    "half_width": "m",
+    "half_height": "m",
+    "peak_acceleration": "m/s**2",
+    "pulse_period": "s",
+    "period_min": "s",
+    "period_max": "s",
+}
+"""Options with units."""
+
+_SIZES = ("width", "height", "half_width", "half_height")
+
 
 @dataclass(frozen=True)
 class Params:
-    """One block under one pulse, as groups; `block` if it was given with units."""
+    """One block under one pulse, as groups; `problem` if it was given with units."""
 
     pulse: str
     slenderness: float
     frequency_ratio: float
     restitution: float
     alpha: float | None
-    block: Block | None = None
+    problem: BlockProblem | None = None
+
+    @property
+    def groups(self) -> dict[str, float | None]:
+        """Arguments of the solver."""
+        return {
+            "slenderness": self.slenderness,
+            "frequency_ratio": self.frequency_ratio,
+            "restitution": self.restitution,
+            "alpha": self.alpha,
+        }
 
 
 @contextmanager
@@ -35,75 +65,185 @@ def option_errors() -> Iterator[None]:
     try:
         yield
     except InvalidArgumentError as error:
-        option = "--" + error.parameter.split("[")[0].replace("_", "-")
-        raise typer.BadParameter(
-            f"{error.value!r} is not allowed; allowed: {error.allowed}", param_hint=option
-        ) from None
+        option = "--" + error.parameter.split("[")[0].split(",")[0].replace("_", "-")
+        place = error.parameter.partition(",")[2]
+        text = f"{error.value!r} is not allowed; allowed: {error.allowed}"
+        if error.allowed.startswith("missing unit"):
+            text = f"{error.value!r}: {error.allowed}"
+        raise typer.BadParameter(f"{place.strip()}: {text}" if place else text, param_hint=option) from None
 
 
-def _si_value(parameter: str, text: str, unit: str) -> float:
-    from rocking.cli.units import si_value  # the unit library is not needed for groups
+def si_value(parameter: str, text: str, unit: str) -> float:
+    """As `rocking.dimensional.units.si_value`, whose unit library is not needed for groups."""
+    from rocking.dimensional import units
 
-    return si_value(parameter, text, unit)
+    return units.si_value(parameter, text, unit)
 
 
-def read_params(
-    pulse: str,
-    restitution: str,
-    slenderness: float | None,
-    frequency_ratio: float | None,
-    alpha: str | None,
-    half_width: str | None = None,
-    half_height: str | None = None,
-    peak_acceleration: str | None = None,
-    pulse_period: str | None = None,
-) -> Params:
-    """The parameters as groups.
+def read_params(options: ProblemOptions) -> Params:
+    """A block under a pulse.
 
     Raises
     ------
     InvalidArgumentError
-        If groups and units are mixed, a parameter is missing, or a value is not allowed.
+        If groups and units are mixed, an option is missing, or a value is not allowed.
     """
-    groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "alpha": alpha}
-    units = {
-        "half_width": half_width,
-        "half_height": half_height,
-        "peak_acceleration": peak_acceleration,
-        "pulse_period": pulse_period,
-    }
-    if not any(units.values()):
+    if not _has_units(options):
         for name in ("slenderness", "frequency_ratio"):
-            if groups[name] is None:
+            if getattr(options, name) is None:
                 raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
-        angle = None if alpha is None else _si_value("alpha", alpha, "rad")
-        return Params(pulse, slenderness or 0.0, frequency_ratio or 0.0, _eta(restitution), angle or None)
-    for name, value in groups.items():
-        if value is not None:
-            raise InvalidArgumentError(name, value, "either groups or a block and a pulse with units")
-    b, h, a_g, period = (
-        _positive(name, units[name], unit) for name, unit in zip(units, ("m", "m", "m/s**2", "s"), strict=True)
-    )
-    block = Block(b, h)
-    problem = Problem(block.alpha, block.frequency_parameter, a_g, 2.0 * math.pi / period)
-    found = groups_of(problem, GroupSet.RIGID)  # (5.3)
-    eta = block.inelastic_restitution if restitution == "housner" else _eta(restitution)
-    s, omega = float(np.asarray(found.slenderness)), float(np.asarray(found.frequency_ratio))
-    return Params(pulse, s, omega, eta, block.alpha, block)
+        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+        slenderness, ratio = options.slenderness or 0.0, options.frequency_ratio or 0.0
+        return Params(options.pulse, slenderness, ratio, _eta(options.restitution), angle or None)
+    _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
+    block = read_block(options)
+    return _of_problem(options, block, _positive(options, "peak_acceleration"), _positive(options, "pulse_period"))
 
 
-def frequency_window(low: float, high: float) -> tuple[float, float]:
-    """A window of the frequency ratio [-], low < high."""
-    return check_window(FREQUENCY_RATIO, low, high)
+def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
+    """A block under pulses of one amplitude, at the lowest frequency ratio, and the window of frequency ratios.
+
+    Raises
+    ------
+    InvalidArgumentError
+        As `read_params`.
+    """
+    if not _has_units(options):
+        if options.slenderness is None:
+            raise InvalidArgumentError("slenderness", None, "a number; or a block and an amplitude with units instead")
+        window = check_window(FREQUENCY_RATIO, low, high)
+        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+        eta = _eta(options.restitution)
+        return Params(options.pulse, options.slenderness, window[0], eta, angle or None), window
+    _refuse_groups(options, ("slenderness", "alpha"))
+    block = read_block(options)
+    window = _window(options, block, low, high)
+    return _of_problem(options, block, _positive(options, "peak_acceleration"), _period(block, window[0])), window
 
 
-def _positive(name: str, text: str | None, unit: str) -> float:
+def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
+    """A block without amplitude, and the window of frequency ratios.
+
+    Raises
+    ------
+    InvalidArgumentError
+        As `read_params`.
+    """
+    if not _has_units(options):
+        window = check_window(FREQUENCY_RATIO, low, high)
+        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+        return Params(options.pulse, 1.0, window[0], _eta(options.restitution), angle or None), window
+    _refuse_groups(options, ("alpha",))
+    block = read_block(options)
+    window = _window(options, block, low, high)
+    return _of_problem(options, block, block.uplift_acceleration, _period(block, window[0])), window
+
+
+def read_block(options: ShapeOptions) -> Block:
+    """The block of the sizes.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If one is missing, given twice, or not allowed.
+    """
+    sizes = {}
+    for name in ("width", "height"):
+        half, whole = getattr(options, f"half_{name}"), getattr(options, name)
+        if half is not None and whole is not None:
+            raise InvalidArgumentError(name, whole, f"one of --{name} and --half-{name}")
+        sizes[name] = 0.5 * _positive(options, name) if half is None else _positive(options, f"half_{name}")
+    return Block(sizes["width"], sizes["height"])
+
+
+def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
+    """The blocks of a CSV file; `-` is standard input.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the file cannot be read, or blocks are also given by options.
+    """
+    from rocking.dimensional.table import read_table
+
+    for name in (*_SIZES, "peak_acceleration", "pulse_period", "slenderness", "frequency_ratio", "alpha"):
+        if getattr(options, name) is not None:
+            raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the file --blocks")
+    try:
+        text = sys.stdin.read() if path == "-" else Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidArgumentError("blocks", path, f"a CSV file that can be read: {error}") from None
+    given = options.restitution or "housner"
+    return read_table(text, options.pulse, given if given == "housner" else _eta(given))
+
+
+def read_duration(text: str | None, params: Params) -> float | None:
+    """Length of a history in tau = p t: a number, or a time with a unit for a block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is neither.
+    """
     if text is None:
-        raise InvalidArgumentError(name, None, "required with the other dimensional options")
-    return float(in_range(name, _si_value(name, text, unit), 0.0, math.inf, closed="neither", unit=unit))
+        return None
+    if params.problem is not None:
+        return si_value("duration", text, "s") * params.problem.block.frequency_parameter
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidArgumentError("duration", text, "a number tau = p t; seconds for a block with units") from None
 
 
-def _eta(text: str) -> float:
+def _has_units(options: ShapeOptions) -> bool:
+    return any(getattr(options, name, None) for name in _SI_UNITS)
+
+
+def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
+    for name in names:
+        if getattr(options, name) is not None:
+            raise InvalidArgumentError(name, getattr(options, name), "either groups or a block and a pulse with units")
+
+
+def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float, period: float) -> Params:
+    from rocking.dimensional.problem import BlockProblem
+
+    given = options.restitution or "housner"
+    eta = "housner" if given == "housner" else _eta(given)
+    problem = BlockProblem(block, options.pulse, peak_acceleration, period, eta)  # type: ignore[arg-type]
+    groups: Mapping[str, float] = problem.groups  # type: ignore[assignment]
+    return Params(options.pulse, **groups, problem=problem)
+
+
+def _window(options: WindowOptions, block: Block, low: float, high: float) -> tuple[float, float]:
+    """Frequency ratios of the periods, by default as for groups."""
+    shortest = None if options.period_min is None else _positive(options, "period_min")
+    longest = None if options.period_max is None else _positive(options, "period_max")
+    if shortest is not None and longest is not None:
+        in_range("period_max", longest, shortest, math.inf, closed="neither", unit="s")
+    ends = low if longest is None else _ratio(block, longest), high if shortest is None else _ratio(block, shortest)
+    return check_window(FREQUENCY_RATIO, *ends)
+
+
+def _ratio(block: Block, period: float) -> float:
+    return 2.0 * math.pi / (period * block.frequency_parameter)
+
+
+def _period(block: Block, ratio: float) -> float:
+    return 2.0 * math.pi / (ratio * block.frequency_parameter)
+
+
+def _positive(options: ShapeOptions, name: str) -> float:
+    text = getattr(options, name)
+    if text is None:
+        raise InvalidArgumentError(name, None, "required with the other options that have units")
+    value = si_value(name, text, _SI_UNITS[name])
+    return float(in_range(name, value, 0.0, math.inf, closed="neither", unit=_SI_UNITS[name].replace("**", "")))
+
+
+def _eta(text: str | None) -> float:
+    if text is None:
+        raise InvalidArgumentError("restitution", None, "a number, or housner for a block with units")
     try:
         return float(text)
     except ValueError:

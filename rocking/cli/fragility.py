@@ -11,16 +11,18 @@ from typing import Annotated, Any
 
 import typer
 
-from rocking.cli.record import Csv, Json, file_errors
+from rocking.cli.options import OutputOptions, with_options
+from rocking.cli.record import file_errors
 
 Configuration = Annotated[
     str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
 ]
 
 
-def fragility(configuration: Configuration, json: Json = False, csv: Csv = False) -> None:
+@with_options
+def fragility(configuration: Configuration, output: OutputOptions) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates."""
-    from rocking.cli import output
+    from rocking.cli import printing
     from rocking.suites.configuration import suite_configuration
     from rocking.suites.fragility import fragility as fragility_of
     from rocking.suites.hazard import annual_rate
@@ -28,7 +30,7 @@ def fragility(configuration: Configuration, json: Json = False, csv: Csv = False
 
     path = Path(configuration)
     with configuration_errors(), file_errors():
-        form = output.output_format(json=json, csv=csv)
+        form = printing.output_format(output)
         given = _read(path)
         suite = suite_configuration(given.get("suite", given), path.parent)
         found = fragility_of(
@@ -45,16 +47,16 @@ def fragility(configuration: Configuration, json: Json = False, csv: Csv = False
     levels, curves = fragility_table(found), curve_table(found)
     unit = found["intensity"].attrs["units"]
     if form == "csv":
-        output._print_csv(levels)
+        printing.print_csv(levels)
         return
     about = {"suite": suite.name, "records": found["record"].values.tolist(), "measure": suite.measure, "unit": unit}
     if form == "json":
-        output._print_json({**about, "confidence": suite.confidence, "levels": levels, "curves": _finite(curves)})
+        printing.print_json({**about, "confidence": suite.confidence, "levels": levels, "curves": _finite(curves)})
         return
-    output._print_text({**about, "records": len(about["records"])})
-    output._print_table(_finite(levels))
+    printing.print_text({**about, "records": len(about["records"])})
+    printing.print_table(_finite(levels))
     typer.echo()
-    output._print_table(_finite(curves))
+    printing.print_table(_finite(curves))
 
 
 @contextmanager
@@ -107,9 +109,9 @@ def _yaml(text: str) -> Any:
 
 def _finite(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
     """Columns with None for numbers that are not finite."""
-    from rocking.cli.output import _number
+    from rocking.cli.printing import number
 
     return {
-        name: [_number(value) if isinstance(value, float) else value for value in values]
+        name: [number(value) if isinstance(value, float) else value for value in values]
         for name, values in columns.items()
     }

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from rocking.cli.options import OutputOptions, with_options
 from rocking.model.parameters import RESTITUTION
 
 File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
@@ -25,15 +26,15 @@ BaselineOrder = Annotated[
     int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
 ]
 Thresholds = Annotated[bool, typer.Option("--thresholds", help="Find all scales at which the outcome changes.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-Csv = Annotated[bool, typer.Option("--csv", help="Print CSV.")]
 Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.")]
 
 
+@with_options
 def record(
     file: File,
     half_width: HalfWidth,
     half_height: HalfHeight,
+    output: OutputOptions,
     restitution: RecordRestitution = "housner",
     scale: Scale = 1.0,
     unit: Unit = None,
@@ -42,29 +43,27 @@ def record(
     baseline_order: BaselineOrder = None,
     thresholds: Thresholds = False,
     fit: Fit = False,
-    json: Json = False,
-    csv: Csv = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
-    from rocking.cli import output
+    from rocking.cli import printing
     from rocking.cli.arguments import option_errors
-    from rocking.cli.units import si_value
+    from rocking.dimensional.units import si_value
 
     with option_errors(), file_errors():
-        form = output.output_format(json=json, csv=csv)
+        form = printing.output_format(output)
         step = None if time_step is None else si_value("time_step", time_step, "s")
         sizes = si_value("half_width", half_width, "m"), si_value("half_height", half_height, "m")
         eta = restitution if restitution == "housner" else _number_of("restitution", restitution)
         about, sentence = _solved(file, sizes, eta, scale, (unit, step, component, baseline_order), thresholds, fit)
     if form == "json":
-        output._print_json(about)
+        printing.print_json(about)
     elif form == "csv":
-        output._print_csv({name: [value] for name, value in about.items() if not isinstance(value, list)})
+        printing.print_csv({name: [value] for name, value in about.items() if not isinstance(value, list)})
     else:
         typer.echo(sentence)
         for warning in about.pop("warnings"):
             typer.echo(f"warning: {warning}")
-        output._print_text(about)
+        printing.print_text(about)
 
 
 @contextmanager
@@ -101,7 +100,7 @@ def _solved(
     fit: bool,
 ) -> tuple[dict[str, Any], str]:
     """What is printed, by name, and the outcome in words."""
-    from rocking.cli.output import _number as number
+    from rocking.cli.printing import number
     from rocking.excitation.records.readers.read_record import read_record
     from rocking.model.block import Block
     from rocking.suites.block_response import block_response

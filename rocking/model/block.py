@@ -82,3 +82,7 @@ class Block:
         there too, and with impulses at both corners the block stops.
         """
         return max(self.housner_restitution, 0.0)  # departs from (2.4) where that is negative
+
+    def top_displacement(self, rotation: float) -> float:
+        """Horizontal displacement of a top corner [m] at a rotation [rad]: 2 h sin(theta), above the pivot."""
+        return 2.0 * self.half_height * math.sin(rotation)

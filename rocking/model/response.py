@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from rocking.model.outcome import Outcome
 from rocking.model.parameters import FREQUENCY_PARAMETER, GROUPS
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 __all__ = ["Outcome", "Response", "dimensions_of"]
@@ -142,6 +144,14 @@ class Response:
                 coordinates[group.name] = (own, value.reshape([shape[axis] for axis in axes]), about)
         attributes = {"pulse": self.pulse} if self.pulse else {}
         return xr.Dataset(variables, coordinates, attributes)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The fields as columns, one row for each block; the index has the axes of `to_xarray`."""
+        labelled = self.to_xarray()
+        return (labelled if labelled.dims else labelled.expand_dims("block")).to_dataframe()
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>{self.to_xarray()._repr_html_()}"
 
     def _dimensions(self) -> tuple[Hashable, ...]:
         """Names of the axes: of the labelled arguments, or of the one argument that varies along each."""

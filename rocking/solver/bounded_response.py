@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking.excitation.pulses import AbstractPulse
 from rocking.model.fields import BOUNDED_FIELDS
 from rocking.model.outcome import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
@@ -83,7 +84,7 @@ class BoundedResponse:
 
 
 def solve_with_bound(
-    pulse: str,
+    pulse: str | AbstractPulse,
     *,
     slenderness: ArrayLike,
     frequency_ratio: ArrayLike,
@@ -99,8 +100,8 @@ def solve_with_bound(
 
     Parameters
     ----------
-    pulse : str
-        Name of the pulse.
+    pulse : str or AbstractPulse
+        The pulse, or its name.
     slenderness, frequency_ratio, restitution : array_like, broadcasting
         1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
     alpha : array_like or None

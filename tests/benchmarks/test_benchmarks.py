@@ -20,8 +20,9 @@ from benchmarks.baselines import runge_kutta
 from benchmarks.baselines.event_loop import SINE, respond
 from benchmarks.baselines.methods import compiled_peaks, package_peaks, python_peaks
 from benchmarks.baselines.scipy_ivp import integrate_flight
-from benchmarks.cost import stages, work_precision
+from benchmarks.cost import records, stages, work_precision
 from benchmarks.cost.equal_error import time_for
+from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.measure import accuracy
 from benchmarks.summary import page
 from rocking.lookup.open import open_cube
@@ -230,7 +231,16 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
     planned = snakemake(tmp_path, "--dry-run", "--quiet", "host", "--", "bench")
     assert planned.returncode == 0, planned.stdout
     jobs = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout, flags=re.MULTILINE))
-    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_call", "service", "stages")
+    one_each = (
+        "work_precision_figure",
+        "tolerance",
+        "solver",
+        "growth",
+        "grid_size",
+        "first_call",
+        "service",
+        "stages",
+    )
     assert jobs["work_precision"] == str(len(cells.DIAGRAMS))
     assert {jobs[name] for name in (*one_each, "bench")} == {"1"}
 
@@ -245,8 +255,28 @@ def test_the_summary_holds_what_was_measured_and_omits_the_rest(tmp_path: Path) 
 
 
 @pytest.mark.slow
+def test_the_time_of_each_pulse_is_compared_with_another_checkout(tmp_path: Path) -> None:
+    record, text = run("cost.solver", tmp_path / "a.json", "--baseline", str(ROOT), "--rounds", "1", "--scale", "0.02")
+    assert {row["case"].split()[1].rstrip(",") for row in record["rows"]} == set(rocking.PULSE_NAMES)
+    assert all(row["here"]["median"] > 0.0 < row["baseline"]["median"] for row in record["rows"])
+    assert "ratio" in text
+
+
+@pytest.mark.slow
 def test_the_tolerance_benchmark_runs_and_draws(tmp_path: Path) -> None:
     record, _ = run("accuracy.tolerance", tmp_path / "a.json")
     assert record["cells"] == 1000
     assert len(record["tolerances"]) == 11
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_records_are_made_up_like_real_ones_and_dop853_agrees() -> None:
+    suite = made_up_suite(3)
+    assert [motion.samples for motion in suite] == [2000, 6000, 18000]
+    for alpha in (0.0, 0.25):
+        groups = {"frequency_parameter": 3.0, "slenderness": 0.7, "restitution": 0.6}
+        peak = float(rocking.record_response(suite[0], **groups, alpha=alpha).peak_rotation)
+        found = records.dop853_peak(suite[0], *groups.values(), alpha)
+        assert found == pytest.approx(peak, rel=1e-3)
+    share = records.stepped(suite[0], "slender", 4) / (16 * (suite[0].samples - 1))
+    assert 0.0 < share < 1.0

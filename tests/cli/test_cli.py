@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import rocking
 from rocking.boundary.tracing import overturning_boundary
 from rocking.cli.app import app
-from rocking.cli.units import si_value
+from rocking.dimensional.units import si_value
 from rocking.errors import InvalidArgumentError
 from rocking.history.time_history import time_history
 from rocking.model.block import Block
@@ -111,9 +111,125 @@ def test_history_in_three_formats():
     assert len(run("history", *GROUPS, "--samples", "20").splitlines()) > len(rows)
 
 
-def test_history_of_a_given_length_with_units():
-    result = json.loads(run("history", *UNITS, "--duration", "2", "--json"))
-    assert result["tau"][-1] == 2.0
+def test_history_of_a_given_length():
+    assert json.loads(run("history", *GROUPS, "--duration", "2", "--json"))["tau"][-1] == 2.0
+    result = json.loads(run("history", *UNITS, "--duration", "900 ms", "--json"))
+    assert result["time"][-1] == pytest.approx(0.9)
+    assert "missing unit: write 2s" in refused("history", *UNITS, "--duration", "2")
+
+
+WHOLE = [
+    "--pulse", "sine", "--width", "40 cm", "--height", "1.6m", "--peak-acceleration", "400 gal",
+    "--pulse-period", "0.5s",
+]  # fmt: skip
+BLOCK = rocking.Block(0.2, 0.8)
+
+
+def test_response_of_a_block_in_si_units():
+    result = json.loads(run("response", *WHOLE, "--json"))
+    found = BLOCK.response("sine", peak_acceleration=4.0, period=0.5)
+    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(found.rotation), rel=1e-9)
+    assert result["top_displacement"] == pytest.approx(found.displacement, rel=1e-9)
+    assert result["largest_safe_acceleration"] == pytest.approx(found.thresholds[0].value, rel=1e-9)
+    assert result["nearest_period"] == pytest.approx(found.margins.nearest_period, rel=1e-9)
+    assert [one["overturns_above"] for one in result["thresholds"]] == [True, False, True]
+    assert result["warnings"] == []
+    text = run("response", *WHOLE)
+    assert text.splitlines()[0] == found.sentence
+    assert text.splitlines()[1].split() == ["peak_rotation_deg", "[deg]", "7.41882221"]
+    assert "overturns above 4.70007, survives above 13.1271, overturns above 13.9939" in text
+    (row,) = read_csv(run("response", *WHOLE, "--csv"))
+    assert [float(a) for a in row["thresholds"].split()] == [one["peak_acceleration"] for one in result["thresholds"]]
+    near = run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:])
+    assert near == run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:], "--restitution", "housner")
+    assert "warning: the outcome changes within 5 % of this peak acceleration: at 4.7 m/s2" in near
+
+
+def test_history_of_a_block_in_si_units():
+    result = json.loads(run("history", *WHOLE, "--samples", "20", "--json"))
+    expected = BLOCK.history("sine", peak_acceleration=4.0, period=0.5, samples=20)
+    assert result["time"] == pytest.approx(expected["time"].values, rel=1e-12)
+    assert result["rotation_deg"] == pytest.approx(np.degrees(expected["rotation"].values), rel=1e-9)
+    assert result["top_displacement"] == pytest.approx(expected["top_displacement"].values, rel=1e-9)
+    assert result["acceleration"] == pytest.approx(expected["ground_acceleration"].values, rel=1e-9)
+    assert result["impact_time_s"] == pytest.approx(expected["impact_time"].values, rel=1e-12)
+    assert len(result["tau"]) == len(result["time"])
+    assert "angular_velocity_deg" in run("history", *WHOLE, "--samples", "20")
+
+
+def test_spectrum_of_a_block_in_si_units():
+    options = [*WHOLE[:8], "--period-min", "0.3s", "--period-max", "1.2s", "--points", "3"]
+    result = json.loads(run("spectrum", *options, "--json"))
+    assert result["period"] == pytest.approx([1.2, 0.6, 0.3])
+    expected = BLOCK.spectrum("sine", peak_acceleration=4.0, period=result["period"])
+    assert result["overturned"] == expected["overturned"].values.tolist()
+    degrees = [math.nan if x is None else x for x in result["peak_rotation_deg"]]
+    assert degrees == pytest.approx(np.degrees(expected["rotation"].values), rel=1e-9, nan_ok=True)
+    assert run("spectrum", *options).splitlines()[-3].split()[0] == "0.3"
+    assert "--period-max" in refused("spectrum", *options[:-4], "--period-max", "0.2s")
+
+
+def test_boundary_of_a_block_in_si_units():
+    options = ["--pulse", "sine", "--width", "0.4m", "--height", "1.6m", "--period-min", "0.4s", "--period-max", "0.8s"]
+    result = json.loads(run("boundary", *options, "--json"))
+    assert min(result["period"]) == pytest.approx(0.4)
+    assert max(result["period"]) == pytest.approx(0.8)
+    at = int(np.argmin(np.abs(np.array(result["period"]) - 0.6)))
+    period, acceleration = result["period"][at], result["peak_acceleration"][at]
+    found = BLOCK.response("sine", peak_acceleration=4.0, period=period)
+    assert min(abs(one.value / acceleration - 1.0) for one in found.thresholds) < 1e-9
+
+
+TABLE = """name,width [cm],half_height [m],peak_acceleration (gal),period [ms],restitution
+statue,40,0.8,400,500,
+cabinet,40,0.8,800,500,0.9
+
+"""
+
+
+def test_table_of_blocks(tmp_path):
+    path = tmp_path / "blocks.csv"
+    path.write_text(TABLE)
+    rows = read_csv(run("response", "--pulse", "sine", "--blocks", str(path)))
+    assert [row["name"] for row in rows] == ["statue", "cabinet"]
+    single = json.loads(run("response", *WHOLE, "--json"))
+    for name in ("peak_rotation_deg", "top_displacement", "slenderness", "frequency_ratio", "restitution"):
+        assert float(rows[0][name]) == pytest.approx(single[name], rel=1e-12)
+    assert (rows[1]["overturned"], rows[1]["peak_rotation_deg"], rows[1]["restitution"]) == ("true", "", "0.9")
+    as_json = json.loads(run("response", "--pulse", "sine", "--blocks", str(path), "--json"))
+    assert as_json["outcome"] == [row["outcome"] for row in rows]
+    piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE)
+    assert read_csv(piped.stdout) == rows
+    path.write_text(TABLE.splitlines()[0])
+    assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (TABLE.replace("width [cm]", "width"), "missing unit: write width [m]"),
+        (TABLE.replace("[cm]", "[kg]"), "a unit such as m, cm"),
+        (TABLE.replace("name", "colour"), "name, restitution"),
+        (TABLE.replace("period [ms]", "half_width [m]"), "one column"),
+        (TABLE.replace("800", "x"), "line 3, peak_acceleration: 'x'"),
+        (TABLE.replace("800", "-1"), "line 3, peak_acceleration: -0.01"),
+        (TABLE.replace("0.9", "1.9"), "line 3, restitution: 1.9"),
+        (TABLE.replace("400,500,", "400,500"), "line 2: '5 values'"),
+        ("", "one column"),
+    ],
+)
+def test_errors_in_a_table_name_the_line(table, words):
+    result = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=table)
+    assert result.exit_code == 2
+    text = " ".join(result.output.replace("│", " ").split())
+    assert "--blocks" in text
+    assert words in text
+
+
+def test_table_and_options_exclude_each_other(tmp_path):
+    assert "--width" in refused("response", "--pulse", "sine", "--blocks", "-", "--width", "1m")
+    assert "--blocks" in refused("response", "--pulse", "sine", "--blocks", str(tmp_path / "none.csv"))
+    assert "--width" in refused("response", *WHOLE, "--half-width", "0.2m")
 
 
 def test_history_with_the_reactions_of_the_ground():
@@ -181,7 +297,7 @@ def test_boundary_in_three_formats():
         (["response", *GROUPS, "--alpha", "95 deg"], "--alpha", "[0, 1.5"),
         (["response", *GROUPS, "--half-width", "1m"], "--slenderness", "either groups"),
         (["response", *GROUPS, "--json", "--csv"], "--csv", "one of --json and --csv"),
-        (["response", *UNITS[:3], "20", *UNITS[4:]], "--half-width", "0.3 m"),
+        (["response", *UNITS[:3], "20", *UNITS[4:]], "--half-width", "missing unit: write 20m (such as 0.3 m"),
         (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--half-width", "0.3 m"),
         (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--half-width", "(0, inf)"),
         (["response", *UNITS[:8], *UNITS[10:]], "--pulse-period", "required"),
@@ -211,6 +327,8 @@ def test_errors_name_the_option_and_the_allowed_values(arguments, option, allowe
         ("4 m/s2", "m/s**2", 4.0),
         ("4 m/s^2", "m/s**2", 4.0),
         ("400 cm/s**2", "m/s**2", 4.0),
+        ("400 gal", "m/s**2", 4.0),
+        ("400Gal", "m/s**2", 4.0),
         ("500 ms", "s", 0.5),
         ("20 deg", "rad", math.radians(20)),
         ("0.2 rad", "rad", 0.2),

@@ -18,7 +18,7 @@ LAYERS = (
     ("benchmarks",),
     ("api/rocking_api", "rocking/cli", "workflow"),
     ("rocking/precompile",),
-    ("rocking/lookup", "rocking/suites"),
+    ("rocking/lookup", "rocking/suites", "rocking/dimensional"),
     ("rocking/spectra",),
     ("rocking/datasets",),
     ("rocking/boundary", "rocking/history", "rocking/interpolation"),

@@ -72,7 +72,7 @@ def server_port(smoke_results: Path) -> Iterator[int]:
 
 def test_every_command_has_a_test() -> None:
     assert len(MAKE) + len(CURL) + len(ROCKING) == len(COMMANDS)
-    assert len(PYTHON_BLOCKS) == 3
+    assert len(PYTHON_BLOCKS) == 4
     assert MAKE
     assert CURL
     assert ROCKING
@@ -99,12 +99,23 @@ def test_command_line(command: list[str]) -> None:
     assert f"`{done.stdout.splitlines()[0]}`" in README
 
 
-def test_first_python_block(capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("number", [0, 1])
+def test_python_blocks_with_output(number: int, capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, object] = {}
-    exec(PYTHON_BLOCKS[0], names)
-    (printed,) = (text for language, text in BLOCKS if language == "text")
+    exec(PYTHON_BLOCKS[number], names)
+    printed = [text for language, text in BLOCKS if language == "text"][number]
     assert capsys.readouterr().out == printed
-    assert isinstance(names["response"], rocking.Response)
+
+
+def test_first_command_and_first_python_block_ask_the_same() -> None:
+    names: dict[str, Any] = {}
+    exec(PYTHON_BLOCKS[0], names)
+    command = [installed("rocking"), *ROCKING[0][1:], "--json"]
+    result = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    response = names["response"]
+    assert result["overturned"] is response.overturned is True
+    assert result["thresholds"][0]["peak_acceleration"] == pytest.approx(response.thresholds[0].value, rel=1e-9)
+    assert result["uplift_acceleration"] == response.block.uplift_acceleration
 
 
 @pytest.mark.slow
@@ -112,7 +123,7 @@ def test_data_set_block(
     smoke_results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(smoke_results.parent)
-    exec(PYTHON_BLOCKS[1], {})
+    exec(PYTHON_BLOCKS[2], {})
     assert "peak_rotation" in capsys.readouterr().out
 
 
@@ -120,7 +131,7 @@ def test_data_set_block(
 def test_cube_block(smoke_results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(smoke_results.parent)
     names: dict[str, Any] = {}
-    exec(PYTHON_BLOCKS[2], names)
+    exec(PYTHON_BLOCKS[3], names)
     assert names["found"].outcome == rocking.Outcome.SAFE
 
 

@@ -15,9 +15,10 @@ from rocking.boundary.curves import curves_at, join_curves
 from rocking.closed_form import overturning_amplitudes
 from rocking.datasets.cube import read_dataset, write_dataset
 from rocking.model.block import Block
+from rocking.model.response import Outcome
 from rocking.solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_09, figure_10, similar_histories
+from workflow.figures import figure_04, figure_09, figure_10, similar_histories
 from workflow.figures.boundary_lines import Lines, lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
@@ -111,13 +112,26 @@ def test_upper_safe_region_of_figure_9_is_above_the_overturning_region(smoke_res
         found = data.isel(threshold=(data.threshold_pulse == k).values)
         omega, a = found.threshold_frequency_ratio.values, found.threshold_amplitude.values
         safe_again = found.threshold_overturns_above.values == 0
-        column = np.abs(data.frequency_ratio.values[:, None] - omega).argmin(axis=0)
         # halfway between standing again and falling without impact, the next threshold
-        between = np.sqrt(a[:-1] * a[1:])[safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)]
-        at = column[:-1][safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)]
-        row = np.abs(1 / data.slenderness.values[:, None] - between).argmin(axis=0)
+        chosen = safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)
+        between, column = np.sqrt(a[:-1] * a[1:])[chosen], omega[:-1][chosen]
         assert between.size > 0
-        assert np.all(data.brought_back.values[k, row, at] == 1)
+        low, high = (np.interp(column, data.frequency_ratio, data[name][k]) for name in ("safe_from", "safe_to"))
+        assert np.all((low < between) & (between < high))
+
+
+def test_upper_safe_region_of_figure_9_is_bounded_where_the_outcome_changes() -> None:
+    omega, alpha = np.array([2.5, 3.5, 5.0]), float(np.radians(20))
+    low, high = figure_09.upper_safe_region("sine", omega, 0.85, alpha)
+
+    def recovers(amplitude: np.ndarray) -> np.ndarray:
+        found = peak_response("sine", slenderness=1 / amplitude, frequency_ratio=omega, restitution=0.85, alpha=alpha)
+        return found.exceeded_alpha & ~found.overturned
+
+    assert recovers(low * (1 + 1e-9)).all()
+    assert recovers(high * (1 - 1e-9)).all()
+    assert not recovers(low * (1 - 1e-9)).any()
+    assert not recovers(high * (1 + 1e-9)).any()
 
 
 def along_frequency(lines: Lines, omega: np.ndarray) -> np.ndarray:
@@ -138,7 +152,7 @@ def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Datase
         parts = [*chain(*(curves_of(pulse, [0.85], angle, **window) for angle in (0, 5, 10, 20)))]
         files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
         write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
-    return figure_10.data(**files, restitution=0.85)
+    return figure_10.data(**files, restitution=0.85, alpha_deg=[5, 10, 20])
 
 
 @pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])
@@ -210,9 +224,41 @@ def test_caption_of_figure_10_states_the_regions_of_the_cosine(smoke_results: Pa
     assert f"after four impacts up to omega = {found[0.0, 4][0].max():.1f}" in caption
 
 
-def test_islands_of_figure_4_are_in_the_expected_region(smoke_results: Path) -> None:
+def test_islands_of_figure_4_are_lines_in_the_expected_region(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-04.nc")
-    assert data.sizes["point"] > 50
-    assert 1 / data.island_amplitude.max() > 0.89
-    assert data.island_frequency_ratio.max() < 1.1
+    a, omega = data.island_amplitude.values, data.island_frequency_ratio.values
+    assert np.isfinite(a).sum() > 50
+    assert 1 / np.nanmax(a) > 0.89
+    assert np.nanmax(omega) < 1.1
     assert set(np.unique(data.island_impacts)) >= {3, 5}
+    # on either side of a line between survival and overturning the outcomes differ
+    eta = data.island_restitution.values
+    here = np.isfinite(a) & (data.island_impacts.values > 0)
+    below, above = (
+        peak_response(
+            "sine", slenderness=1 / a[here] + step, frequency_ratio=omega[here], restitution=eta[here]
+        ).overturned
+        for step in (-1e-9, 1e-9)
+    )
+    assert np.mean(below != above) > 0.95  # not where two lines meet
+
+
+def test_caption_of_figure_4_states_where_the_last_loop_closes() -> None:
+    caption = " ".join(CAPTIONS.split("## Figure 4")[1].split("## Figure")[0].split())
+    settings = yaml.safe_load((CONFIG / "paper.yaml").read_text(encoding="utf-8"))["figures"]["figure-04"]["ours"]
+    tips = figure_04._tips(np.array(settings["restitution"]))
+    amplitude = overturning_amplitudes(tips, np.array(settings["restitution"])).falls_from
+    assert [tip > 8.5 for tip in tips] == [False, False, False, True]  # of the window
+    assert (
+        f"The loop of 0.96 leaves the window; it closes at omega = {tips[-1]:.1f}, a = {amplitude[-1]:.0f}" in caption
+    )
+
+
+def test_caption_of_figure_10_states_how_far_the_loop_of_30_degrees_reaches() -> None:
+    caption = " ".join(CAPTIONS.split("## Figure 10")[1].split("## Figure")[0].split())
+    assert "that of 30 degrees leaves the window and has not closed at omega = 60" in caption
+    rising = np.geomspace(4.0, 400.0, 400)[:, None]
+    falls = peak_response(
+        "sine", slenderness=1 / rising, frequency_ratio=[9.0, 20.0, 60.0], restitution=0.85, alpha=np.radians(30)
+    )
+    assert (falls.outcome == Outcome.OVERTURNED_AFTER_IMPACT).any(axis=0).all()

@@ -8,8 +8,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.closed_form import case_1_1_amplitudes, case_1_1_end, semi_analytical_amplitudes, within_pulse
+from rocking.closed_form import (
+    amplitude_of_impact_time,
+    angular_velocity,
+    case_1_1_amplitudes,
+    case_1_1_end,
+    overturning_condition,
+    pulse_end,
+    semi_analytical_amplitudes,
+    within_pulse,
+)
 from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
+
+IMPACT_TIMES = 1500
+"""Times of impact among which solutions beyond the pulse are looked for [-]."""
 
 
 def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) -> xr.Dataset:
@@ -32,12 +44,30 @@ def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) 
     known = np.isfinite(approximate)
     valid = known & within_pulse(np.where(known, approximate, 2.0), omega)
     dims = ("restitution", "frequency_ratio")
+    no_event = {"comment": "the impact would follow the pulse, which the equations do not describe: no event"}
     return xr.Dataset(
         {
             "lower": plotted(dims, exact.lower, "amplitude a from which case 1.1 overturns", equation="3.20, 3.21"),
             "upper": plotted(dims, exact.upper, "amplitude a up to which case 1.1 overturns", equation="3.31"),
             "semi_analytical": plotted(
                 dims, np.where(valid, approximate, np.nan), "smallest solution a inside the pulse", equation="3.30"
+            ),
+            "difference": plotted(
+                dims, np.where(valid, approximate / exact.lower - 1, np.nan), "semi-analytical over exact, less one"
+            ),
+            "lower_beyond": plotted(
+                dims,
+                _beyond(omega, eta),
+                "solution of the exact equations beyond the pulse",
+                equation="3.20, 3.21",
+                **no_event,
+            ),
+            "semi_analytical_beyond": plotted(
+                dims,
+                np.where(valid, np.nan, approximate),
+                "smallest solution beyond the pulse",
+                equation="3.30",
+                **no_event,
             ),
         },
         coords={
@@ -51,35 +81,52 @@ def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) 
     )
 
 
+def _beyond(omega: np.ndarray, eta: np.ndarray) -> np.ndarray:
+    """Amplitudes (restitution, omega) that solve (3.20) with (3.21) for an impact after the pulse; nan if none."""
+    tau = np.linspace(0.3, 3.0, IMPACT_TIMES)[:, None, None]
+    a = amplitude_of_impact_time(tau, omega)
+    a, tau = np.broadcast_arrays(a, tau)
+    condition = overturning_condition(a, omega, eta[:, None], tau, angular_velocity(a, omega, tau))
+    change = (np.diff(np.sign(condition), axis=0) != 0) & (tau > pulse_end(a, omega))[1:]
+    first = change.argmax(axis=0)[None]
+    low, high = (np.take_along_axis(condition, first + k, axis=0)[0] for k in (0, 1))
+    ends = (np.take_along_axis(np.broadcast_to(a, condition.shape), first + k, axis=0)[0] for k in (0, 1))
+    left, right = ends
+    return np.where(change.any(axis=0), left + (right - left) * low / (low - high), np.nan)
+
+
 def draw(data: xr.Dataset) -> Figure:
-    """Curves on the left, relative difference of the lower branch on the right."""
-    figure = Figure(figsize=(WIDTH, 3.0))
+    """Curves on the left, relative difference of the smallest solutions on the right."""
+    figure = Figure(figsize=(WIDTH, 3.1))
     left, right = figure.subplots(1, 2, width_ratios=[1.35, 1])
     omega = data.frequency_ratio.values
+    dotted = {"linestyle": (0, (1, 1.6)), "linewidth": 2.4}
     for colour, eta in zip(shades(data.restitution.size), data.restitution.values, strict=True):
         one = data.sel(restitution=eta)
         left.plot(omega, one.lower, color=colour)
-        left.plot(omega, one.semi_analytical, color=colour, linestyle=(0, (1, 1.6)), linewidth=2.4)
-        last = int(np.flatnonzero(np.isfinite(one.lower))[-1])
-        tip = (omega[last], float(one.upper[last]))
-        left.annotate(
-            f"{eta:.2f}", tip, xytext=(0, 5), textcoords="offset points", color=colour, fontsize=7, ha="center"
-        )
-        right.semilogy(omega, np.abs(one.semi_analytical / one.lower - 1), color=colour, label=rf"$\eta={eta:.2f}$")
+        left.plot(omega, one.semi_analytical, color=colour, **dotted)
+        left.plot(omega, one.lower_beyond, color=colour, linewidth=0.5)
+        left.plot(omega, one.semi_analytical_beyond, color=colour, linewidth=0.9, linestyle=(0, (1, 1.6)))
+        right.plot(omega, 100 * one.difference, color=colour, label=rf"$\eta={eta:.2f}$")
     left.plot(omega, data.upper.max("restitution"), color=GREY, linewidth=0.9)
-    left.annotate("(3.31)", (omega[40], float(data.upper.max("restitution")[40])), xytext=(-4, 5),
+    left.annotate("(3.31)", (omega[40], float(data.upper.max("restitution")[40])), xytext=(-6, 6),
                   textcoords="offset points", ha="right", color=GREY)  # fmt: skip
-    left.text(omega[0] + 3.3, 2.86, r"$\eta=$", ha="right", va="center")
+    left.annotate(
+        "smallest solution:\noverturning begins", (3.1, 1.44), (3.6, 1.08), fontsize=7,
+        arrowprops={"arrowstyle": "-", "linewidth": 0.5},
+    )  # fmt: skip
     left.plot([], [], color="black", label="exact impact time, (3.20) and (3.21)")
-    left.plot([], [], color="black", linestyle=(0, (1, 1.6)), linewidth=2.4, label="semi-analytical, (3.30)")
-    left.legend(loc="upper left")
-    left.set_ylim(1.0, 3.6)
+    left.plot([], [], color="black", label="semi-analytical, (3.30)", **dotted)
+    left.plot([], [], color="black", linewidth=0.5, label="impact beyond the pulse")
+    left.legend(loc="upper left", fontsize=6.5)
+    left.set_ylim(1.0, 4.6)
     left.set_xlim(omega[0], omega[-1])
     left.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
     left.set_ylabel(r"amplitude $a=a_g/(g\alpha)$ [-]")
+    right.axhline(0, color=GREY, linewidth=0.5)
     right.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
-    right.set_ylabel("relative difference of the lower branch [-]")
-    right.legend(loc="lower left")
+    right.set_ylabel("difference of the smallest solutions [%]")
+    right.legend(loc="lower right")
     right.set_xlim(omega[0], omega[-1])
     panel_letters([left, right])
     return figure

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from rocking.boundary.curves import curves_at
 from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
 from rocking.datasets.cube import read_dataset
+from workflow.figures.boundary_lines import Lines, outcome_lines
 from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
 
 POINTS = 401
@@ -34,6 +35,7 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
     omega = np.union1d(np.geomspace(0.2, 8.5, POINTS), near[near < 8.5])
     closed = overturning_amplitudes(omega, eta[:, None])
     islands = [_islands(path) for path in boundaries]
+    between = {"comment": "missing between two lines"}
     dims = ("restitution", "frequency_ratio")
     return xr.Dataset(
         {
@@ -45,13 +47,21 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
             "limit": plotted(
                 "frequency_ratio", limit_amplitude(omega), "first impact at the end of the pulse", equation="3.31"
             ),
-            "island_amplitude": plotted("point", np.concatenate([a for a, *_ in islands]), "boundary of an island"),
-            "island_frequency_ratio": plotted(
-                "point", np.concatenate([w for _, w, _ in islands]), "omega on the boundary of an island"
+            "island_amplitude": plotted(
+                "point", np.concatenate([one.amplitude for one in islands]), "boundary of an island", **between
             ),
-            "island_impacts": plotted("point", np.concatenate([n for *_, n in islands]), "impacts before overturning"),
+            "island_frequency_ratio": plotted(
+                "point", np.concatenate([one.frequency_ratio for one in islands]), "omega there", **between
+            ),
+            "island_impacts": plotted(
+                "point", np.concatenate([one.impacts for one in islands]), "impacts before overturning, -1: not counted"
+            ),
             "island_restitution": plotted(
-                "point", np.repeat(eta, [len(a) for a, *_ in islands]), "restitution of an island"
+                "point", np.repeat(eta, [one.impacts.size for one in islands]), "restitution of an island"
+            ),
+            "tip_frequency_ratio": plotted("restitution", tips, "largest omega of overturning after one impact"),
+            "tip_amplitude": plotted(
+                "restitution", overturning_amplitudes(tips, eta).falls_from, "amplitude a at that omega"
             ),
         },
         coords={
@@ -76,13 +86,15 @@ def _tips(eta: np.ndarray) -> np.ndarray:
     return low
 
 
-def _islands(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Amplitudes, frequency ratios and impacts of the points on curves that the closed forms do not contain."""
+def _islands(path: Path) -> Lines:
+    """Boundaries between survival and overturning after several impacts, which the closed forms do not contain."""
     curves = curves_at(read_dataset(path), 0.0)
-    rows = curves.row_size.values
-    on_island = np.repeat(curves.island.values == 1, rows)
-    impacts = np.repeat(curves.impacts.values, rows)
-    return 1 / curves.slenderness.values[on_island], curves.frequency_ratio.values[on_island], impacts[on_island]
+    return outcome_lines(
+        curves.isel(
+            curve=np.flatnonzero(curves.island.values == 1),
+            point=np.flatnonzero(np.repeat(curves.island.values == 1, curves.row_size.values)),
+        )
+    )
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -109,7 +121,7 @@ def draw(data: xr.Dataset) -> Figure:
     right.set_xlim(0.3, 1.35)
     right.set_ylim(1.04, 1.18)
     right.text(
-        0.97, 0.06, "points: overturning after\n3, 5, ... impacts", transform=right.transAxes, ha="right", fontsize=7
+        0.97, 0.06, "thin: overturning after\n3, 5, ... impacts", transform=right.transAxes, ha="right", fontsize=7
     )
     left.legend(loc="lower right", ncols=2, fontsize=6.5)
     for ax in (left, right):
@@ -136,6 +148,6 @@ def _curves(ax: Axes, data: xr.Dataset, *, islands: bool) -> None:
         )
         here = data.island_restitution.values == eta
         if islands:
-            ax.plot(data.island_frequency_ratio[here], data.island_amplitude[here], ".", color=colour, markersize=1.4)
+            ax.plot(data.island_frequency_ratio[here], data.island_amplitude[here], color=colour, linewidth=0.5)
     ax.plot(omega, data.direct, color=BLACK, linewidth=1.4)
     ax.plot(omega, data.limit, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))

@@ -17,7 +17,7 @@ from rocking.datasets.cube import read_dataset
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
 from rocking.model.block import STANDARD_GRAVITY, Block
 from rocking.solver.peak_response import peak_response
-from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
+from workflow.figures.boundary_lines import Lines, draw_lines, line_variables, lines_of, lines_of_files
 from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
 
@@ -26,16 +26,25 @@ Floats = NDArray[np.float64]
 HIGHEST = 12.0
 """Largest amplitude a shown [-], as in figure 4."""
 
-WIDEST = {"sine": 7.2, "cosine": 4.5}
+WIDEST = {"sine": 7.2, "cosine": 6.0}
 """Largest frequency ratio shown, beyond the tip of the overturning region [-]."""
 
 FEWEST, NODES = 0.2, 301
-"""Smallest frequency ratio shown, and number of grid nodes in each direction for `recovers_from_alpha` [-]."""
+"""Smallest frequency ratio shown, and number of grid nodes in each direction for `upper_safe_region` [-]."""
+
+HALVINGS = 40
+"""Times that the distance of two nodes is halved to find a bound of the upper safe region [-]."""
+
+MAIN = 1
+"""Thresholds of overturning after more impacts than this are marked in the inset only [-]."""
+
+DETAIL = ((0.4, 2.0), (1.03, 1.38))
+"""Limits of omega and of a in the inset of the cosine [-]."""
 
 STEP = 1e-6
 """Relative distance from a threshold at which the block is integrated in SI units [-]."""
 
-COLOURS = (BLUE, VERMILION)
+COLOURS, SAFE = (BLUE, VERMILION), "#D9D9D9"
 
 
 def data(
@@ -71,9 +80,8 @@ def data(
         for period in pulse_period
         for row in thresholds(pulse, block, period, restitution)
     ]
-    slenderness = 1 / np.geomspace(HIGHEST, 1, NODES)
     frequency_ratio = np.geomspace(FEWEST, max(WIDEST.values()), NODES)
-    recovered = [recovers_from_alpha(pulse, slenderness, frequency_ratio, restitution, alpha) for pulse in pulses]
+    safe = np.array([upper_safe_region(pulse, frequency_ratio, restitution, alpha) for pulse in pulses])
     names = {
         "pulse": ("index of the pulse", "1"),
         "block": ("index of the block", "1"),
@@ -81,6 +89,7 @@ def data(
         "acceleration": ("threshold a_g", "m s-2"),
         "frequency_ratio": ("frequency ratio omega_g/p of the threshold", "1"),
         "amplitude": ("amplitude a_g/(g tan alpha) of the threshold", "1"),
+        "impacts": ("impacts before overturning on the overturning side", "1"),
         "overturns_above": ("whether the block overturns just above, from the groups", "1"),
         "falls_below": ("whether it overturns just below, integrated in SI units", "1"),
         "falls_above": ("whether it overturns just above, integrated in SI units", "1"),
@@ -92,17 +101,15 @@ def data(
                 f"threshold_{name}": plotted("threshold", [row[name] for row in rows], text, units=units)
                 for name, (text, units) in names.items()
             },
-            "brought_back": plotted(
-                ("pulse", "slenderness", "frequency_ratio"),
-                np.array(recovered, dtype=np.int8),
-                "whether the block passes alpha and survives",
+            "safe_from": plotted(
+                ("pulse", "frequency_ratio"), safe[:, 0], "amplitude from which it passes alpha and survives"
             ),
+            "safe_to": plotted(("pulse", "frequency_ratio"), safe[:, 1], "amplitude up to which it does"),
             "frequency_parameter": plotted(
                 "block", [block.frequency_parameter for block in blocks], "frequency parameter p", units="rad s-1"
             ),
         },
         coords={
-            "slenderness": plotted("slenderness", slenderness, "dimensionless slenderness 1/a"),
             "frequency_ratio": plotted("frequency_ratio", frequency_ratio, "frequency ratio omega_g/p"),
             "half_diagonal": plotted("block", half_diagonal, "half diagonal R", units="m"),
         },
@@ -118,14 +125,39 @@ def data(
     )
 
 
-def recovers_from_alpha(
-    pulse: str, slenderness: Floats, frequency_ratio: Floats, restitution: float, alpha: float
-) -> NDArray[np.bool_]:
-    """Whether blocks on a grid pass alpha and survive: shape (slenderness, frequency_ratio)."""
-    found = peak_response(
-        pulse, slenderness=slenderness[:, None], frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha
-    )
-    return found.exceeded_alpha & ~found.overturned
+def upper_safe_region(pulse: str, frequency_ratio: Floats, restitution: float, alpha: float) -> tuple[Floats, Floats]:
+    """The largest range of amplitudes, up to `HIGHEST`, in which a block passes alpha and survives, for each omega.
+
+    Returns
+    -------
+    lower, upper : float arrays
+        Amplitudes a [-], bisected between nodes; nan where no node is inside.
+    """
+
+    def recovers(amplitude: Floats) -> NDArray[np.bool_]:
+        found = peak_response(
+            pulse, slenderness=1 / amplitude, frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha
+        )
+        return found.exceeded_alpha & ~found.overturned
+
+    nodes = np.geomspace(1, HIGHEST, NODES)
+    inside = recovers(nodes[:, None])
+    # the longest run of nodes in each column
+    run = np.zeros(inside.shape, dtype=int)
+    run[0] = inside[0]
+    for k in range(1, NODES):
+        run[k] = np.where(inside[k], run[k - 1] + 1, 0)
+    last, length = run.argmax(axis=0), run.max(axis=0)
+    first = last - np.maximum(length, 1) + 1
+    ends = []
+    for inner, outer in ((first, np.maximum(first - 1, 0)), (last, np.minimum(last + 1, NODES - 1))):
+        good, bad = nodes[inner], nodes[outer]
+        for _ in range(HALVINGS):
+            middle = np.sqrt(good * bad)
+            here = recovers(middle)
+            good, bad = np.where(here, middle, good), np.where(here, bad, middle)
+        ends.append(np.where(length > 0, good, np.nan))
+    return ends[0], ends[1]
 
 
 def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float) -> Iterator[dict[str, Any]]:
@@ -151,8 +183,8 @@ def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float
     )
     at_threshold = Groups(groups.frequency_ratio, 1 / found.amplitude, groups.cos_alpha)
     problem = problem_of_block(at_threshold, GroupSet.RIGID, alpha=block.alpha, frequency_parameter=p)
-    for acceleration, amplitude, above in zip(
-        np.atleast_1d(problem.peak_acceleration), found.amplitude, found.overturns_above, strict=True
+    for acceleration, amplitude, above, impacts in zip(
+        np.atleast_1d(problem.peak_acceleration), found.amplitude, found.overturns_above, found.impacts, strict=True
     ):
         below, beyond = (
             DimensionalProblem(
@@ -164,6 +196,7 @@ def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float
             "acceleration": float(acceleration),
             "frequency_ratio": float(groups.frequency_ratio),
             "amplitude": float(amplitude),
+            "impacts": int(impacts),
             "overturns_above": int(above),
             "falls_below": int(below),
             "falls_above": int(beyond),
@@ -172,23 +205,29 @@ def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float
 
 def draw(data: xr.Dataset) -> Figure:
     """Above: acceleration against frequency, a curve for each block; below: the groups. One column for each pulse."""
-    figure = Figure(figsize=(WIDTH, 6.0))
+    figure = Figure(figsize=(WIDTH, 6.2))
     axes = figure.subplots(2, 2, sharey="row")
     uplift = np.tan(data.attrs["alpha"])  # in units of g
     p = data.frequency_parameter.values
     for k, (top, bottom, pulse) in enumerate(zip(*axes, data.attrs["pulse_names"].split(), strict=True)):
         lines = lines_of(data, k, data.attrs["alpha"])
-        style = {"linewidth": 1.0, "marker": "o", "markersize": 1.0, "markeredgewidth": 0}
         for colour, one in zip(COLOURS, p, strict=True):
-            top.plot(lines.frequency_ratio * one / (2 * np.pi), lines.amplitude * uplift, color=colour, **style)
-        bottom.plot(lines.frequency_ratio, lines.amplitude, color=BLACK, **style)
-        _recovers_from_alpha(bottom, data, k)
-        _markers(top, bottom, data, k)
+            x, y = lines.frequency_ratio * one / (2 * np.pi), lines.amplitude * uplift
+            draw_lines(top, x, y, lines, color=colour, linewidth=1.0)
+        _in_groups(bottom, data, k, lines)
+        _markers(top, bottom, data, k, detail=False)
         top.set_title(f"{pulse} pulse")
         top.set_xlabel(r"pulse frequency $1/T_p$ [Hz]")
         bottom.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
         bottom.set_xlim(FEWEST, WIDEST[pulse])
         top.set_xlim(FEWEST * p.min() / (2 * np.pi), WIDEST[pulse] * p.max() / (2 * np.pi))
+        if pulse == "cosine":
+            inset = bottom.inset_axes((0.66, 0.09, 0.33, 0.40))
+            _in_groups(inset, data, k, lines)
+            _markers(None, inset, data, k, detail=True)
+            inset.set(xlim=DETAIL[0], ylim=DETAIL[1])
+            inset.tick_params(labelsize=6, length=2, pad=1.5)
+            bottom.indicate_inset_zoom(inset, edgecolor=GREY, linewidth=0.6)
     for (ax, _), scale in zip(axes, (uplift, 1.0), strict=True):
         ax.set_yscale("log")
         ax.set_ylim(scale, HIGHEST * scale)
@@ -203,24 +242,26 @@ def draw(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _recovers_from_alpha(ax: Axes, data: xr.Dataset, pulse: int) -> None:
-    """Shade the region in which the block passes alpha and survives."""
-    omega, a = data.frequency_ratio.values, 1 / data.slenderness.values
-    shaded = np.where(data.brought_back[pulse] == 1, 1.0, np.nan)
-    ax.pcolormesh(omega, a, shaded, cmap="Greys", vmin=0, vmax=4, shading="nearest", rasterized=True, zorder=0)
+def _in_groups(ax: Axes, data: xr.Dataset, pulse: int, lines: Lines) -> None:
+    """The one curve of both blocks, and the region in which they pass alpha and survive."""
+    draw_lines(ax, lines.frequency_ratio, lines.amplitude, lines, color=BLACK, linewidth=1.0)
+    ax.fill_between(data.frequency_ratio, data.safe_from[pulse], data.safe_to[pulse], color=SAFE, linewidth=0, zorder=0)
 
 
-def _markers(top: Axes, bottom: Axes, data: xr.Dataset, pulse: int) -> None:
+def _markers(top: Axes | None, bottom: Axes, data: xr.Dataset, pulse: int, *, detail: bool) -> None:
     """Half-filled on the side on which the block overturns in SI units; a cross if both sides have the same outcome."""
-    found = data.isel(threshold=data.threshold_pulse.values == pulse)
-    for k in range(found.sizes["threshold"]):
-        one = found.isel(threshold=k)
+    several = (data.threshold_impacts.values > MAIN) | (data.threshold_impacts.values < 0)
+    shown = (data.threshold_pulse.values == pulse) & (several <= detail)
+    for k in np.flatnonzero(shown):
+        one = data.isel(threshold=k)
         below, above = bool(one.threshold_falls_below), bool(one.threshold_falls_above)
-        style = {"color": COLOURS[int(one.threshold_block)], "markersize": 5, "markeredgewidth": 0.7, "zorder": 4}
+        size = 3.2 if detail else 4.4
+        style = {"color": COLOURS[int(one.threshold_block)], "markersize": size, "markeredgewidth": 0.6, "zorder": 4}
         style |= {"marker": "x"} if below == above else {
             "marker": "o", "fillstyle": "top" if above else "bottom", "markerfacecoloralt": "white"
         }  # fmt: skip
-        top.plot(1 / one.threshold_period, one.threshold_acceleration / STANDARD_GRAVITY, **style)
+        if top is not None:
+            top.plot(1 / one.threshold_period, one.threshold_acceleration / STANDARD_GRAVITY, **style)
         bottom.plot(one.threshold_frequency_ratio, one.threshold_amplitude, **style)
 
 
@@ -228,7 +269,7 @@ def _legend(figure: Figure, ax: Axes, data: xr.Dataset) -> None:
     for colour, R in zip(COLOURS, data.half_diagonal.values, strict=True):
         ax.plot([], [], color=colour, label=rf"$R={R:g}$ m")
     marker = {"color": GREY, "linestyle": "", "marker": "o", "markersize": 5, "markerfacecoloralt": "white"}
-    ax.plot([], [], fillstyle="top", label="integrated in SI units: overturns above", **marker)
+    ax.plot([], [], fillstyle="top", label="in SI units: overturns above", **marker)
     ax.plot([], [], fillstyle="bottom", label="overturns below", **marker)
-    ax.fill_between([], [], color="#D9D9D9", label=r"passes $\alpha$ and survives")
+    ax.fill_between([], [], color=SAFE, label=r"passes $\alpha$ and survives")
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)

@@ -11,10 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
 
-from rocking.closed_form import limit_amplitude, small_peak
+from rocking.closed_form import limit_amplitude, overturning_amplitudes, small_peak
 from rocking.datasets.cube import read_spectrum
 from rocking.groups.scale_law import largest_deviation, restitution_exponent
 from workflow.figures.style import WIDTH, panel_letters, plotted
+
+LARGEST = 12.0
+"""Largest amplitude a shown [-], as in figure 4."""
 
 
 def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: float) -> xr.Dataset:
@@ -36,6 +39,8 @@ def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: floa
     survives = np.isfinite(peaks).all(axis=0)
     peaks[:, ~survives] = np.nan
     closed = small_peak(1 / s[:, None], omega, eta[:, None, None])
+    closed_curves = overturning_amplitudes(omega, eta[:, None])
+    lowest = np.fmin(closed_curves.falls_from, closed_curves.direct).min(axis=0)
     dims = ("slenderness", "frequency_ratio")
     return xr.Dataset(
         {
@@ -55,6 +60,12 @@ def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: floa
         coords={
             "slenderness": plotted("slenderness", s, "dimensionless slenderness g alpha/a_g"),
             "frequency_ratio": plotted("frequency_ratio", omega, "frequency ratio omega_g/p"),
+            "falls_from": plotted(
+                "frequency_ratio",
+                lowest,
+                "smallest amplitude at which a block overturns for one eta",
+                equation="3.20, 3.21",
+            ),
             "limit": plotted("frequency_ratio", 1 / limit_amplitude(omega), "slenderness of (3.31)", equation="3.31"),
         },
         attrs={
@@ -68,8 +79,8 @@ def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: floa
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Error with f measured at one eta; fitted exponent; error with the closed form f."""
-    figure = Figure(figsize=(WIDTH, 2.9))
+    """Error with f measured at one eta; fitted exponent; error with the closed form f. Axes as in figure 4."""
+    figure = Figure(figsize=(WIDTH, 3.1))
     axes = figure.subplots(1, 3, sharey=True)
     error = LogNorm(1e-3, 1.0)
     eta = data.attrs["reference"]
@@ -80,22 +91,30 @@ def draw(data: xr.Dataset) -> Figure:
     )  # fmt: skip
     for ax, (name, colours, norm, label) in zip(axes, panels, strict=True):
         _map(ax, data, name, colours, norm, label)
-    axes[0].set_ylabel(r"dimensionless slenderness $g\alpha/a_g$ [-]")
+    axes[0].set_ylabel(r"amplitude $a=a_g/(g\alpha)$ [-]")
+    axes[0].set_yscale("log")
+    axes[0].set_ylim(1 / data.slenderness.values[-1], LARGEST)
+    axes[0].set_yticks([1.2, 1.5, 2, 3, 5, 10], labels=["1.2", "1.5", "2", "3", "5", "10"])
+    axes[0].minorticks_off()
     panel_letters(axes)
     return figure
 
 
 def _map(ax: Axes, data: xr.Dataset, name: str, colours: str, norm: Normalize, label: str) -> None:
-    omega, s = data.frequency_ratio.values, data.slenderness.values
-    ax.set_facecolor("#DDDDDD")  # overturns for one eta at least
-    mesh = ax.pcolormesh(omega, s, data[name], cmap=colours, norm=norm, rasterized=True, shading="nearest")
-    ax.plot(omega, data.limit, color="black", linewidth=1)
-    ax.annotate("(3.31)", (omega[-1], float(data.limit[-1])), xytext=(-2, -3), textcoords="offset points", ha="right",
-                va="top", fontsize=7)  # fmt: skip
+    omega, a = data.frequency_ratio.values, 1 / data.slenderness.values
+    ax.set_facecolor("#DDDDDD")
+    mesh = ax.pcolormesh(omega, a, data[name], cmap=colours, norm=norm, rasterized=True, shading="nearest")
+    # overturns for one eta at least: above the first curve of the largest eta up to that without impact
+    ax.fill_between(omega, data.falls_from, LARGEST, color="#DDDDDD", linewidth=0)
+    ax.plot(omega, data.falls_from, color="#555555", linewidth=0.8)
+    ax.plot(omega, 1 / data.limit, color="black", linewidth=1, linestyle=(0, (4, 2)))
+    ax.text(
+        omega[-1] * 0.99, 0.9 / float(data.limit[-1]), "(3.31)", ha="right", va="top", fontsize=7,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
+    )  # fmt: skip
     ax.set_xlabel(r"frequency ratio $\omega_g/p$ [-]")
     ax.set_xlim(omega[0], omega[-1])
-    ax.set_ylim(s[0], s[-1])
-    ax.text(0.04, 0.04, "overturns", transform=ax.transAxes, fontsize=7, color="#555555")
+    ax.text(0.05, 0.95, "overturns", transform=ax.transAxes, fontsize=7, color="#555555", va="top")
     bar = ax.figure.colorbar(mesh, ax=ax, location="top", extend="both", pad=0.02)
     bar.set_label(label)
     bar.ax.tick_params(labelsize=6)

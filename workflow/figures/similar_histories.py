@@ -76,7 +76,9 @@ def data(
             ),
             "slender_rotation": plotted(("pulse", "tau"), slender, "g theta/a_g of the slender block", equation="4.1"),
             "spread": plotted(
-                ("pulse", "group_set"), spread, "largest difference between blocks, of the peak of the slender block"
+                ("pulse", "group_set"),
+                spread,
+                "largest difference of two blocks at one time, shifts of phase included, over the slender peak",
             ),
         },
         coords={

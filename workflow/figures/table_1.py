@@ -33,12 +33,12 @@ def draw(data: xr.Dataset) -> Figure:
     ax = figure.subplots()
     ax.set_axis_off()
     cells = [[symbols[int(k)] for k in row] for row in data["product"].values]
-    table = ax.table(cells, rowLabels=symbols, colLabels=symbols, cellLoc="center", rowLoc="center", loc="center")
-    table.scale(1, 1.25)
-    width = 1 / (len(symbols) + 1)
+    # the row heads are cells of a first column: those of Matplotlib have a width of their own
+    rows = [["", *symbols], *([symbol, *row] for symbol, row in zip(symbols, cells, strict=True))]
+    table = ax.table(rows, cellLoc="center", bbox=(0.0, 0.0, 1.0, 1.0))
     for (row, column), cell in table.get_celld().items():
         cell.set_linewidth(0.4)
-        cell.set_width(width)
-        if row == 0 or column == -1:
+        if (row == 0) != (column == 0):
             cell.set_facecolor("#E4EEF6")
+    table[0, 0].set_linewidth(0.0)
     return figure

@@ -56,15 +56,16 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
         return IMPACT, k, impact, z, w
     k += 1
     cosh1, sinh, above = hyperbolic(h)
-    above /= h
+    above, slope = above / h, cosh1 / h
     known, sagitta = max(block.peak_rotation, block.largest_z), 0.125 * h * h
     while k < count:
         if z + w > 1.0 + a * later[k]:
             return OVERTURNS, k, 0.0, z, w
         q0, q1 = q1, 1.0 + sign * a * f[k + 1]
         c, rise = z - q0, q1 - q0
-        z1 = z + (c * cosh1 + w * sinh - rise * above)
-        w1 = w + (c * sinh + w * cosh1 - rise * (cosh1 / h))
+        # grouped so that the chain of operations from one sample to the next is short
+        z1 = z + (z * cosh1 + (w * sinh - (q0 * cosh1 + rise * above)))
+        w1 = w + (w * cosh1 + (z * sinh - (q0 * sinh + rise * slope)))
         block.stepped += 1
         plain = False
         if q0 >= 0.0 and q1 >= 0.0:

@@ -136,7 +136,8 @@ def chatter_ends_in_rest(block: Record, samples: FloatArray, u: float) -> bool:
     if w * w > block.peak_rotation * first:
         return False
     window = 8.0 * w / (first * (1.0 - eta))
-    least, most = extremes_in_window(samples, block.a, block.interval, block.s, block.h, window, 1.0)
+    spread = 1.0 / (eta * eta) if eta > 0.0 else math.inf  # where 1 + u or 1 - u varies more, the series diverges
+    least, most = extremes_in_window(samples, block.a, block.interval, block.s, block.h, window, spread)
     weakest = scale * (1.0 - max(-least, most))
     if weakest <= 0.0:
         return False

@@ -19,7 +19,7 @@ BLOCK = 32
 
 @lru_cache(maxsize=16)
 def motion_samples(motion: Record) -> NDArray[np.float64]:
-    """Array (3, samples) of a motion, read-only.
+    """Array (3, samples) of a motion, shared by all callers: not to be changed (kernels take writable arrays only).
 
     Row `SHAPE`: f = a/max|a| at the samples [-]. Row `LATER`: the largest |f| from each sample on. Row `BLOCKS`: entry
     b is the largest |f| on the sample intervals from 32 b to 32 b + 31; entries beyond the last block are 0.
@@ -56,11 +56,12 @@ def next_exceedance(samples: FloatArray, first: int, a: float) -> int:
 
 @kernel
 def extremes_in_window(
-    samples: FloatArray, a: float, k: int, s: float, h: float, window: float, limit: float
+    samples: FloatArray, a: float, k: int, s: float, h: float, window: float, spread: float
 ) -> tuple[float, float]:
     """Smallest and largest u from time `s` [tau] in the interval `k` of length `h` on, over a time `window` [tau].
 
-    After the last sample u is 0. The search ends early where |u| >= `limit`; then the larger |u| is returned.
+    After the last sample u is 0. The search ends early, with the extremes so far, once |u| >= 1, or 1 + u or 1 - u
+    varies by more than the factor `spread`.
     """
     f = samples[SHAPE]
     count = len(f) - 1
@@ -73,7 +74,7 @@ def extremes_in_window(
             return min(least, u), max(most, u)
         u = a * f[k + 1]
         least, most = min(least, u), max(most, u)
-        if max(-least, most) >= limit:
+        if max(-least, most) >= 1.0 or 1.0 + most >= spread * (1.0 + least) or 1.0 - least >= spread * (1.0 - most):
             return least, most
         end -= h
         k += 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
+import warnings
 
 import numpy as np
 
@@ -34,7 +35,9 @@ def read(content: bytes, file: str, unit: str | None, time_step: float | None, c
             file, None, "a SAC or miniSEED file", "the package obspy to read it: pip install obspy"
         ) from None
     try:
-        stream = obspy.read(io.BytesIO(content)).merge()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)  # obspy warns where it reads a part of a damaged file
+            stream = obspy.read(io.BytesIO(content)).merge()
     except Exception as error:  # noqa: BLE001  # obspy raises many kinds for damaged files
         raise RecordFileError(file, None, str(error) or type(error).__name__, "a SAC or miniSEED file") from None
     traces = {trace.id: trace for trace in stream}

@@ -1,0 +1,116 @@
+"""Options that several commands share, declared once, and the decorator that gives them to a command.
+
+The fields of `ShapeOptions` and `ProblemOptions` are the options. A command declares one argument of that type;
+`with_options` replaces it in the signature that typer reads by the fields.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import re
+from collections.abc import Callable
+from dataclasses import MISSING, dataclass, fields
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+
+_GROUPS = "In groups"
+_UNITS = "With units"
+
+
+def _in_groups(text: str) -> Any:
+    # a word in brackets would be taken for markup
+    return typer.Option(help=re.sub(r"\[(?=[a-z])", r"\\[", text), rich_help_panel=_GROUPS)
+
+
+def _with_units(text: str) -> Any:
+    return typer.Option(help=text, rich_help_panel=_UNITS)
+
+
+@dataclass(frozen=True)
+class ShapeOptions:
+    """A pulse without amplitude and a block: its slenderness angle, or its size."""
+
+    pulse: Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
+    restitution: Annotated[
+        str | None,
+        typer.Option(
+            help=f"{RESTITUTION.help}, {RESTITUTION.interval}; housner for a block with units (its default): (2.4), 0 "
+            "where negative."
+        ),
+    ] = None
+    alpha: Annotated[str | None, _in_groups(f"{ALPHA.help}, such as '20 deg'.")] = None
+    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.")] = None
+    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.")] = None
+    half_width: Annotated[str | None, _with_units("b, such as 0.2m.")] = None
+    half_height: Annotated[str | None, _with_units("h, such as '80 cm'.")] = None
+
+
+@dataclass(frozen=True)
+class ProblemOptions(ShapeOptions):
+    """A block under a pulse: in groups, or with units."""
+
+    slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
+    frequency_ratio: Annotated[float | None, _in_groups(f"{FREQUENCY_RATIO.help}.")] = None
+    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
+    pulse_period: Annotated[str | None, _with_units("T_p, such as 0.5s.")] = None
+
+
+@dataclass(frozen=True)
+class WindowOptions(ShapeOptions):
+    """A block under pulses of all periods of a window."""
+
+    period_min: Annotated[str | None, _with_units("Shortest T_p, such as 0.1s.")] = None
+    period_max: Annotated[str | None, _with_units("Longest T_p, such as 2s.")] = None
+
+
+@dataclass(frozen=True)
+class SpectrumOptions(WindowOptions):
+    """The same with an amplitude."""
+
+    slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
+    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
+
+
+@dataclass(frozen=True)
+class OutputOptions:
+    """Format of the output; text without."""
+
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False
+    csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False
+
+
+def with_options(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose arguments of the above types are options of the command line, one for each field."""
+    hints = get_type_hints(command, include_extras=True)
+    parameters: list[inspect.Parameter] = []
+    groups: dict[str, type[Any]] = {}
+    for parameter in inspect.signature(command).parameters.values():
+        hint = hints[parameter.name]
+        if not (isinstance(hint, type) and issubclass(hint, ShapeOptions | OutputOptions)):
+            parameters.append(parameter.replace(annotation=hint, kind=parameter.KEYWORD_ONLY))
+            continue
+        groups[parameter.name] = hint
+        types = get_type_hints(hint, include_extras=True)
+        for field in fields(hint):
+            default = inspect.Parameter.empty if field.default is MISSING else field.default
+            parameters.append(
+                inspect.Parameter(
+                    field.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=types[field.name]
+                )
+            )
+
+    @functools.wraps(command)
+    def run(**values: Any) -> None:
+        given = {
+            name: kind(**{field.name: values.pop(field.name) for field in fields(kind)})
+            for name, kind in groups.items()
+        }
+        command(**given, **values)
+
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return run

@@ -1,0 +1,170 @@
+"""Assessment of a block: margins, contact with the ground, and where the answer is in doubt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rocking._numba.cancellation import StopFlag, run_with_timeout
+from rocking.dimensional.margins import Margins, Threshold, acceleration_thresholds, margins_of
+from rocking.dimensional.problem import BlockProblem
+from rocking.history.contact import ContactExtremes, contact_extremes
+from rocking.history.motion import build_motion
+from rocking.model.outcome import Outcome
+from rocking.model.parameters import FREQUENCY_RATIO
+
+MARGIN = 0.05
+"""Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
+
+SEARCH_SECONDS = 12.0
+"""Time limit of the search along one line [s]."""
+
+NOT_FOUND = "the {} at which the outcome changes were not found in time: such a block has too many impacts"
+
+RELATIVE_OFFSET = 1e-9
+"""Relative distance below the lowest change of outcome at which the contact is judged [-]."""
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What is known about a block under a pulse beside its response.
+
+    Attributes
+    ----------
+    problem : BlockProblem
+        The block and the pulse.
+    thresholds : tuple of Threshold, or None
+        Peak accelerations at which the outcome changes at this period, ascending [m/s2]; None if not found in time.
+    margins : Margins or None
+        Distances to another outcome; None if not found in time.
+    contact : ContactExtremes
+        Extremes of the contact forces during the motion.
+    contact_below : ContactExtremes or None
+        The same just below the lowest of `thresholds`; None if there is none.
+    """
+
+    problem: BlockProblem
+    thresholds: tuple[Threshold, ...] | None
+    margins: Margins | None
+    contact: ContactExtremes
+    contact_below: ContactExtremes | None
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in words, without a subject; first whether the rocking model does not apply."""
+        return self.contact.sentence
+
+    @property
+    def rocking_model_applies(self) -> bool:
+        """False if pure rocking needs a coefficient of friction beyond 1, or the block lifts off."""
+        return self.contact.rocking_applies
+
+    @property
+    def largest_safe_acceleration(self) -> float | None:
+        """Peak acceleration [m/s2] below which this block does not overturn under this pulse at this period.
+
+        None if no change of outcome was found, or if the rocking model does not apply just below the lowest.
+        """
+        return self.thresholds[0].value if self.thresholds and self._is_safe_below else None
+
+    @property
+    def largest_safe_friction_demand(self) -> float | None:
+        """Coefficient of friction that it needs just below that acceleration [-]; None likewise."""
+        below = self.contact_below
+        return below.largest_friction_demand if below is not None and self._is_safe_below else None
+
+    @property
+    def _is_safe_below(self) -> bool:
+        return self.contact_below is not None and self.contact_below.rocking_applies
+
+    @property
+    def warnings(self) -> list[str]:
+        """Where the answer, one about pure rocking, is in doubt."""
+        searched = {"peak accelerations": self.thresholds, "periods and sizes": self.margins}
+        return [
+            *self.contact.warnings,
+            *self._warnings_of_the_problem(),
+            *self._warnings_of_safety(),
+            *(NOT_FOUND.format(name) for name, result in searched.items() if result is None),
+        ]
+
+    @property
+    def notes(self) -> list[str]:
+        """What else is worth knowing."""
+        found = self.margins
+        if found and found.smallest_surviving_half_diagonal != found.surviving_from_half_diagonal is not None:
+            return ["larger is not always safer: above the smallest block that survives, some larger ones overturn"]
+        return []
+
+    def _warnings_of_the_problem(self) -> list[str]:
+        texts = []
+        problem, block, margins = self.problem, self.problem.block, self.margins
+        uplifts = self.contact.outcome != Outcome.NO_UPLIFT
+        if problem.restitution == "housner" and block.housner_restitution < 0.0 and uplifts:
+            texts.append(
+                f"the restitution (2.4) of this shape is negative ({block.housner_restitution:.3g}): the block stops "
+                "at an impact, eta = 0; give a number for another restitution"
+            )
+        if block.half_width > block.half_height:
+            texts.append("the block is wider than high: it would rather slide or bounce than rock")
+        thresholds = self.thresholds or ()
+        near = [one.value for one in thresholds if abs(one.value / problem.peak_acceleration - 1.0) < MARGIN]
+        if near:
+            texts.append(
+                f"the outcome changes within {100 * MARGIN:g} % of this peak acceleration: at "
+                + ", ".join(f"{a:.4g}" for a in near)
+                + " m/s2"
+            )
+        if margins is not None and margins.period_factor is not None and abs(margins.period_factor - 1.0) < MARGIN:
+            texts.append(
+                f"the outcome changes within {100 * MARGIN:g} % of this period: at {margins.nearest_period:.4g} s"
+            )
+        return texts
+
+    def _warnings_of_safety(self) -> list[str]:
+        below = self.contact_below
+        if below is None or below.rocking_applies or not self.thresholds:
+            return []
+        needs = f"it needs a coefficient of friction of {below.largest_friction_demand:.3g}"
+        why = "the block lifts off" if below.lifts_off else needs
+        lowest = f"{self.thresholds[0].value:.4g} m/s2, the lowest acceleration at which it overturns"
+        return [f"no largest safe acceleration is given: just below {lowest} by the rocking model, {why}"]
+
+
+def assess(
+    problem: BlockProblem,
+    *,
+    seconds: float = SEARCH_SECONDS,
+    stop: StopFlag | None = None,
+    served: tuple[float, float] = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper),
+) -> Assessment:
+    """Find margins and contact forces.
+
+    Parameters
+    ----------
+    problem : BlockProblem
+        The block and the pulse.
+    seconds : float
+        Time limit of each of the two searches for changes of outcome [s].
+    stop : StopFlag, optional
+        Cancels the work.
+    served : (float, float)
+        Frequency ratios beyond which periods are not searched [-].
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    flag = StopFlag() if stop is None else stop
+    thresholds = run_with_timeout(lambda part: acceleration_thresholds(problem, part), seconds, flag)
+    margins = run_with_timeout(lambda part: margins_of(problem, thresholds or (), part, served), seconds, flag)
+    contact = contact_extremes(build_motion(problem.pulse, **problem.groups, stop=flag))
+    below = _contact_below(problem, thresholds[0].value, flag) if thresholds else None
+    return Assessment(problem, thresholds, margins, contact, below)
+
+
+def _contact_below(problem: BlockProblem, acceleration: float, stop: StopFlag) -> ContactExtremes:
+    """Contact of the motion just below a change of outcome."""
+    slenderness = problem.block.uplift_acceleration / acceleration * (1.0 + RELATIVE_OFFSET)
+    groups = {**problem.groups, "slenderness": slenderness}
+    return contact_extremes(build_motion(problem.pulse, **groups, stop=stop))  # type: ignore[arg-type]

@@ -1,0 +1,221 @@
+"""Time histories, spectra and boundaries of a block in SI units, as labelled data sets."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from rocking._numba.cancellation import StopFlag
+from rocking.boundary.tracing import overturning_boundary
+from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.pulses import AbstractPulse
+from rocking.history.time_history import time_history
+from rocking.model.block import Block
+from rocking.model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking.solver.bounded_response import solve_with_bound
+
+
+def block_history(
+    problem: BlockProblem,
+    *,
+    duration: float | None = None,
+    samples: int = 400,
+    contact: bool = False,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Rotation of a block against time in SI units.
+
+    Parameters
+    ----------
+    problem : BlockProblem
+        The block and the pulse.
+    duration : float, optional
+        Length [s], > 0; by default that of `rocking.time_history`.
+    samples : int
+        Uniform samples; the events are added.
+    contact : bool
+        Whether to add reactions and friction demand, which are dimensionless.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        time(time) [s]; rotation(time) [rad]; angular_velocity(time) [rad/s]; ground_acceleration(time) [m/s2];
+        top_displacement(time) [m]; impact_time(impact) [s].
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    if duration is not None:
+        in_range("duration", duration, 0.0, math.inf, closed="neither", unit="s")
+    found = time_history(
+        problem.pulse,
+        **problem.groups,
+        duration=None if duration is None else duration * problem.block.frequency_parameter,
+        samples=samples,
+        contact=contact,
+        stop=stop,
+    )
+    return in_si_units(found, problem)
+
+
+def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
+    """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
+    block, p = problem.block, problem.block.frequency_parameter
+    scales = {
+        "rotation": (block.alpha, "rad", "rotation theta"),
+        "angular_velocity": (block.alpha * p, "rad s-1", "angular velocity theta'"),
+        "ground_acceleration": (block.uplift_acceleration, "m s-2", "ground acceleration"),
+        "impact_time": (1.0 / p, "s", "time of impact"),
+    }
+    history = found.rename({"tau": "time"}).assign_coords(
+        time=("time", found["tau"].values / p, {"units": "s", "long_name": "time from the start of the pulse"})
+    )
+    for name, (scale, unit, meaning) in scales.items():
+        dims = history[name].dims
+        history[name] = (dims, scale * found[name].values, {"units": unit, "long_name": meaning})
+    moved = 2.0 * block.half_height * np.sin(history["rotation"].values)
+    history["top_displacement"] = "time", moved, {"units": "m", "long_name": "horizontal displacement of a top corner"}
+    return history.assign_attrs(_description(problem), pulse_end=float(found.attrs["pulse_end"]) / p)
+
+
+def block_spectrum(
+    block: Block,
+    pulse: str | AbstractPulse,
+    *,
+    peak_acceleration: float,
+    period: ArrayLike,
+    restitution: float | str = "housner",
+) -> xr.Dataset:
+    """Peak rotation of a block against the period of the pulse, in SI units.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    pulse : str or AbstractPulse
+        The pulse.
+    peak_acceleration : float
+        a_g [m/s2], > 0.
+    period : array_like (periods,)
+        T_p [s], > 0.
+    restitution : float or "housner"
+        eta [-], [0, 1]; or that of the geometry.
+
+    Returns
+    -------
+    xarray.Dataset
+        rotation(period) [rad], top_displacement(period) [m], peak_rotation(period) [-], overturned, outcome, impacts;
+        frequency_ratio(period) [-] as a coordinate.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range, or `period` has more than one dimension.
+    """
+    periods = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
+    if periods.ndim > 1:
+        raise InvalidArgumentError("period", periods.shape, "one dimension")
+    periods = np.atleast_1d(periods)
+    problem = BlockProblem(block, pulse, peak_acceleration, float(periods[0]) if periods.size else 1.0, restitution)  # type: ignore[arg-type]
+    ratio = frequency_ratio_of(block, 1.0) / periods
+    found = solve_with_bound(problem.pulse, **{**problem.groups, "frequency_ratio": ratio})  # type: ignore[arg-type]
+    rotation = found.peak_rotation * block.alpha
+    variables = {
+        "rotation": ("period", rotation, {"units": "rad", "long_name": "peak rotation"}),
+        "top_displacement": (
+            "period",
+            2.0 * block.half_height * np.sin(rotation),
+            {"units": "m", "long_name": "largest displacement of a top corner"},
+        ),
+    }
+    variables |= {
+        field.name: ("period", getattr(found, field.name), {"units": field.unit} | field.attributes)
+        for field in (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, ERROR_BOUND)
+    }
+    coordinates = {
+        "period": ("period", periods, {"units": "s", "long_name": "period of the pulse"}),
+        "frequency_ratio": ("period", ratio, {"units": "1", "long_name": "frequency ratio omega_g/p"}),
+    }
+    about = _description(problem)
+    del about["period"]
+    return xr.Dataset(variables, coordinates, about)
+
+
+def block_boundary(
+    block: Block,
+    pulse: str | AbstractPulse,
+    *,
+    restitution: float | str = "housner",
+    period: tuple[float, float] | None = None,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Boundary curves of overturning of a block: peak acceleration against period.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    pulse : str or AbstractPulse
+        The pulse.
+    restitution : float or "housner"
+        eta [-], [0, 1]; or that of the geometry.
+    period : (float, float), optional
+        Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `rocking.overturning_boundary`, with peak_acceleration(point) [m/s2] and period(point) [s] beside the groups.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    window = (0.2, 15.0)
+    if period is not None:
+        low = float(in_range("period", period[0], 0.0, math.inf, closed="neither", unit="s"))
+        high = float(in_range("period[1]", period[1], low, math.inf, closed="neither", unit="s"))
+        window = frequency_ratio_of(block, high), frequency_ratio_of(block, low)
+    eta = restitution_of(block, restitution)
+    found = overturning_boundary(pulse, restitution=eta, alpha=block.alpha, frequency_ratio=window, stop=stop)
+    return add_si_axes(found, block)
+
+
+def add_si_axes(curves: xr.Dataset, block: Block) -> xr.Dataset:
+    """Boundary curves with peak_acceleration(point) [m/s2] and period(point) [s] of a block of their alpha."""
+    return curves.assign(
+        peak_acceleration=(
+            "point",
+            block.uplift_acceleration / curves["slenderness"].values,
+            {"units": "m s-2", "long_name": "peak ground acceleration"},
+        ),
+        period=(
+            "point",
+            period_of(block, 1.0) / curves["frequency_ratio"].values,
+            {"units": "s", "long_name": "period of the pulse"},
+        ),
+    )
+
+
+def _description(problem: BlockProblem) -> dict[str, float]:
+    """Attributes that name the problem, in SI units."""
+    block = problem.block
+    return {
+        "half_width": block.half_width,
+        "half_height": block.half_height,
+        "gravity": block.gravity,
+        "peak_acceleration": problem.peak_acceleration,
+        "period": problem.period,
+        "restitution": problem.groups["restitution"],
+    }

@@ -1,0 +1,100 @@
+"""A block under a pulse in SI units, and its similarity groups."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypedDict
+
+import numpy as np
+
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.groups import GroupSet, Problem, groups_of
+from rocking.model.block import Block
+from rocking.model.checks import check
+from rocking.model.parameters import RESTITUTION
+
+
+class BlockGroups(TypedDict):
+    """The groups of (5.3), restitution and slenderness angle, as keyword arguments of `peak_response`."""
+
+    slenderness: float
+    frequency_ratio: float
+    restitution: float
+    alpha: float
+
+
+@dataclass(frozen=True)
+class BlockProblem:
+    """A block under a pulse.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    pulse : str or AbstractPulse
+        The pulse.
+    peak_acceleration : float
+        a_g [m/s2], > 0.
+    period : float
+        T_p = 2 pi/omega_g [s], > 0.
+    restitution : float or "housner"
+        eta [-], [0, 1]; or that of (2.4), 0 where it is negative.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+
+    block: Block
+    pulse: str | AbstractPulse
+    peak_acceleration: float
+    period: float
+    restitution: float | Literal["housner"] = "housner"
+
+    def __post_init__(self) -> None:
+        as_pulse(self.pulse)
+        in_range("peak_acceleration", self.peak_acceleration, 0.0, math.inf, closed="neither", unit="m/s2")
+        in_range("period", self.period, 0.0, math.inf, closed="neither", unit="s")
+        restitution_of(self.block, self.restitution)
+
+    @property
+    def groups(self) -> BlockGroups:
+        """The groups of (5.3)."""
+        block = self.block
+        frequency = 2.0 * math.pi / self.period
+        problem = Problem(block.alpha, block.frequency_parameter, self.peak_acceleration, frequency, block.gravity)
+        found = groups_of(problem, GroupSet.RIGID)  # (5.3)
+        return {
+            "slenderness": float(np.asarray(found.slenderness)),
+            "frequency_ratio": float(np.asarray(found.frequency_ratio)),
+            "restitution": restitution_of(block, self.restitution),
+            "alpha": block.alpha,
+        }
+
+
+def restitution_of(block: Block, restitution: float | str) -> float:
+    """The coefficient of restitution [-]: the number, or that of the geometry for "housner".
+
+    Raises
+    ------
+    InvalidArgumentError
+        For any other text, and for numbers outside [0, 1].
+    """
+    if restitution == "housner":
+        return block.inelastic_restitution
+    if isinstance(restitution, str):
+        raise InvalidArgumentError("restitution", restitution, f"housner, or a number in {RESTITUTION.interval}")
+    return float(check(RESTITUTION, restitution))
+
+
+def frequency_ratio_of(block: Block, period: float) -> float:
+    """omega = omega_g/p [-] of a period T_p [s]."""
+    return 2.0 * math.pi / period / block.frequency_parameter
+
+
+def period_of(block: Block, frequency_ratio: float) -> float:
+    """T_p [s] of a frequency ratio omega [-]."""
+    return 2.0 * math.pi / frequency_ratio / block.frequency_parameter

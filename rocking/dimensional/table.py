@@ -1,0 +1,191 @@
+"""Many blocks in SI units: a CSV table with units in its header in, columns of responses out."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking._numba.cancellation import StopFlag
+from rocking.dimensional.problem import BlockProblem
+from rocking.dimensional.units import si_factor
+from rocking.errors import InvalidArgumentError
+from rocking.model.block import Block
+from rocking.model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking.model.outcome import Outcome
+from rocking.solver.bounded_response import solve_with_bound
+
+UNITS = {
+    "width": "m",
+    "height": "m",
+    "half_width": "m",
+    "half_height": "m",
+    "peak_acceleration": "m/s**2",
+    "period": "s",
+}
+"""Columns with units, and the SI units of their values."""
+
+OTHER_COLUMNS = ("name", "restitution")
+"""Columns without units: a label, and a number or housner."""
+
+_EXAMPLES = {"m": ("m", "cm"), "m/s**2": ("g", "m/s2", "gal"), "s": ("s", "ms")}
+
+_HEADER = re.compile(r"\s*(\w+)\s*(?:\[(.*)\]|\((.*)\))?\s*")
+_ALLOWED = "columns " + ", ".join(f"{name} [unit]" for name in UNITS) + f", {', '.join(OTHER_COLUMNS)}"
+
+
+@dataclass(frozen=True)
+class BlockTable:
+    """Blocks under one pulse.
+
+    Attributes
+    ----------
+    problems : list of BlockProblem
+        One for each row.
+    names : list of str
+        Labels, empty without a column `name`.
+    """
+
+    problems: list[BlockProblem]
+    names: list[str]
+
+
+def read_table(text: str, pulse: str, restitution: float | str = "housner") -> BlockTable:
+    """Parse a table of blocks.
+
+    Parameters
+    ----------
+    text : str
+        CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
+        may be `half_width` and `half_height`.
+    pulse : str
+        The pulse.
+    restitution : float or "housner"
+        For rows that state none.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a column is missing, unknown or without a unit, or a value is not allowed; the line is named.
+    """
+    rows = csv.reader(io.StringIO(text.removeprefix("\ufeff")))
+    names, factors = _read_header(next(rows, []))
+    labels: list[str] = []
+    problems: list[BlockProblem] = []
+    for row in rows:
+        if not row:
+            continue
+        line = rows.line_num
+        if len(row) != len(names):
+            raise InvalidArgumentError(f"blocks, line {line}", f"{len(row)} values", f"{len(names)}, as in the header")
+        given = dict(zip(names, (entry.strip() for entry in row), strict=True))
+        try:
+            problems.append(_problem(given, factors, pulse, restitution))
+        except InvalidArgumentError as error:
+            raise InvalidArgumentError(f"blocks, line {line}, {error.parameter}", error.value, error.allowed) from None
+        if "name" in given:
+            labels.append(given["name"])
+    return BlockTable(problems, labels)
+
+
+def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, float]]:
+    """Names of the columns, and factors to SI units."""
+    names: list[str] = []
+    factors: dict[str, float] = {}
+    for text in header:
+        found = _HEADER.fullmatch(text)
+        name, unit = (found[1], found[2] or found[3]) if found else (text, None)
+        if name in names or (name not in UNITS and name not in OTHER_COLUMNS):
+            raise InvalidArgumentError("blocks, header", text, f"{_ALLOWED}, each at most once")
+        if name in UNITS:
+            examples = _EXAMPLES[UNITS[name]]
+            if unit is None:
+                raise InvalidArgumentError("blocks, header", text, f"missing unit: write {name} [{examples[0]}]")
+            try:
+                factors[name] = si_factor(name, unit, UNITS[name])
+            except InvalidArgumentError:
+                raise InvalidArgumentError("blocks, header", text, f"a unit such as {', '.join(examples)}") from None
+        names.append(name)
+    for pair in (("width", "half_width"), ("height", "half_height"), ("peak_acceleration",), ("period",)):
+        if sum(name in names for name in pair) != 1:
+            raise InvalidArgumentError("blocks, header", ",".join(header), f"one column {' or '.join(pair)}")
+    return names, factors
+
+
+def _problem(
+    given: Mapping[str, str], factors: Mapping[str, float], pulse: str, restitution: float | str
+) -> BlockProblem:
+    values = {name: _number(name, given[name]) * factor for name, factor in factors.items()}
+    b = values["half_width"] if "half_width" in values else 0.5 * values["width"]
+    h = values["half_height"] if "half_height" in values else 0.5 * values["height"]
+    eta = given.get("restitution") or restitution
+    if isinstance(eta, str) and eta != "housner":
+        eta = _number("restitution", eta)
+    return BlockProblem(Block(b, h), pulse, values["peak_acceleration"], values["period"], eta)  # type: ignore[arg-type]
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidArgumentError(name, text, "a number") from None
+
+
+def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:
+    """The responses as columns in SI units, degrees and groups, in the order of the rows; missing numbers are None.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    problems = table.problems
+    groups = [problem.groups for problem in problems]
+    columns: dict[str, list[Any]] = {"name": table.names} if table.names else {}
+    columns |= {
+        "half_width": [problem.block.half_width for problem in problems],
+        "half_height": [problem.block.half_height for problem in problems],
+        "peak_acceleration": [problem.peak_acceleration for problem in problems],
+        "period": [problem.period for problem in problems],
+        "uplift_acceleration": [problem.block.uplift_acceleration for problem in problems],
+        "alpha_deg": [math.degrees(problem.block.alpha) for problem in problems],
+        "slenderness": [one["slenderness"] for one in groups],
+        "frequency_ratio": [one["frequency_ratio"] for one in groups],
+        "restitution": [one["restitution"] for one in groups],
+    }
+    pulse = problems[0].pulse if problems else "sine"
+    found = solve_with_bound(
+        pulse,
+        slenderness=np.array(columns["slenderness"]),
+        frequency_ratio=np.array(columns["frequency_ratio"]),
+        restitution=np.array(columns["restitution"]),
+        alpha=np.array([one["alpha"] for one in groups]),
+        stop=stop,
+    )
+    peaks = [_finite(peak) for peak in found.peak_rotation.tolist()]
+    rotations = [
+        None if peak is None else peak * problem.block.alpha for peak, problem in zip(peaks, problems, strict=True)
+    ]
+    return columns | {
+        "peak_rotation_deg": [None if rotation is None else math.degrees(rotation) for rotation in rotations],
+        "top_displacement": [
+            None if rotation is None else problem.block.top_displacement(rotation)
+            for rotation, problem in zip(rotations, problems, strict=True)
+        ],
+        PEAK_ROTATION.name: peaks,
+        OVERTURNED.name: found.overturned.tolist(),
+        OUTCOME.name: [Outcome(code).name for code in found.outcome.tolist()],
+        IMPACTS.name: found.impacts.tolist(),
+        EXCEEDED_ALPHA.name: found.exceeded_alpha.tolist(),
+        ERROR_BOUND.name: [_finite(bound) for bound in found.error_bound.tolist()],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,171 @@
+"""Responses of blocks in SI units against the dimensionless functions, and what they look like."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import rocking
+from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of
+from rocking.dimensional.response import FIELDS
+from rocking.errors import InvalidArgumentError
+from rocking.model.block import STANDARD_GRAVITY
+from rocking.model.outcome import Outcome
+
+BLOCK = rocking.Block(half_width=0.2, half_height=0.8)
+MOTION = {"peak_acceleration": 4.0, "period": 0.5}
+
+
+def groups(block=BLOCK, peak_acceleration=4.0, period=0.5, restitution=None):
+    return {
+        "slenderness": block.uplift_acceleration / peak_acceleration,
+        "frequency_ratio": 2 * math.pi / period / block.frequency_parameter,
+        "restitution": block.housner_restitution if restitution is None else restitution,
+        "alpha": block.alpha,
+    }
+
+
+def test_response_is_that_of_the_groups():
+    found = BLOCK.response("sine", **MOTION)
+    expected = rocking.peak_response("sine", **groups())
+    assert found.rotation == pytest.approx(float(expected.peak_rotation) * BLOCK.alpha, rel=1e-12)
+    assert found.displacement == pytest.approx(1.6 * math.sin(found.rotation), rel=1e-12)
+    assert (found.outcome, found.impacts, found.overturned) == (Outcome.SAFE, int(expected.impacts), False)
+    assert found.sentence == "rocks and comes to rest"
+    assert found.warnings == []
+    assert found.rocking_model_applies
+
+
+def test_thresholds_and_margins_are_changes_of_the_outcome():
+    found = BLOCK.response("sine", **MOTION)
+    lowest = found.thresholds[0].value
+    assert found.assessment.largest_safe_acceleration == lowest == pytest.approx(4.7000674, rel=1e-7)
+    for factor, overturned in ((1 - 1e-6, False), (1 + 1e-6, True)):
+        assert BLOCK.response("sine", peak_acceleration=lowest * factor, period=0.5).overturned is overturned
+    period = found.margins.nearest_period
+    for factor, overturned in ((1 - 1e-6, False), (1 + 1e-6, True)):
+        assert BLOCK.response("sine", peak_acceleration=4.0, period=period * factor).overturned is overturned
+    size = found.margins.surviving_from_half_diagonal
+    for factor, overturned in ((1 + 1e-6, False), (1 - 1e-6, True)):
+        block = rocking.Block.from_slenderness_angle(BLOCK.alpha, size * factor)
+        eta = BLOCK.housner_restitution
+        assert block.response("sine", **MOTION, restitution=eta).overturned is overturned
+
+
+def test_restitution_is_a_number_or_that_of_the_shape():
+    elastic = BLOCK.response("sine", **MOTION, restitution=0.95)
+    expected = rocking.peak_response("sine", **groups(restitution=0.95))
+    assert elastic.peak_rotation == pytest.approx(float(expected.peak_rotation), rel=1e-12)
+    squat = rocking.Block(1.0, 0.5).response("sine", peak_acceleration=2.5 * STANDARD_GRAVITY, period=0.5)
+    assert squat.problem.groups["restitution"] == 0.0
+    assert any("negative" in text for text in squat.warnings)
+
+
+def test_overturning_has_no_rotation():
+    found = BLOCK.response("sine", peak_acceleration=8.0, period=0.5)
+    assert math.isnan(found.rotation)
+    assert math.isnan(found.displacement)
+    assert repr(found).startswith("<rocking.BlockResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m")
+
+
+def test_text_forms():
+    found = BLOCK.response("sine", **MOTION)
+    assert repr(found) == (
+        "<rocking.BlockResponse: rocks and comes to rest: peak rotation 7.419 deg, top displacement 0.2066 m, "
+        "1 impact during the pulse; block of 0.4 m x 1.6 m under sine of 4 m/s2 and 0.5 s>"
+    )
+    html = found._repr_html_()
+    assert "<table>" in html
+    assert "7.419 deg" in html
+    assert html.count("<tr>") == len(FIELDS)
+
+
+def test_tables_hold_every_field():
+    found = BLOCK.response("-cosine", **MOTION)
+    labelled, series = found.to_xarray(), found.to_pandas()
+    assert labelled.attrs["pulse"] == series["pulse"] == "-cosine"
+    assert [*labelled.data_vars] == [field.name for field in FIELDS] == [*series.index][1:]
+    for field in FIELDS:
+        assert labelled[field.name].attrs["units"] == field.unit
+        if field.name != "outcome":
+            assert labelled[field.name].item() == series[field.name] == found.to_dict()[field.name]
+    assert Outcome(labelled["outcome"].item()).name == series["outcome"]
+    assert series["period"] == 0.5
+    assert series["alpha"] == BLOCK.alpha
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"peak_acceleration": 0.0}, "peak_acceleration"),
+        ({"period": -1.0}, "period"),
+        ({"restitution": 1.1}, "restitution"),
+        ({"restitution": "elastic"}, "restitution"),
+    ],
+)
+def test_errors_name_the_argument(changes, name):
+    with pytest.raises(InvalidArgumentError) as caught:
+        BLOCK.response("sine", **(MOTION | changes))
+    assert caught.value.parameter == name
+
+
+@pytest.mark.parametrize("wrong", ["sinus", ["sine", "cosine"], None])
+def test_what_is_no_pulse_is_refused(wrong):
+    for call in (BLOCK.response, BLOCK.history):
+        with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
+            call(wrong, **MOTION)
+
+
+def test_history_is_that_of_the_groups_in_si_units():
+    found = BLOCK.history("sine", **MOTION, samples=50, contact=True)
+    expected = rocking.time_history("sine", **groups(), samples=50, contact=True)
+    p = BLOCK.frequency_parameter
+    np.testing.assert_allclose(found["time"], expected["tau"] / p, rtol=1e-13)
+    np.testing.assert_allclose(found["rotation"], expected["rotation"] * BLOCK.alpha, rtol=1e-13)
+    np.testing.assert_allclose(found["angular_velocity"], expected["angular_velocity"] * BLOCK.alpha * p, rtol=1e-13)
+    np.testing.assert_allclose(found["impact_time"], expected["impact_time"] / p, rtol=1e-13)
+    np.testing.assert_allclose(found["friction_demand"], expected["friction_demand"], rtol=1e-13)
+    ground = expected["ground_acceleration"] * BLOCK.uplift_acceleration
+    np.testing.assert_allclose(found["ground_acceleration"], ground, rtol=1e-13)
+    np.testing.assert_allclose(found["top_displacement"], 1.6 * np.sin(found["rotation"]), rtol=1e-13)
+    fine = BLOCK.history("sine", **MOTION, samples=4000)  # rad/s over s is rad
+    turned = np.trapezoid(fine["angular_velocity"], fine["time"])
+    assert turned == pytest.approx(float(fine["rotation"][-1]), abs=1e-4)
+
+
+def test_duration_of_a_history_is_in_seconds():
+    assert float(BLOCK.history("sine", **MOTION, duration=1.5)["time"][-1]) == pytest.approx(1.5)
+    with pytest.raises(InvalidArgumentError, match=r"^`duration` = "):
+        BLOCK.history("sine", **MOTION, duration=0.0)
+
+
+def test_spectrum_is_the_response_at_each_period():
+    found = BLOCK.spectrum("sine", peak_acceleration=4.0, period=[0.3, 0.5, 1.0])
+    each = [BLOCK.response("sine", peak_acceleration=4.0, period=period) for period in (0.3, 0.5, 1.0)]
+    np.testing.assert_allclose(found["rotation"], [one.rotation for one in each], rtol=1e-12)
+    np.testing.assert_allclose(found["top_displacement"], [one.displacement for one in each], rtol=1e-12)
+    assert found["overturned"].values.tolist() == [one.overturned for one in each] == [False, False, True]
+    assert found["period"].attrs["units"] == "s"
+    assert BLOCK.spectrum("sine", peak_acceleration=4.0, period=[]).sizes["period"] == 0
+    with pytest.raises(InvalidArgumentError, match=r"^`period` = "):
+        BLOCK.spectrum("sine", peak_acceleration=4.0, period=[[0.5]])
+
+
+def test_periods_and_frequency_ratios():
+    problem = BlockProblem(BLOCK, "sine", 4.0, 0.5)
+    omega = frequency_ratio_of(BLOCK, 0.5)
+    assert omega == pytest.approx(problem.groups["frequency_ratio"], rel=1e-14)
+    assert period_of(BLOCK, omega) == pytest.approx(0.5, rel=1e-14)
+
+
+def test_dimensionless_response_as_a_table():
+    found = rocking.peak_response("sine", slenderness=[0.4, 0.2], frequency_ratio=5.0, restitution=0.85)
+    table = found.to_pandas()
+    assert isinstance(table, pd.DataFrame)
+    assert table.index.tolist() == [0.4, 0.2]
+    assert table["peak_rotation"].iloc[0] == found.peak_rotation[0]
+    assert table["overturned"].tolist() == [False, True]
+    single = rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+    assert len(single.to_pandas()) == 1
+    assert "rocks and comes to rest" in single._repr_html_()
