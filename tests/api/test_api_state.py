@@ -111,6 +111,8 @@ def test_openapi_describes_every_route(client):
         "/v1/overturning",
         "/v1/history",
         "/v1/blocks/response",
+        "/v1/records/response",
+        "/v1/records/history",
         "/v1/critical_amplitude",
         "/v1/datasets",
         "/v1/datasets/{name}",
