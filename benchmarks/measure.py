@@ -96,3 +96,16 @@ def save(record: dict[str, Any], path: Path) -> None:
     """Write a record as JSON."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(record, indent=1) + "\n")
+
+
+def publish(
+    record: dict[str, Any],
+    path: Path,
+    draw: Callable[[dict[str, Any], list[Path]], object],
+    table: Callable[[dict[str, Any]], str],
+) -> None:
+    """Write a record and its figures (png, svg), and print it as a table."""
+    save(record, path)
+    draw(record, [path.with_suffix(f".{kind}") for kind in ("png", "svg")])
+    print(table(record))
+    print(f"\nwritten to {path}, and figures with the same name")

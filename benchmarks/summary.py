@@ -16,13 +16,14 @@ from typing import Any
 from benchmarks.ablations import suite as ablations
 from benchmarks.accuracy import grid_size, tolerance
 from benchmarks.cells import DIAGRAMS
-from benchmarks.cost import growth, stages, work_precision
+from benchmarks.cost import growth, solver, stages, work_precision
 from benchmarks.service import performance
 
 GOALS = {"slender": 1000.0, "rigid": 10.0}
 """Intended time of the fastest baseline over that of the package, at every error."""
 
 TABLES = {
+    "solver": ("Time of a cell", lambda record: solver.table(record["rows"])),
     "growth": ("Cost against the number of cells", growth.table),
     "grid-size": ("Interpolation", grid_size.table),
     "tolerance": ("Tolerance", tolerance.table),

@@ -23,7 +23,7 @@ import yaml
 from numpy.typing import NDArray
 
 from benchmarks.figures.grid_size import draw
-from benchmarks.measure import progress, save, versions
+from benchmarks.measure import progress, publish, versions
 from rocking.boundary.cells import crossed_cells
 from rocking.datasets.cube import read_dataset, write_dataset
 from rocking.lookup.open import open_cube
@@ -193,10 +193,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/grid-size.json"))
     options = parser.parse_args()
     record = measure(options.count, tuple(options.scales), options.seed)
-    save(record, options.out)
-    draw(record, [options.out.with_suffix(f".{kind}") for kind in ("png", "svg")])
-    print(table(record))
-    print(f"\nwritten to {options.out}, and figures with the same name")
+    publish(record, options.out, draw, table)
 
 
 if __name__ == "__main__":

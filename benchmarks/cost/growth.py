@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.figures.growth import draw
-from benchmarks.measure import progress, save, spread, versions
+from benchmarks.measure import progress, publish, spread, versions
 from rocking.solver.peak_response import peak_response
 
 PULSE, RESTITUTION = "sine", 0.85
@@ -130,10 +130,7 @@ def main() -> None:
         print(json.dumps(measure_grid(kind, int(side), int(threads))))
         return
     record = measure(options.largest, tuple(options.threads))
-    save(record, options.out)
-    draw(record, [options.out.with_suffix(f".{kind}") for kind in ("png", "svg")])
-    print(table(record))
-    print(f"\nwritten to {options.out}, and figures with the same name")
+    publish(record, options.out, draw, table)
 
 
 if __name__ == "__main__":

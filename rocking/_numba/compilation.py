@@ -33,6 +33,7 @@ from llvmlite import binding  # type: ignore[import-untyped]
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import NativeLowering
 from numba.extending import register_jitable
 from numpy.typing import NDArray
@@ -83,12 +84,59 @@ class _UseSingleModuleLibrary(LoweringPass):
         return False
 
 
-class _EntryCompiler(CompilerBase):
-    """The compiler of numba with `_UseSingleModuleLibrary` before lowering."""
+class _NoEnvironment:
+    """Stands for the code generator where numba stores the environment of a function that Python calls."""
+
+    @staticmethod
+    def set_env(name: str, environment: Any) -> None:
+        pass
+
+
+class _LinkedLibrary(JITCodeLibrary):
+    """A library that is only linked into others: neither optimised nor translated to machine code by itself."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        pass
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:  # noqa: ARG002
+        return 0
+
+    @property
+    def codegen(self) -> Any:
+        return _NoEnvironment
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _UseLinkedLibrary(LoweringPass):
+    """Selects `_LinkedLibrary` as the target of code generation."""
+
+    _name = "rocking_linked"
+
+    def __init__(self) -> None:
+        LoweringPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = _LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return False
+
+
+class _Compiler(CompilerBase):
+    """The compiler of numba with another library, which the pass `select` sets before lowering."""
+
+    select: Any
 
     def define_pipelines(self) -> list[Any]:
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.add_pass_after(_UseSingleModuleLibrary, self._before_lowering(passes))
+        passes.add_pass_after(self.select, self._before_lowering(passes))
         passes.finalize()
         return [passes]
 
@@ -98,10 +146,33 @@ class _EntryCompiler(CompilerBase):
         return classes[classes.index(NativeLowering) - 1]
 
 
+class _EntryCompiler(_Compiler):
+    """Compiler of entries."""
+
+    select = _UseSingleModuleLibrary
+
+
+class _KernelCompiler(_Compiler):
+    """Compiler of the kernels inside entries."""
+
+    select = _UseLinkedLibrary
+
+
+class _Kernel(CPUDispatcher):
+    """A kernel: inside entries code to be linked; from Python a function of its own, compiled when it is called."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        options = _OPTIONS | {"nopython": True, "no_cpython_wrapper": True}
+        super().__init__(py_func=function, targetoptions=options, pipeline_class=_KernelCompiler)
+        self._from_python = numba.njit(**_OPTIONS)(function)
+
+    def __call__(self, *args: Any) -> Any:
+        return self._from_python(*args)
+
+
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` for the entries that call it. Calls from Python compile it in each process."""
-    compiled: Callable[..., Any] = numba.njit(**_OPTIONS)(function)
-    return compiled
+    return _Kernel(function)
 
 
 def uncounted_kernel(function: Callable[..., Any]) -> Callable[..., Any]:

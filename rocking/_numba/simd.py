@@ -1,7 +1,7 @@
-"""A SIMD vector type for kernels: `LANES` doubles, one per cell.
+"""A SIMD vector type for kernels: `LANES` doubles, one per cell, and masks of `LANES` truth values.
 
-Kernels write expressions such as `load(series, n) * x + y` as for one cell. numba has no such type, and automatic
-vectorisation does not recognise the series of a Taylor step.
+Kernels write expressions such as `load(series, n) * x + y` as for one cell; comparisons give masks, which `&`, `|`, `~`
+combine. numba has no such type, and automatic vectorisation does not recognise the series of a Taylor step.
 """
 
 from __future__ import annotations
@@ -15,14 +15,18 @@ from numba.core import cgutils, types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-LANES = 8
-"""Doubles of a vector: 512 bits. Processors with narrower units process it in two or four parts."""
+LANES = 16
+"""Doubles of a vector. Processors have units of two, four or eight and process the parts at the same time: with 16 the
+latencies of two units of eight overlap, which saves a tenth to a fifth of the time against 8."""
 
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
 _LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _LLVM_BITS = ir.VectorType(ir.IntType(64), LANES)
+
+
+_LLVM_MASK = ir.VectorType(ir.IntType(1), LANES)
 
 
 class _VectorType(types.Type):
@@ -32,13 +36,26 @@ class _VectorType(types.Type):
         super().__init__("Lanes")
 
 
-_VECTOR_TYPE = _VectorType()
+class _MaskType(types.Type):
+    """The numba type of one truth value for each lane."""
+
+    def __init__(self) -> None:
+        super().__init__("LanesMask")
+
+
+_VECTOR_TYPE, _MASK_TYPE = _VectorType(), _MaskType()
 
 
 @register_model(_VectorType)
 class _VectorModel(models.PrimitiveModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
         super().__init__(manager, fe_type, _LLVM_VECTOR)
+
+
+@register_model(_MaskType)
+class _MaskModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, fe_type: Any) -> None:
+        super().__init__(manager, fe_type, _LLVM_MASK)
 
 
 def _constant(value: float) -> Any:
@@ -69,6 +86,73 @@ def _approx_log2(builder: Any, x: Any) -> Any:
 def _approx_exp2(builder: Any, x: Any) -> Any:
     whole = builder.fmul(builder.fadd(x, _constant(1023.0)), _constant(2.0**52))
     return builder.bitcast(builder.fptosi(whole, _LLVM_BITS), _LLVM_VECTOR)
+
+
+def _power_of_two(builder: Any, x: Any) -> Any:
+    # in the sum the last bits of the mantissa hold the biased exponent
+    whole = builder.bitcast(builder.fadd(x, _constant(1.5 * 2.0**52 + 1023.0)), _LLVM_BITS)
+    return builder.bitcast(builder.shl(whole, ir.Constant(_LLVM_BITS, [52] * LANES)), _LLVM_VECTOR)
+
+
+def _quadrant(builder: Any, turns: Any, offset: int) -> tuple[Any, Any]:
+    # in the sum the last bits of the mantissa hold the integer; bit 0: exchange, bit 1, moved to the sign: negate
+    bits = builder.bitcast(builder.fadd(turns, _constant(1.5 * 2.0**52)), _LLVM_BITS)
+    odd = builder.icmp_unsigned(
+        "!=", builder.and_(bits, ir.Constant(_LLVM_BITS, [1] * LANES)), ir.Constant(_LLVM_BITS, [0] * LANES)
+    )
+    moved = builder.add(bits, ir.Constant(_LLVM_BITS, [offset] * LANES))
+    half = builder.and_(moved, ir.Constant(_LLVM_BITS, [2] * LANES))
+    return odd, builder.shl(half, ir.Constant(_LLVM_BITS, [62] * LANES))
+
+
+def _sine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any:
+    odd, sign = _quadrant(builder, turns, 0)
+    value = builder.bitcast(builder.select(odd, cosine, sine), _LLVM_BITS)
+    return builder.bitcast(builder.xor(value, sign), _LLVM_VECTOR)
+
+
+def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any:
+    odd, sign = _quadrant(builder, turns, 1)
+    value = builder.bitcast(builder.select(odd, sine, cosine), _LLVM_BITS)
+    return builder.bitcast(builder.xor(value, sign), _LLVM_VECTOR)
+
+
+def _square_root(builder: Any, x: Any) -> Any:
+    kind = ir.FunctionType(_LLVM_VECTOR, (_LLVM_VECTOR,))
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.sqrt.v{LANES}f64"), [x])
+
+
+def _transpose(builder: Any, rows: list[Any]) -> list[Any]:
+    """Exchange the off-diagonal blocks of size 1, 2, 4 of a square of vectors."""
+    positions, size = range(LANES), 1
+    while size < LANES:
+        upper = [lane if not lane & size else LANES + lane - size for lane in positions]
+        lower = [lane + size if not lane & size else LANES + lane for lane in positions]
+        mask = ir.VectorType(ir.IntType(32), LANES)
+        rows = [
+            builder.shuffle_vector(rows[i & ~size], rows[i | size], ir.Constant(mask, lower if i & size else upper))
+            for i in positions
+        ]
+        size *= 2
+    return rows
+
+
+def _place(builder: Any, places: Any, lane: int) -> Any:
+    return builder.load(builder.gep(places, [ir.Constant(ir.IntType(64), lane)]))
+
+
+def _gather_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
+    rows = [builder.load(_row_address(builder, source, _place(builder, places, i)), align=8) for i in range(LANES)]
+    for i, column in enumerate(_transpose(builder, rows)):
+        builder.store(column, _row_address(builder, target, ir.Constant(ir.IntType(64), i)), align=8)
+
+
+def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
+    columns = [
+        builder.load(_row_address(builder, source, ir.Constant(ir.IntType(64), i)), align=8) for i in range(LANES)
+    ]
+    for i, row in enumerate(_transpose(builder, columns)):
+        builder.store(row, _row_address(builder, target, _place(builder, places, i)), align=8)
 
 
 def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
@@ -136,7 +220,53 @@ approx_exp2 = _instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
-def _arithmetic(operation: Any, instruction: str) -> None:
+square_root = _instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)
+"""square_root(x), lane by lane, correctly rounded."""
+
+power_of_two = _instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)
+"""2**x of integers x from -1022 to 1023."""
+
+sine_of_quadrant = _instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+"""sine_of_quadrant(n, s, c): sin(r + n pi/2) of integers n from s = sin(r) and c = cos(r)."""
+
+cosine_of_quadrant = _instruction(_cosine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+"""cosine_of_quadrant(n, s, c): cos(r + n pi/2), as `sine_of_quadrant`."""
+
+select = _instruction(
+    lambda builder, mask, x, y: builder.select(mask, x, y), _VECTOR_TYPE, _MASK_TYPE, _VECTOR_TYPE, _VECTOR_TYPE
+)
+"""select(mask, x, y): x where the mask is true, else y."""
+
+lane_bits = _instruction(
+    lambda builder, mask: builder.zext(builder.bitcast(mask, ir.IntType(LANES)), ir.IntType(64)),
+    *(types.int64, _MASK_TYPE),
+)
+"""lane_bits(mask): an integer with bit i set where lane i is true."""
+
+any_lane = _instruction(
+    lambda builder, mask: builder.icmp_unsigned(
+        "!=", builder.bitcast(mask, ir.IntType(LANES)), ir.Constant(ir.IntType(LANES), 0)
+    ),
+    *(types.boolean, _MASK_TYPE),
+)
+"""any_lane(mask): whether it is true in some lane."""
+
+fill_mask = _instruction(
+    lambda builder, value: builder.select(
+        value, ir.Constant(_LLVM_MASK, [True] * LANES), ir.Constant(_LLVM_MASK, [False] * LANES)
+    ),
+    *(_MASK_TYPE, types.boolean),
+)
+"""fill_mask(value): the truth value in every lane."""
+
+gather_rows = _instruction(_gather_rows, types.void, None, None, None)
+"""gather_rows(source, places, target): row `places[i]` of `source` becomes column i of `target` (LANES, LANES)."""
+
+scatter_rows = _instruction(_scatter_rows, types.void, None, None, None)
+"""scatter_rows(source, places, target): the inverse, column i of `source` becomes row `places[i]` of `target`."""
+
+
+def _operation(operation: Any, generate: Callable[..., Any], result: Any) -> None:
     """Define `operation` for two vectors, or a vector and a number."""
 
     @infer_global(operation)
@@ -144,22 +274,55 @@ def _arithmetic(operation: Any, instruction: str) -> None:
         def generic(self, args: Any, _: Any) -> Any:
             if _VECTOR_TYPE not in args or not all(isinstance(one, (_VectorType, types.Number)) for one in args):
                 return None
-            return signature(_VECTOR_TYPE, *(one if one is _VECTOR_TYPE else types.float64 for one in args))
+            return signature(result, *(one if one is _VECTOR_TYPE else types.float64 for one in args))
 
     def lower(_: Any, builder: Any, sig: Any, args: Any) -> Any:
         operands = [x if kind is _VECTOR_TYPE else _splat(builder, x) for kind, x in zip(sig.args, args, strict=True)]
-        return getattr(builder, instruction)(*operands)
+        return generate(builder, *operands)
 
     for left, right in ((_VECTOR_TYPE, _VECTOR_TYPE), (_VECTOR_TYPE, types.float64), (types.float64, _VECTOR_TYPE)):
         lower_builtin(operation, left, right)(lower)
 
 
-for _operation, _name in (
+def _mask_operation(operation: Any, count: int, generate: Callable[..., Any]) -> None:
+    """Define `operation` for `count` masks."""
+
+    @infer_global(operation)
+    class Typing(AbstractTemplate):
+        def generic(self, args: Any, _: Any) -> Any:
+            return signature(_MASK_TYPE, *args) if list(args) == [_MASK_TYPE] * count else None
+
+    def lower(_: Any, builder: Any, __: Any, args: Any) -> Any:
+        return generate(builder, *args)
+
+    lower_builtin(operation, *[_MASK_TYPE] * count)(lower)
+
+
+for _operator, _name in (
     (operator.add, "fadd"),
     (operator.iadd, "fadd"),
     (operator.sub, "fsub"),
     (operator.isub, "fsub"),
     (operator.mul, "fmul"),
+    (operator.imul, "fmul"),
     (operator.truediv, "fdiv"),
 ):
-    _arithmetic(_operation, _name)
+    _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
+
+for _operator, _name in (
+    (operator.lt, "<"),
+    (operator.le, "<="),
+    (operator.gt, ">"),
+    (operator.ge, ">="),
+    (operator.eq, "=="),
+):
+    _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
+
+for _operator, _name in (
+    (operator.and_, "and_"),
+    (operator.iand, "and_"),
+    (operator.or_, "or_"),
+    (operator.ior, "or_"),
+):
+    _mask_operation(_operator, 2, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
+_mask_operation(operator.invert, 1, lambda builder, x: builder.not_(x))

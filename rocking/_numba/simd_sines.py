@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
+from rocking._numba.simd import cosine_of_quadrant, sine_of_quadrant
 
 ROUNDING_CONSTANT = 6755399441055744.0
 """1.5 * 2**52 [-]: adding and subtracting it rounds to the nearest integer."""
@@ -48,10 +49,4 @@ def sine_and_cosine(angle: SimdVector) -> Any:
     )  # fmt: skip
     whole = 1.0 - 0.5 * x
     cosine = whole + (((1.0 - whole) - 0.5 * x) + tail)
-    # quarters = 2 halves + odd: an odd quarter exchanges sine and cosine, an odd half changes both signs
-    halves = round_to_nearest(quarters * 0.5 - 0.25)
-    odd = quarters - 2.0 * halves
-    turned = halves - 2.0 * round_to_nearest(halves * 0.5 - 0.25)
-    side = 1.0 - 2.0 * turned
-    even = 1.0 - odd
-    return side * (even * sine + odd * cosine), side * (even * cosine - odd * sine)
+    return sine_of_quadrant(quarters, sine, cosine), cosine_of_quadrant(quarters, sine, cosine)

@@ -44,6 +44,11 @@ from rocking.closed_form.first_arc import angular_velocity as angular_velocity
 from rocking.closed_form.first_arc import printed_rotation as printed_rotation
 from rocking.closed_form.first_arc import rotation as rotation
 from rocking.closed_form.first_arc import state_at_pulse_end as state_at_pulse_end
+from rocking.closed_form.impact_sequences import Impact as Impact
+from rocking.closed_form.impact_sequences import impacts_in_pulse as impacts_in_pulse
+from rocking.closed_form.impact_sequences import island_tip as island_tip
+from rocking.closed_form.impact_sequences import margin_after_impacts as margin_after_impacts
+from rocking.closed_form.impact_sequences import overturning_interval as overturning_interval
 from rocking.closed_form.interval import AmplitudeInterval as AmplitudeInterval
 from rocking.closed_form.limit import limit_amplitude as limit_amplitude
 from rocking.closed_form.limit import limit_margin as limit_margin

@@ -43,8 +43,3 @@ class ExcitationSeries:
     def has_exact_arcs(self) -> bool:
         """Whether the slender block (3.1) has exact arcs (3.4) under it."""
         return self.family == Family.SINUSOIDS
-
-    @property
-    def is_one_sinusoid(self) -> bool:
-        """Whether the kernel compiled for a single sinusoid applies."""
-        return self.has_exact_arcs and len(self.terms) == 1

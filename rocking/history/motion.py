@@ -14,9 +14,11 @@ from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.history.sampling import sample_arcs, sample_free_rocking, solve_and_sample
 from rocking.model.checks import check_groups
+from rocking.model.fields import END_ROTATION, END_VELOCITY, RECORD_FIELDS
 from rocking.model.response import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
-from rocking.solver.state import SINGLE_SINUSOID_STATE, has_one_sinusoid, pulse_state, step_state
+from rocking.solver.peak_response import peak_response
+from rocking.solver.state import pulse_state, step_state
 
 Floats = NDArray[np.float64]
 
@@ -145,14 +147,29 @@ class Motion:
     ) -> tuple[Record, int]:
         groups = (self.slenderness, self.frequency_ratio, self.restitution, self.alpha)
         rest = self.max_rotation, tau, rotation, velocity, impact_times, flag_array(self.stop)
-        if has_one_sinusoid(self.pulse) and self.alpha == 0.0:
-            record = pulse_state(self.pulse, SINGLE_SINUSOID_STATE).copy()
+        record = pulse_state(self.pulse).copy()
+        if self.pulse.series.has_exact_arcs and self.alpha == 0.0:
             written = sample_arcs(*groups, record, *rest)
+            self._set_response(record)
+            at_rest = tau <= record["uplift_time"]  # which differs from that of the arcs by rounding
+            rotation[at_rest] = velocity[at_rest] = 0.0
         else:
-            record = pulse_state(self.pulse).copy()
             written = solve_and_sample(*groups, record, step_state(record), *rest)
         check_stop(self.stop)
         return record, int(written)
+
+    def _set_response(self, record: Record) -> None:
+        """Set the response of `peak_response`, whose stages round differently; the state at the pulse's end stays."""
+        found = peak_response(
+            self.pulse,
+            slenderness=self.slenderness,
+            frequency_ratio=self.frequency_ratio,
+            restitution=self.restitution,
+            stop=self.stop,
+        )
+        for field in RECORD_FIELDS:
+            if field not in (END_ROTATION, END_VELOCITY):
+                record[field.name] = getattr(found, field.name)
 
     def _sample_free(
         self, record: Record, tau: Floats, rotation: Floats, velocity: Floats, impact_times: Floats

@@ -198,10 +198,7 @@ def sample_arcs(
     impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """`solve_and_sample` for a slender block under one sinusoid: `flight` is a record `SINGLE_SINUSOID_STATE`.
-
-    Compiled as `solve_by_arcs`, it gives the same bits.
-    """
+    """`solve_and_sample` for a slender block under sinusoids, compiled without Taylor steps."""
     return sample_pulse(
         slenderness, omega, eta, alpha, flight, None, max_rotation, tau, rotation, velocity, impact_times, stop
     )

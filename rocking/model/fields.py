@@ -174,8 +174,9 @@ COLUMN_FIELDS = (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ER
 
 
 def record_dtype(fields: Sequence[ResponseField]) -> np.dtype[np.void]:
-    """The record with these fields, for a kernel."""
-    return np.dtype([(field.name, field.dtype) for field in fields], align=True)
+    """The record with these fields, for a kernel; larger types come first, so that there are no gaps between them."""
+    ordered = sorted(fields, key=lambda field: -np.dtype(field.dtype).itemsize)
+    return np.dtype([(field.name, field.dtype) for field in ordered], align=True)
 
 
 def markdown_table() -> str:

@@ -16,14 +16,14 @@ from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import LANES, load, splat, store
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking.excitation.series import ExcitationSeries, Family
-from rocking.excitation.shapes import MAX_POLYNOMIAL
+from rocking.excitation.shapes import MAX_POLYNOMIAL, MAX_SINUSOIDS
 
 WAVELET = int(Family.WAVELET)
 
 
-def excitation_fields(most_terms: int) -> list[tuple[str, type] | tuple[str, type, tuple[int, ...]]]:
-    """Fields of a record that describe an excitation of up to `most_terms` sinusoids."""
-    per_term = (most_terms,)
+def excitation_fields() -> list[tuple[str, type] | tuple[str, type, tuple[int, ...]]]:
+    """Fields of a record that describe an excitation."""
+    per_term = (MAX_SINUSOIDS,)
     return [
         ("family", np.int64),  # see `Family`
         ("terms", np.int64),  # number of sinusoids c cos(w phi + d); a wavelet has one of amplitude 0
@@ -35,7 +35,7 @@ def excitation_fields(most_terms: int) -> list[tuple[str, type] | tuple[str, typ
     ]
 
 
-EXCITATION_FIELDS = tuple(str(field[0]) for field in excitation_fields(1))
+EXCITATION_FIELDS = tuple(str(field[0]) for field in excitation_fields())
 """Names of these fields."""
 
 
@@ -50,12 +50,6 @@ def fill_excitation(record: Record, series: ExcitationSeries) -> None:
 
 
 @kernel
-def term_count(flight: Record) -> int:
-    """Number of sinusoids; a constant when compiled for a record of a single sinusoid."""
-    return flight.terms if len(flight.force) > 1 else 1
-
-
-@kernel
 def has_exact_arcs(flight: Record, alpha: float) -> bool:
     """Whether the motion consists of exact arcs (3.4): slender blocks under sums of sinusoids."""
     return alpha == 0.0 and flight.family != WAVELET
@@ -65,10 +59,7 @@ def has_exact_arcs(flight: Record, alpha: float) -> bool:
 def is_unit_sinusoid(flight: Record) -> bool:
     """Whether f is one sinusoid of amplitude 1 and frequency 1, for which phases of |a f| = 1 have closed forms."""
     return (
-        term_count(flight) == 1
-        and flight.multiple[0] == 1.0
-        and abs(flight.amplitude[0]) == 1.0
-        and flight.family != WAVELET
+        flight.terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.family != WAVELET
     )
 
 
@@ -83,7 +74,7 @@ def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
             f = f * phi + flight.polynomial[k]
         gaussian = math.exp(-phi * phi / flight.spread)
         return f * gaussian, (slope - 2.0 * phi / flight.spread * f) * gaussian
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         angle = flight.multiple[k] * phi + flight.shift[k]
         f += flight.amplitude[k] * math.cos(angle)
         slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)

@@ -30,18 +30,18 @@ IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
 """What has ended a flight. OVERTURNS: no later ground acceleration of the pulse can prevent overturning."""
 
 
-def _flight_layout(most_terms: int) -> np.dtype[np.void]:
-    per_term = (most_terms,)
+def _flight_layout() -> np.dtype[np.void]:
+    per_term = (MAX_SINUSOIDS,)
     ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
     return np.dtype(
         [
             # the excitation
-            *excitation_fields(most_terms),
+            *excitation_fields(),
             ("pieces", np.int64),  # number of monotone pieces of f
             ("end_phase", np.float64, ends),  # their ends, with f and the cosines and sines of the angles there
             ("end_shape", np.float64, ends),
-            ("end_cosine", np.float64, (*ends, most_terms)),
-            ("end_sine", np.float64, (*ends, most_terms)),
+            ("end_cosine", np.float64, (*ends, MAX_SINUSOIDS)),
+            ("end_sine", np.float64, (*ends, MAX_SINUSOIDS)),
             (
                 "half_period_phase",
                 np.float64,
@@ -57,8 +57,8 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
             ("interval_phase", np.float64, cuts),  # ends of the intervals, see `split_into_intervals`
             ("interval_level", np.float64, cuts),  # in the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
             ("interval_slope", np.float64, cuts),  # sign of f' there
-            ("interval_cosine", np.float64, (*cuts, most_terms)),
-            ("interval_sine", np.float64, (*cuts, most_terms)),
+            ("interval_cosine", np.float64, (*cuts, MAX_SINUSOIDS)),
+            ("interval_sine", np.float64, (*cuts, MAX_SINUSOIDS)),
             # progress of the event loop
             ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
             ("cell", np.int64),  # index of the cell, -1: none
@@ -126,11 +126,8 @@ def _flight_layout(most_terms: int) -> np.dtype[np.void]:
     )
 
 
-FLIGHT_STATE = _flight_layout(MAX_SINUSOIDS)
+FLIGHT_STATE = _flight_layout()
 """Layout of the record of an excitation and a cell."""
-
-SINGLE_SINUSOID_STATE = _flight_layout(1)
-"""The same for a single sinusoid: the compiler removes the loops over the sinusoids."""
 
 
 def _steps_layout() -> np.dtype[np.void]:
@@ -165,7 +162,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
             # the excitation, as in `FLIGHT_STATE`
-            *excitation_fields(MAX_SINUSOIDS),
+            *excitation_fields(),
             # accuracy
             ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
             ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
@@ -180,15 +177,10 @@ RESPONSE_RECORD = record_dtype(RECORD_FIELDS)
 """Record of the response of a cell."""
 
 
-def has_one_sinusoid(pulse: AbstractPulse) -> bool:
-    """Whether a record `SINGLE_SINUSOID_STATE` holds the pulse."""
-    return pulse.series.is_one_sinusoid
-
-
 @lru_cache(maxsize=256)
-def pulse_state(pulse: AbstractPulse, fields: np.dtype[np.void] = FLIGHT_STATE) -> Record:
-    """The record of a pulse, `FLIGHT_STATE` or `SINGLE_SINUSOID_STATE`, to be copied before use."""
-    record: Record = np.zeros(1, fields)[0]
+def pulse_state(pulse: AbstractPulse) -> Record:
+    """The record `FLIGHT_STATE` of a pulse, to be copied before use."""
+    record: Record = np.zeros(1, FLIGHT_STATE)[0]
     fill_excitation(record, pulse.series)
     multiple, shift = (np.array(column) for column in zip(*(term[1:] for term in pulse.series.terms), strict=True))
     count = len(multiple)

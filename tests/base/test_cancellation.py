@@ -12,8 +12,10 @@ from rocking._numba.simd import LANES
 from rocking.boundary.frequency import critical_frequency_ratio
 from rocking.errors import StoppedError
 from rocking.history.motion import build_motion
-from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
-from rocking.solver.state import FLIGHT_STATE, RESPONSE_RECORD, SINGLE_SINUSOID_STATE, pulse_state, step_state
+from rocking.solver.kernels.batch import solve_batch
+from rocking.solver.stages.batch import solve_by_arcs
+from rocking.solver.stages.state import stage_state
+from rocking.solver.state import RESPONSE_RECORD, pulse_state, step_state
 from rocking.spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
@@ -86,12 +88,13 @@ def test_a_kernel_reads_the_flag_within_one_cell():
     s, w, eta = (np.array([x]) for x in (MANY[-1], 0.05, 1.0))
     for alpha in (0.0, 0.2):
         flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
-        pulse = pulse_state(rocking.get_pulse("c2"), FLIGHT_STATE if alpha else SINGLE_SINUSOID_STATE)
-        scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse.copy(),)
+        pulse = pulse_state(rocking.get_pulse("c2")).copy()
+        scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse, *stage_state())
+        groups = (s, w, eta, np.array([alpha])) if alpha else (s, w, eta)
         kernel = solve_batch if alpha else solve_by_arcs
         timer = threading.Timer(0.003, flag.fill, [1])
         timer.start()
-        kernel(s, w, eta, np.array([alpha]), *scratch, flag, answers)
+        kernel(*groups, *scratch, flag, answers)
         timer.join()
         reached = (scratch[0][0] if alpha else scratch[0])["impacts"]
         assert 0 < reached < 200_000

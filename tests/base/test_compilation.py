@@ -22,10 +22,9 @@ from rocking.history import sampling
 from rocking.interpolation import kernel as lookup_kernel
 from rocking.interpolation import stencils as interpolation
 from rocking.lookup.open import open_cube
-from rocking.solver import peak_response as solve
 from rocking.solver.arcs.arc import cosh_minus_one_and_sinh
 from rocking.solver.kernels import batch as rock_many
-from rocking.solver.state import FLIGHT_STATE, LANES, SINGLE_SINUSOID_STATE, pulse_state, step_state
+from rocking.solver.stages import batch as stages
 from rocking.spectra.cubes import spectra
 
 ROOT = Path(__file__).parents[2]
@@ -33,7 +32,7 @@ ROOT = Path(__file__).parents[2]
 ENTRIES = (
     *(
         rock_many.solve_batch,
-        rock_many.solve_by_arcs,
+        stages.solve_by_arcs,
         sampling.solve_and_sample,
         sampling.sample_arcs,
         sampling.sample_free_rocking,
@@ -67,23 +66,6 @@ def test_each_entry_has_one_signature_for_all_arguments(tmp_path):
     for eta in (0.85, read_only(0.86, 0.9)):
         opened.response(slenderness=read_only(0.8), frequency_ratio=3, restitution=eta, alpha=0.1)
     assert {one.__name__: len(one.signatures) for one in ENTRIES} == forms
-
-
-def test_records_of_one_sinusoid_and_of_many_differ_by_rounding_only():
-    rng = np.random.default_rng(2)
-    cells = [rng.uniform(0.02, 1, 20_000), np.exp(rng.uniform(-1, 2.5, 20_000)), rng.uniform(0.3, 0.8, 20_000)]
-    for name in ("-sine", "c2", "rectangular"):
-        pulse = rocking.get_pulse(name)
-        answers = [np.zeros(20_000, solve.RESPONSE_RECORD) for _ in range(2)]
-        flag, slender = np.zeros(1, np.uint8), np.zeros(20_000)
-        rock_many.solve_by_arcs(*cells, slender, pulse_state(pulse, SINGLE_SINUSOID_STATE).copy(), flag, answers[0])
-        many = pulse_state(pulse, FLIGHT_STATE)
-        rock_many.solve_batch(*cells, slender, np.repeat(many, LANES), step_state(many), flag, answers[1])
-        for field in solve.RESPONSE_RECORD.names:
-            if answers[0][field].dtype.kind == "f":
-                np.testing.assert_allclose(answers[0][field], answers[1][field], rtol=1e-9, atol=1e-13)
-            else:
-                np.testing.assert_array_equal(answers[0][field], answers[1][field])
 
 
 def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
@@ -120,7 +102,8 @@ def test_compiling_process_and_cached_process_give_equal_bits(tmp_path):
     code = """
 import hashlib, numpy as np, rocking
 from rocking.model.fields import RESPONSE_FIELDS
-from rocking.solver.kernels.batch import solve_batch, solve_by_arcs
+from rocking.solver.kernels.batch import solve_batch
+from rocking.solver.stages.batch import solve_by_arcs
 rng = np.random.default_rng(7)
 s, w, e = rng.uniform(0.02, 0.95, 20_000), np.exp(rng.uniform(-1.2, 2.5, 20_000)), rng.uniform(0.5, 0.95, 20_000)
 digest = hashlib.sha256()

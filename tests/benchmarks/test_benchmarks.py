@@ -231,7 +231,16 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
     planned = snakemake(tmp_path, "--dry-run", "--quiet", "host", "--", "bench")
     assert planned.returncode == 0, planned.stdout
     jobs = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout, flags=re.MULTILINE))
-    one_each = ("work_precision_figure", "tolerance", "growth", "grid_size", "first_call", "service", "stages")
+    one_each = (
+        "work_precision_figure",
+        "tolerance",
+        "solver",
+        "growth",
+        "grid_size",
+        "first_call",
+        "service",
+        "stages",
+    )
     assert jobs["work_precision"] == str(len(cells.DIAGRAMS))
     assert {jobs[name] for name in (*one_each, "bench")} == {"1"}
 
@@ -243,6 +252,14 @@ def test_the_summary_holds_what_was_measured_and_omits_the_rest(tmp_path: Path) 
     assert "Cost against the number of cells" in text
     assert "1.953" in text  # us per cell
     assert "Interpolation" not in text
+
+
+@pytest.mark.slow
+def test_the_time_of_each_pulse_is_compared_with_another_checkout(tmp_path: Path) -> None:
+    record, text = run("cost.solver", tmp_path / "a.json", "--baseline", str(ROOT), "--rounds", "1", "--scale", "0.02")
+    assert {row["case"].split()[1].rstrip(",") for row in record["rows"]} == set(rocking.PULSE_NAMES)
+    assert all(row["here"]["median"] > 0.0 < row["baseline"]["median"] for row in record["rows"])
+    assert "ratio" in text
 
 
 @pytest.mark.slow

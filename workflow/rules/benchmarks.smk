@@ -1,7 +1,7 @@
 # The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
 # measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = ["tolerance", "growth", "grid-size", "first-call", "service", "ablations", "stages"]
+TIMED = ["tolerance", "solver", "growth", "grid-size", "first-call", "service", "ablations", "stages"]
 
 
 rule work_precision:
@@ -61,6 +61,22 @@ rule tolerance:
         "Error against the requested tolerance"
     shell:
         "python -m benchmarks.accuracy.tolerance --out {output.record} >{log}"
+
+
+rule solver:
+    output:
+        record="results/benchmarks/solver.json",
+    log:
+        "logs/bench/solver.log",
+    benchmark:
+        "logs/bench/solver.tsv"
+    threads: workflow.cores
+    params:
+        code=benchmark_code("cost/solver"),
+    message:
+        "Time of a cell for each pulse"
+    shell:
+        "python -m benchmarks.cost.solver --out {output.record} >{log}"
 
 
 rule growth:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
-from rocking.solver.excitation import term_count
 from rocking.solver.state import SERIES_LENGTH
 
 MAX_EXPONENT = 350.0
@@ -43,7 +42,7 @@ def cosh_minus_one_and_sinh(h: float) -> tuple[float, float]:
 def init_arc(flight: Record) -> None:
     """Coefficients of the arc from the start of the flight; `force`, `w0`, `cosine0` and `sine0` must be set."""
     x0, y0, offset_z, offset_w = -1.0, flight.w0, 0.0, flight.w0
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         particular = flight.force[k] / (flight.rate[k] * flight.rate[k] + 1.0)
         flight.particular[k] = particular
         offset_z -= particular * flight.cosine0[k]
@@ -60,7 +59,7 @@ def arc_state(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) ->
     (3.4) with `particular` = F_k/(Omega_k^2 + 1) as the particular part, regrouped as increments from the start.
     """
     moved, offset_w = flight.offset_z, flight.offset_w
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         moved += flight.particular[k] * cosine[k]
         offset_w -= flight.particular[k] * flight.rate[k] * sine[k]
     cosh1, sinh = cosh_minus_one_and_sinh(h)
@@ -71,7 +70,7 @@ def arc_state(flight: Record, h: float, cosine: FloatArray, sine: FloatArray) ->
 def restoring_acceleration(flight: Record, cosine: FloatArray) -> float:
     """Restoring acceleration q = 1 + F [-]."""
     q = 1.0
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         q += flight.force[k] * cosine[k]
     return q
 
@@ -85,7 +84,7 @@ def expand_series(flight: Record, z: float, w: float, q: float, cosine: FloatArr
     coef = flight.coef
     for n in range(1, SERIES_LENGTH - 2):
         coef[n + 2] = 0.0
-    for k in range(term_count(flight)):  # coef[n + 2] becomes F_n
+    for k in range(flight.terms):  # coef[n + 2] becomes F_n
         scaled, rate, cosine_k, sine_k = flight.force[k], flight.rate[k], cosine[k], sine[k]
         for n in range(1, SERIES_LENGTH - 2):
             scaled *= rate * (1.0 / n)

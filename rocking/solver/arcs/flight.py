@@ -16,13 +16,12 @@ from rocking.solver.arcs.arc import (
     rotation,
     velocity,
 )
-from rocking.solver.excitation import term_count
 
 
 @kernel
 def set_angles(flight: Record, phase: float, cosine: FloatArray, sine: FloatArray) -> None:
     """Set the cosines and sines of the angles at `phase`."""
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         angle = flight.multiple[k] * phase + flight.shift[k]
         cosine[k] = math.cos(angle)
         sine[k] = math.sin(angle)
@@ -31,7 +30,7 @@ def set_angles(flight: Record, phase: float, cosine: FloatArray, sine: FloatArra
 @kernel
 def start_arc(flight: Record) -> None:
     """Set the coefficients of the flight that starts at `phase`; `cosine0` and `sine0` must be set."""
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         flight.force[k] = flight.sign * flight.a * flight.amplitude[k]
     flight.q0 = (
         0.0 if flight.starts_at_uplift == 1 else restoring_acceleration(flight, flight.cosine0)

@@ -1,8 +1,7 @@
-"""Many blocks: by exact arcs one after another, by Taylor steps `LANES` at a time.
+"""Many blocks by Taylor steps, `LANES` at a time.
 
 A SIMD lane takes the next cell as soon as its cell is finished. Consecutive cells that differ in eta only share the
-first flight, which is computed once. `solve_by_arcs` is a separate entry for slender blocks under one sinusoid:
-compiled for a single sinusoid, it takes three quarters of the time.
+first flight, which is computed once. Slender blocks under sinusoids are solved in `rocking.solver.stages`.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
-from rocking.solver.kernels.event_loop import advance_by_arc, end_flight, init_state, repeat_first_flight, start_flight
+from rocking.solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
 from rocking.solver.state import IN_FLIGHT
 from rocking.solver.taylor.flight import MAX_STEPS, process_step, start_steps
 from rocking.solver.taylor.step import init_block, take_step
@@ -40,18 +39,8 @@ def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha:
 
 
 @kernel
-def follow_arcs(flight: Record, eta: float, stop: FloatArray) -> None:
-    """Follow a block by exact arcs to its final outcome."""
-    while advance_by_arc(flight, eta) and not is_stopped(stop):
-        pass
-
-
-@kernel
-def continue_with_next_eta(flight: Record, eta: FloatArray, stop: FloatArray, responses: Record) -> bool:
-    """Write the response of a finished cell and continue with the next eta; False if there is none.
-
-    With Taylor steps it returns at the start of the next flight, with arcs it continues to the final outcome.
-    """
+def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record) -> bool:
+    """Write the response of a finished cell and start the next flight of the next eta; False if there is none."""
     while True:
         write_response(flight, responses[flight.cell])
         if flight.cell == flight.last_cell:
@@ -59,11 +48,7 @@ def continue_with_next_eta(flight: Record, eta: FloatArray, stop: FloatArray, re
         flight.cell += 1
         if flight.first_flight_known == 0:  # no uplift, whatever eta
             continue
-        going = repeat_first_flight(flight, eta[flight.cell])
-        if flight.by_arcs == 1:
-            if going:
-                follow_arcs(flight, eta[flight.cell], stop)
-        elif going and start_flight(flight):
+        if repeat_first_flight(flight, eta[flight.cell]) and start_flight(flight):
             return True
 
 
@@ -92,36 +77,16 @@ def next_cell(
     stop: FloatArray,
     responses: Record,
 ) -> int:
-    """Put the next cell that needs Taylor steps into a lane and solve those before it; returns the cell after it."""
+    """Put the next cell with an uplift into a lane; returns the cell after it."""
     while following < len(slenderness) and not is_stopped(stop):
         following = init_cell(flight, following, slenderness, omega, alpha)
-        if flight.by_arcs == 1:
-            follow_arcs(flight, eta[flight.cell], stop)
-        elif start_flight(flight):
+        if start_flight(flight):
             init_block(steps, lane, flight.alpha, flight.omega)
             start_steps(flight, steps, lane)
             return following
-        continue_with_next_eta(flight, eta, stop, responses)
+        continue_with_next_eta(flight, eta, responses)
     flight.cell = -1
     return following
-
-
-@entry
-def solve_by_arcs(
-    slenderness: FloatArray,
-    omega: FloatArray,
-    eta: FloatArray,
-    alpha: FloatArray,
-    flight: Record,
-    stop: FloatArray,
-    responses: Record,
-) -> None:
-    """`solve_batch` for slender blocks under one sinusoid: `alpha` is 0, `flight` a record `SINGLE_SINUSOID_STATE`."""
-    following = 0
-    while following < len(slenderness) and not is_stopped(stop):
-        following = init_cell(flight, following, slenderness, omega, alpha)
-        follow_arcs(flight, eta[flight.cell], stop)
-        continue_with_next_eta(flight, eta, stop, responses)
 
 
 @entry
@@ -135,7 +100,7 @@ def solve_batch(
     stop: FloatArray,
     responses: Record,
 ) -> None:
-    """Follow blocks from rest to their final outcome.
+    """Follow blocks from rest to their final outcome, rigid ones or under wavelets.
 
     Parameters
     ----------
@@ -145,7 +110,7 @@ def solve_batch(
         Solver state: an array (LANES,) of records of `pulse_state`, and `step_state`.
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight or a Taylor step; responses are missing.
-    answers : array (cells,) of `state.RESPONSE_RECORD`
+    responses : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
     """
     following, busy, taken = 0, 0, np.zeros(LANES, dtype=np.int64)
@@ -168,7 +133,7 @@ def solve_batch(
             taken[lane] = 0
             flight.length = flight.elapsed
             going = end_flight(flight, eta[flight.cell], ended, w, z, flight.largest_z) and start_flight(flight)
-            if going or continue_with_next_eta(flight, eta, stop, responses):
+            if going or continue_with_next_eta(flight, eta, responses):
                 start_steps(flight, steps, lane)
                 continue
             following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, stop, responses)

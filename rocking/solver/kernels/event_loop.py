@@ -14,7 +14,7 @@ from rocking._numba.compilation import Record, kernel
 from rocking.errors import SearchError
 from rocking.solver.arcs.events import long_flight, short_flight
 from rocking.solver.arcs.flight import set_angles, start_arc
-from rocking.solver.excitation import has_exact_arcs, term_count
+from rocking.solver.excitation import has_exact_arcs
 from rocking.solver.kernels.chatter import chatter_ends_in_rest
 from rocking.solver.kernels.free_rocking import free_outcome
 from rocking.solver.kernels.intervals import split_into_intervals
@@ -46,7 +46,7 @@ def init_state(slenderness: float, omega: float, alpha: float, flight: Record) -
         return
     flight.a, flight.omega, flight.alpha = 1.0 / slenderness, omega, alpha
     flight.max_rate = 1.0
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         flight.rate[k] = omega * flight.multiple[k]
         flight.max_rate = max(flight.max_rate, flight.rate[k])
     flight.interval_count = split_into_intervals(slenderness, flight)
@@ -62,7 +62,7 @@ def next_uplift(flight: Record) -> bool:
     flight.next_phase, flight.next_w = flight.interval_phase[flight.interval], 0.0
     flight.next_sign = -flight.interval_level[flight.interval]  # positive ground acceleration: negative rotation
     flight.uplifts, flight.impacts_before_uplift = flight.uplifts + 1, flight.impacts
-    for k in range(term_count(flight)):
+    for k in range(flight.terms):
         flight.cosine0[k] = flight.interval_cosine[flight.interval, k]
         flight.sine0[k] = flight.interval_sine[flight.interval, k]
     if flight.outcome == NO_UPLIFT:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking.solver.excitation import is_unit_sinusoid, shape_and_slope, term_count
+from rocking.solver.excitation import is_unit_sinusoid, shape_and_slope
 
 
 @kernel
@@ -55,7 +55,7 @@ def set_interval(flight: Record, index: int, phase: float, level: float, rise: f
 @kernel
 def split_into_intervals(slenderness: float, flight: Record) -> int:
     """Fill `flight.interval_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
-    terms = term_count(flight)
+    terms = flight.terms
     single = is_unit_sinusoid(flight)
     # half-width of |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))

@@ -1,0 +1,199 @@
+"""One flight of `LANES` blocks with the same sign of rotation, from its start to its impact or the end of the pulse.
+
+On each monotone piece of the pulse q keeps its sign up to the cut and changes it there (`rocking.solver.stages.cuts`).
+The parts of the pulse are visited in their order, all cells at once; a cell ignores the parts before its flight.
+
+- Restored, q >= 0: z <= 0 at the right end is necessary and sufficient for an impact, since negative z stays negative.
+  f' keeps its sign, so that a peak exists if w > 0 at the left end and w < 0 at the right. Two more zeros of w are
+  possible only if w'' - w = -q' lets w turn inside: w is then convex (or concave) where it is positive (negative),
+  and its tangents at both ends exclude a zero, else the cell is left to the general solver.
+- Destabilised, q <= 0: z is convex where it is positive. Where w >= 0 at the left end nothing happens, and the state at
+  the right end is not computed before it is needed. Otherwise z <= 0 at the right end means an impact; if z turns
+  inside, its tangents exclude a zero, else the cell is left to the general solver.
+- z + w > 1 + a at the right end of a restored part: overturning is certain, see `rocking.solver.arcs.events`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rocking._numba.compilation import Record, SimdVector, kernel
+from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
+from rocking.solver.stages.arcs import restoring_acceleration, set_angles, set_end_angles, start_arcs, states_at
+from rocking.solver.stages.cuts import cut_phases, init_cuts
+from rocking.solver.stages.roots import hermite_roots, locate_impacts, locate_peaks
+from rocking.solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
+from rocking.solver.state import IMPACT, IN_FLIGHT, PULSE_END
+
+UPLIFT_SLACK = 1e-13
+"""A flight from an uplift starts at a cut; parts that end closer to it than this [rad] lie before it. The part that
+follows is wider than 1e-8."""
+
+
+@kernel
+def follow_flights(pulse: Record, group: Record, sign: float) -> None:
+    """Follow the flights given by the columns of `flight` to their ends.
+
+    Sets `ended` (`IMPACT`, `PULSE_END`, the latter also where overturning is certain earlier, or -1: left to the
+    general solver), `length`, `end_w`, `end_z` and `top`, the largest z, the latter only if the block can still return.
+    """
+    init_cuts(pulse, group)
+    start_arcs(pulse, group, sign)
+    zero, one = splat(0.0), splat(1.0)
+    store(group.followed, 0, one)
+    store(group.known, 0, one)
+    store(group.left_h, 0, zero)
+    store(group.left_z, 0, zero)
+    store(group.left_w, 0, load(group.columns, W0))
+    store(group.left_q, 0, load(group.q0, 0))
+    store(group.peak_pending, 0, zero)
+    store(group.top, 0, zero)
+    store(group.undecided, 0, zero)
+    starts = load(group.columns, PHASE) + load(group.columns, AT_UPLIFT) * UPLIFT_SLACK
+    for piece in range(pulse.pieces):
+        right = pulse.end_phase[piece + 1]
+        if not any_lane((load(group.followed, 0) > 0.0) & (starts < right)):
+            continue
+        rising = -sign * pulse.end_shape[piece + 1] >= -sign * pulse.end_shape[piece]
+        never_cut = max(-sign * pulse.end_shape[piece + 1], -sign * pulse.end_shape[piece]) <= 0.0
+        if not never_cut:
+            cuts = cut_phases(pulse, group, piece, sign)
+            follow_part(pulse, group, cuts, 0, rising, rising, cuts < right, False)
+        last = piece + 1 == pulse.pieces
+        follow_part(pulse, group, splat(right), piece + 1, never_cut or not rising, rising, fill_mask(False), last)
+    hits = load(group.ended, 0) == float(IMPACT)
+    escaped = ~hits & (load(group.end_z, 0) + load(group.end_w, 0) >= 1.0)
+    store(group.peak_pending, 0, select(escaped, zero, load(group.peak_pending, 0)))
+    if any_lane(load(group.peak_pending, 0) > 0.0):
+        locate_peaks(pulse, group)
+    if any_lane(hits):
+        locate_impacts(pulse, group, hits)
+    undecided = load(group.undecided, 0) > 0.0
+    store(group.ended, 0, select(undecided, splat(float(IN_FLIGHT)), load(group.ended, 0)))
+
+
+@kernel
+def follow_part(
+    pulse: Record, group: Record, right: SimdVector, end: int, restored: bool, rising: bool, before_cut: Any, last: bool
+) -> None:
+    """Continue the flights to the phase `right` on a part of the pulse with one sign of q.
+
+    Parameters
+    ----------
+    pulse, group
+        Pulse and cells.
+    right : vector
+        Phases of the right ends [rad].
+    end : int
+        Number of the end of a piece of the pulse if all flights are continued to it, else 0.
+    restored : bool
+        Whether q >= 0 on the part, else q <= 0.
+    rising : bool
+        Whether q decreases on it.
+    before_cut : mask
+        Where a destabilised part follows.
+    last : bool
+        Whether the part ends with the pulse.
+    """
+    zero, one = splat(0.0), splat(1.0)
+    phase = load(group.columns, PHASE)
+    followed, known = load(group.followed, 0) > 0.0, load(group.known, 0) > 0.0
+    left_h, left_z, left_w = load(group.left_h, 0), load(group.left_z, 0), load(group.left_w, 0)
+    ahead = followed & (right > phase + load(group.columns, AT_UPLIFT) * UPLIFT_SLACK)
+    h = (right - phase) * load(group.reciprocal_omega, 0)
+    inside = ahead & (h > left_h)
+    h = select(inside, h, left_h)
+    falling_back = inside & known & (left_w < 0.0)
+    needed = inside if restored else falling_back
+    if not last and not any_lane(needed):
+        store(group.known, 0, select(inside, zero, load(group.known, 0)))
+        store(group.left_h, 0, h)
+        return
+    if end > 0:
+        set_end_angles(pulse, group, end)
+    else:
+        set_angles(pulse, group, right)
+    computed = inside | (ahead & ~known) if last else inside
+    z, w = states_at(pulse, group, select(computed, h, splat(FAR)))
+    q = restoring_acceleration(pulse, group)
+    ended = load(group.ended, 0)
+    # a cell that starts later, or for which the part is empty, keeps its state; at the end of the pulse it is needed
+    z, w = select(computed, z, left_z), select(computed, w, left_w)
+    undecided = fill_mask(False)
+    if restored:
+        limit = one if last else 1.0 + load(group.a, 0)
+        escapes = inside & (z > 0.0) & (z + w >= limit)
+        if not last:
+            escapes = escapes & before_cut
+        ended = select(escapes, splat(float(PULSE_END)), ended)
+        inside = inside & ~escapes
+        unknown = inside & ~known & (w < 0.0)
+        left_q = load(group.left_q, 0)
+        if any_lane(unknown):
+            set_angles(pulse, group, phase + load(group.columns, OMEGA) * left_h)
+            at_left_z, at_left_w = states_at(pulse, group, select(unknown, left_h, splat(FAR)))
+            left_z, left_w = select(unknown, at_left_z, left_z), select(unknown, at_left_w, left_w)
+            left_q = select(unknown, restoring_acceleration(pulse, group), left_q)
+            known = known | unknown
+        left_slope, slope = left_z - left_q, z - q
+        duration = h - left_h
+        # tangents of w at both ends, which meet on the other side of w = 0 if there is no zero
+        apart = absolute(left_w * slope) + absolute(w * left_slope) > duration * absolute(left_slope * slope)
+        if rising:
+            turns = (left_w > 0.0) & (w >= 0.0) & (left_slope < 0.0) & (slope > 0.0)
+        else:
+            turns = (left_w <= 0.0) & (w < 0.0) & (left_slope > 0.0) & (slope < 0.0)
+        undecided = inside & known & turns & ~apart
+        peaks = inside & known & (left_w > 0.0) & (w < 0.0)
+        hits = inside & (z <= 0.0)
+        undecided = undecided | (hits & (w >= 0.0))
+        if any_lane(peaks):
+            if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
+                flush_peaks(pulse, group, peaks)
+            guess = left_h + hermite_roots(left_w, left_slope, w, slope, duration)
+            store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
+            store(group.peak_low, 0, select(peaks, left_h, load(group.peak_low, 0)))
+            store(group.peak_high, 0, select(peaks, h, load(group.peak_high, 0)))
+            store(group.peak_guess, 0, select(peaks, guess, load(group.peak_guess, 0)))
+        store(group.impact_after_peak, 0, select(hits, select(peaks, one, zero), load(group.impact_after_peak, 0)))
+    else:
+        hits = falling_back & (z <= 0.0)
+        turns = falling_back & (z > 0.0) & (w > 0.0)
+        apart = absolute(left_z * w) + absolute(z * left_w) > (h - left_h) * absolute(left_w * w)
+        undecided = turns & ~apart
+        store(group.impact_after_peak, 0, select(hits, zero, load(group.impact_after_peak, 0)))
+        escapes = fill_mask(False)
+    if any_lane(hits):
+        store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
+        store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
+        store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
+        store(group.impact_high, 0, select(hits, h, load(group.impact_high, 0)))
+        store(group.impact_high_z, 0, select(hits, z, load(group.impact_high_z, 0)))
+        store(group.impact_high_w, 0, select(hits, w, load(group.impact_high_w, 0)))
+        ended = select(hits, splat(float(IMPACT)), ended)
+    store(group.undecided, 0, select(undecided, one, load(group.undecided, 0)))
+    stays = followed & ~hits & ~undecided & ~escapes
+    if last:
+        ended = select(stays, splat(float(PULSE_END)), ended)
+    finished = (escapes | stays) if last else escapes
+    store(group.length, 0, select(finished, h, load(group.length, 0)))
+    store(group.end_z, 0, select(finished, z, load(group.end_z, 0)))
+    store(group.end_w, 0, select(finished, w, load(group.end_w, 0)))
+    store(group.ended, 0, ended)
+    store(group.followed, 0, zero if last else select(stays, one, zero))
+    # where a block on a destabilised part does not fall back, its state at the right end is left open
+    now_known = one if restored else select(falling_back, one, zero)
+    store(group.known, 0, select(inside, now_known, load(group.known, 0)))
+    store(group.left_h, 0, h)
+    store(group.left_z, 0, z)
+    store(group.left_w, 0, w)
+    store(group.left_q, 0, select(inside, q, load(group.left_q, 0)))
+
+
+@kernel
+def flush_peaks(pulse: Record, group: Record, where: Any) -> None:
+    """Locate the pending peaks of the cells in which another one follows."""
+    pending, zero = load(group.peak_pending, 0), splat(0.0)
+    store(group.peak_pending, 0, select(where, pending, zero))
+    locate_peaks(pulse, group)
+    store(group.peak_pending, 0, select(where, zero, pending))

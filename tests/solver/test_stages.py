@@ -1,0 +1,109 @@
+"""The stages for slender blocks under sinusoids: the same responses as the general solver, whatever the company."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking.excitation.pulses import SinusoidalPulse
+from rocking.solver.kernels.batch import write_response
+from rocking.solver.kernels.event_loop import advance_by_arc, init_state
+from rocking.solver.stages.batch import solve_by_arcs
+from rocking.solver.stages.state import BLOCK_SIZE, stage_state
+from rocking.solver.state import RESPONSE_RECORD, pulse_state
+from tests import kernels  # noqa: F401  fills the cache of the kernels
+
+SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.get_pulse(name).series.has_exact_arcs]
+SIGNED = [sign + name for name in SINUSOIDS for sign in ("", "-")]
+WHOLE = ("outcome", "impacts", "chatter", "peak_mode")
+
+
+def cells(count, seed):
+    """Random slenderness, frequency ratio and restitution, a tenth of them close to the onset."""
+    rng = np.random.default_rng(seed)
+    s = np.where(rng.random(count) < 0.1, 1.0 - 10.0 ** rng.uniform(-12, -1, count), rng.uniform(0.005, 1.01, count))
+    eta = np.where(rng.random(count) < 0.1, rng.choice([0.0, 0.85, 0.999, 1.0], count), rng.uniform(0, 1, count))
+    return s, np.exp(rng.uniform(math.log(0.05), math.log(20), count)), eta
+
+
+def by_stages(pulse, s, w, eta):
+    found = np.zeros(s.size, RESPONSE_RECORD)
+    solve_by_arcs(s, w, eta, pulse_state(pulse).copy(), *stage_state(), np.zeros(1, np.uint8), found)
+    return found
+
+
+def by_event_loop(pulse, s, w, eta):
+    """One cell after another, from event to event."""
+    found, flight = np.zeros(s.size, RESPONSE_RECORD), pulse_state(pulse).copy()
+    for i in range(s.size):
+        init_state(s[i], w[i], 0.0, flight)
+        while advance_by_arc(flight, eta[i]):
+            pass
+        write_response(flight, found[i])
+    return found
+
+
+def assert_equal(first, second):
+    for name in first.dtype.names:
+        np.testing.assert_array_equal(first[name], second[name], err_msg=name)
+
+
+@pytest.mark.parametrize("name", SIGNED)
+def test_stages_and_event_loop_agree(name):
+    pulse = rocking.get_pulse(name)
+    s, w, eta = cells(1200, SIGNED.index(name))
+    stages, loop = by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta)
+    # where the peaks of two uplifts differ by rounding only, either may be the first
+    tie = (stages["peak_mode"] - loop["peak_mode"]) % 65536 == 0
+    tie &= np.abs(stages["peak_rotation"] - loop["peak_rotation"]) <= 1e-10 * loop["peak_rotation"]
+    assert np.count_nonzero(stages["peak_mode"] != loop["peak_mode"]) <= 20
+    for field in WHOLE:
+        decided = ~tie if field == "peak_mode" else slice(None)
+        np.testing.assert_array_equal(stages[field][decided], loop[field][decided], err_msg=field)
+    for field in ("uplift_time", "first_impact_time", "first_impact_velocity", "peak_rotation"):
+        np.testing.assert_array_equal(np.isnan(stages[field]), np.isnan(loop[field]))
+        scale = np.where(loop[field] == 0.0, 1.0, np.abs(loop[field]))
+        error = np.abs(stages[field] - loop[field]) / scale
+        plain = (s < 0.9) & (eta < 0.9) & np.isfinite(error)  # close to 1 in either the problem is ill-conditioned
+        assert np.count_nonzero(error[plain] > 1e-13) <= 0.05 * np.count_nonzero(plain), field
+        assert error[plain].max(initial=0.0) < 1e-9, field
+
+
+@pytest.mark.parametrize("name", ["sine", "-c1", "mavroeidis_papageorgiou"])
+def test_a_cell_does_not_depend_on_its_company(name):
+    pulse = rocking.get_pulse(name)
+    s, w, eta = cells(BLOCK_SIZE + 300, 5)
+    together = by_stages(pulse, s, w, eta)
+    order = np.random.default_rng(6).permutation(s.size)
+    assert_equal(by_stages(pulse, s[order], w[order], eta[order]), together[order])
+    for i in range(0, s.size, 17):
+        assert_equal(by_stages(pulse, s[i : i + 1], w[i : i + 1], eta[i : i + 1]), together[i : i + 1])
+
+
+@pytest.mark.parametrize("name", ["sine", "c2", "-mavroeidis_papageorgiou"])
+def test_cells_that_differ_in_restitution_share_the_first_flight(name):
+    """In blocks of every size, some of which end at the end of a block of the solver."""
+    pulse = rocking.get_pulse(name)
+    rng = np.random.default_rng(7)
+    s, w, _ = cells(200, 8)
+    counts = rng.integers(1, 40, 200)
+    s, w = np.repeat(s, counts), np.repeat(w, counts)
+    eta = rng.uniform(0, 1, s.size)
+    assert s.size > 3 * BLOCK_SIZE
+    together = by_stages(pulse, s, w, eta)
+    order = rng.permutation(s.size)
+    assert_equal(by_stages(pulse, s[order], w[order], eta[order]), together[order])
+
+
+def test_a_start_above_the_level_and_pieces_without_a_cut():
+    """Sums of sinusoids whose extrema have different heights: some levels are reached on some pieces only."""
+    terms = ((1.0, 1.0, -math.pi / 2), (0.6, 2.0, 0.3), (0.3, 3.0, 1.0))
+    for start, end in ((0.2, 7.0), (-3.0, 4.0), (1.0, 12.0)):
+        pulse = SinusoidalPulse.of_unit_peak("sum", start, end, terms)
+        s, w, eta = cells(800, 9)
+        stages, loop = by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta)
+        for field in ("outcome", "impacts", "chatter"):
+            np.testing.assert_array_equal(stages[field], loop[field], err_msg=field)
+        error = np.abs(stages["peak_rotation"] / np.where(loop["peak_rotation"] > 0, loop["peak_rotation"], 1.0) - 1.0)
+        assert np.nanmedian(error[loop["peak_rotation"] > 0]) < 1e-14
