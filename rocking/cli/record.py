@@ -101,9 +101,9 @@ def _solved(
 ) -> tuple[dict[str, Any], str]:
     """What is printed, by name, and the outcome in words."""
     from rocking.cli.printing import number
+    from rocking.dimensional.record_response import respond_to_record
     from rocking.excitation.records.readers.read_record import read_record
     from rocking.model.block import Block
-    from rocking.suites.block_response import block_response
     from rocking.suites.pulse_fit import fit_pulse
 
     unit, step, component, order = reading
@@ -111,7 +111,7 @@ def _solved(
     if order is not None:
         motion = motion.baseline_corrected(order=order)
     block = Block(*sizes)
-    found = block_response(motion, block, scale=scale, restitution=restitution, thresholds=thresholds)
+    found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
     response, refined = found.response, found.resampled
     about: dict[str, Any] = {
         "record": motion.name,
@@ -138,8 +138,8 @@ def _solved(
         "exceeded_alpha": bool(response.exceeded_alpha),
         "impacts": int(response.impacts),
         "peak_rotation": number(float(response.peak_rotation)),
-        "peak_rotation_deg": number(math.degrees(found.peak_rotation)),
-        "top_displacement": number(found.top_displacement),
+        "peak_rotation_deg": number(math.degrees(found.rotation)),
+        "top_displacement": number(found.displacement),
         "peak_rotation_resampled": None if refined is None else number(float(refined.peak_rotation)),
         "overturned_resampled": None if refined is None else bool(refined.overturned),
     }

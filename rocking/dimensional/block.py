@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, overload
 
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from rocking.dimensional.curves import block_history, block_spectrum
 from rocking.dimensional.problem import BlockProblem
+from rocking.dimensional.record_response import BlockRecordResponse, respond_to_record
 from rocking.dimensional.response import BlockResponse, respond
+from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import AbstractPulse
+from rocking.excitation.records.record import Record
 from rocking.model import block as geometry
 
 Restitution = float | Literal["housner"]
@@ -34,6 +37,7 @@ class Block(geometry.Block):
         If a length or gravity is not finite and positive.
     """
 
+    @overload
     def response(
         self,
         excitation: str | AbstractPulse,
@@ -41,30 +45,62 @@ class Block(geometry.Block):
         peak_acceleration: float,
         period: float,
         restitution: Restitution = "housner",
-    ) -> BlockResponse:
-        """Outcome, peak rotation and displacement under a pulse, by the rigid equation (2.2).
+    ) -> BlockResponse: ...
+
+    @overload
+    def response(
+        self, excitation: Record, *, scale: float = 1.0, restitution: Restitution = "housner", thresholds: bool = False
+    ) -> BlockRecordResponse: ...
+
+    def response(
+        self,
+        excitation: str | AbstractPulse | Record,
+        *,
+        peak_acceleration: float | None = None,
+        period: float | None = None,
+        scale: float | None = None,
+        restitution: Restitution = "housner",
+        thresholds: bool = False,
+    ) -> BlockResponse | BlockRecordResponse:
+        """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
 
         Parameters
         ----------
-        excitation : str or AbstractPulse
-            The pulse.
+        excitation : str, AbstractPulse or Record
+            The pulse, or a recorded ground motion.
         peak_acceleration : float
-            a_g [m/s2], > 0.
+            a_g [m/s2], > 0; of a pulse.
         period : float
-            T_p = 2 pi/omega_g [s], > 0.
+            T_p = 2 pi/omega_g [s], > 0; of a pulse.
+        scale : float
+            Factor of a record [-], (0, 1e6]; 1 by default.
         restitution : float or "housner"
             eta [-], [0, 1]; or (2.4) for this geometry, 0 where that is negative.
+        thresholds : bool
+            Whether to search all scales of a record at which the outcome changes; of a pulse they are always found.
 
         Raises
         ------
         InvalidArgumentError
-            If a value is out of range.
+            If a value is out of range, missing, or has no meaning for the kind of excitation.
 
         Examples
         --------
         >>> Block(half_width=0.2, half_height=0.8).response("sine", peak_acceleration=4.0, period=0.5).overturned
         False
         """
+        of_pulse: dict[str, float | None] = {"peak_acceleration": peak_acceleration, "period": period}
+        if isinstance(excitation, Record):
+            for name, value in of_pulse.items():
+                if value is not None:
+                    raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
+            factor = 1.0 if scale is None else scale
+            return respond_to_record(self, excitation, scale=factor, restitution=restitution, thresholds=thresholds)
+        if scale is not None:
+            raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
+        if peak_acceleration is None or period is None:
+            missing = next(name for name, value in of_pulse.items() if value is None)
+            raise InvalidArgumentError(missing, None, "a number, for a pulse")
         return respond(BlockProblem(self, excitation, peak_acceleration, period, restitution))
 
     def history(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -25,6 +26,19 @@ DISPLACEMENT = ResponseField(
     "displacement", "f8", "m", "3.2", "largest horizontal displacement of a top corner", "the block overturns"
 )
 
+BLOCK_FIELDS = (
+    ResponseField("half_width", "f8", "m", "2.1", "half width b of the block"),
+    ResponseField("half_height", "f8", "m", "2.1", "half height h of the block"),
+    ResponseField("half_diagonal", "f8", "m", "2.2", "half-diagonal R of the block"),
+    ResponseField("alpha", "f8", "rad", "2.1", "slenderness angle"),
+    ResponseField("frequency_parameter", "f8", "rad s-1", "2.2", "frequency parameter p"),
+    ResponseField("uplift_acceleration", "f8", "m s-2", "2.1", "smallest ground acceleration that starts rocking"),
+)
+"""Fields of a block."""
+
+SLENDERNESS = ResponseField("slenderness", "f8", "1", "5.3", "dimensionless slenderness g tan(alpha)/a_g")
+RESTITUTION = ResponseField("restitution", "f8", "1", "2.4", "coefficient of restitution eta")
+
 FIELDS = (
     ROTATION,
     DISPLACEMENT,
@@ -34,17 +48,12 @@ FIELDS = (
     EXCEEDED_ALPHA,
     PEAK_ROTATION,
     ERROR_BOUND,
-    ResponseField("half_width", "f8", "m", "2.1", "half width b of the block"),
-    ResponseField("half_height", "f8", "m", "2.1", "half height h of the block"),
-    ResponseField("half_diagonal", "f8", "m", "2.2", "half-diagonal R of the block"),
-    ResponseField("alpha", "f8", "rad", "2.1", "slenderness angle"),
-    ResponseField("frequency_parameter", "f8", "rad s-1", "2.2", "frequency parameter p"),
-    ResponseField("uplift_acceleration", "f8", "m s-2", "2.1", "smallest ground acceleration that starts rocking"),
+    *BLOCK_FIELDS,
     ResponseField("peak_acceleration", "f8", "m s-2", "3.2", "peak ground acceleration a_g"),
     ResponseField("period", "f8", "s", "3.2", "period T_p of the pulse"),
-    ResponseField("slenderness", "f8", "1", "5.3", "dimensionless slenderness g tan(alpha)/a_g"),
+    SLENDERNESS,
     ResponseField("frequency_ratio", "f8", "1", "5.3", "frequency ratio omega_g/p"),
-    ResponseField("restitution", "f8", "1", "2.4", "coefficient of restitution eta"),
+    RESTITUTION,
 )
 """Fields of a response in SI units, in order; units as CF writes them."""
 
@@ -152,8 +161,7 @@ class BlockResponse:
     def to_xarray(self) -> xr.Dataset:
         """The fields as a data set of scalars, with units, meanings and equation numbers."""
         values = self.to_dict() | {OUTCOME.name: int(self.outcome)}
-        variables = {field.name: ((), values[field.name], {"units": field.unit} | field.attributes) for field in FIELDS}
-        return xr.Dataset(variables, attrs={"pulse": as_pulse(self.problem.pulse).name})
+        return scalar_dataset(FIELDS, values, pulse=as_pulse(self.problem.pulse).name)
 
     def to_pandas(self) -> pd.Series:
         """The fields as a series; units are those of `to_xarray`."""
@@ -164,23 +172,43 @@ class BlockResponse:
         return f"<rocking.BlockResponse: {self._summary()}>"
 
     def _repr_html_(self) -> str:
-        values = self.to_dict()
-        rows = "".join(
-            f"<tr><td>{escape(field.meaning)}</td><td>{escape(_text(values[field.name]))}</td>"
-            f"<td>{'' if field.unit == '1' else escape(field.unit)}</td></tr>"
-            for field in FIELDS
-        )
-        return f"<p>{escape(self._summary())}</p><table>{rows}</table>"
+        return html_table(self._summary(), FIELDS, self.to_dict())
 
     def _summary(self) -> str:
-        block, problem = self.block, self.problem
+        problem = self.problem
+        pulse = f"{as_pulse(problem.pulse).name} of {problem.peak_acceleration:.4g} m/s2 and {problem.period:.4g} s"
         count = f"{self.impacts} impact{'' if self.impacts == 1 else 's'} during the pulse"
-        moved = f": peak rotation {math.degrees(self.rotation):.4g} deg, top displacement {self.displacement:.4g} m"
-        rocked = f"{moved}, {count}" if self.outcome == Outcome.SAFE else ""
-        return (
-            f"{self.outcome.sentence}{rocked}; block of {2 * block.half_width:.4g} m x {2 * block.half_height:.4g} m "
-            f"under {as_pulse(problem.pulse).name} of {problem.peak_acceleration:.4g} m/s2 and {problem.period:.4g} s"
-        )
+        happened = summary(self.outcome, count, self.rotation, self.displacement)
+        return f"{happened}; block of {describe_size(self.block)} under {pulse}"
+
+
+def summary(outcome: Outcome, impacts: str, rotation: float, displacement: float) -> str:
+    """The outcome in words; if it survives also its rotation [rad], displacement [m] and impacts."""
+    if outcome != Outcome.SAFE:
+        return outcome.sentence
+    peak = f"peak rotation {math.degrees(rotation):.4g} deg, top displacement {displacement:.4g} m"
+    return f"{outcome.sentence}: {peak}, {impacts}"
+
+
+def describe_size(block: Block) -> str:
+    """Width and height of a block in words."""
+    return f"{2 * block.half_width:.4g} m x {2 * block.half_height:.4g} m"
+
+
+def scalar_dataset(fields: tuple[ResponseField, ...], values: Mapping[str, Any], **attributes: str) -> xr.Dataset:
+    """A data set of scalars with units, meanings and equation numbers."""
+    variables = {one.name: ((), values[one.name], {"units": one.unit} | one.attributes) for one in fields}
+    return xr.Dataset(variables, attrs=attributes)
+
+
+def html_table(caption: str, fields: tuple[ResponseField, ...], values: Mapping[str, Any]) -> str:
+    """A paragraph and a table of meanings, values and units."""
+    rows = "".join(
+        f"<tr><td>{escape(one.meaning)}</td><td>{escape(_text(values[one.name]))}</td>"
+        f"<td>{'' if one.unit == '1' else escape(one.unit)}</td></tr>"
+        for one in fields
+    )
+    return f"<p>{escape(caption)}</p><table>{rows}</table>"
 
 
 def _text(value: Any) -> str:

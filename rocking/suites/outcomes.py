@@ -13,13 +13,13 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking.dimensional.problem import restitution_of
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
-from rocking.suites.scales import restitution_of
 
 Array = NDArray[np.float64]
 

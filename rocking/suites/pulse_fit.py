@@ -17,11 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.amplitude import critical_amplitude
+from rocking.dimensional.record_scales import overturning_scale
 from rocking.errors import InvalidArgumentError, one_of
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
-from rocking.suites.scales import overturning_scale
 from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
 
 Array = NDArray[np.float64]

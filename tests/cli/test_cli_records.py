@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import rocking
 from rocking.cli.app import app
-from rocking.suites.block_response import block_response
+from rocking.dimensional.record_response import respond_to_record
 from rocking.suites.configuration import suite_configuration
 
 ROOT = Path(__file__).parents[2]
@@ -46,11 +46,11 @@ def small(tmp_path_factory):
 
 def test_record_in_three_formats():
     block, motion = rocking.Block(0.25, 1.0), rocking.read_record(NAPA)
-    expected = block_response(motion, block, scale=1.1)
+    expected = respond_to_record(block, motion, scale=1.1)
     result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
     assert result["peak_rotation"] == float(expected.response.peak_rotation)
-    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.peak_rotation))
-    assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.peak_rotation))
+    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
+    assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
     assert result["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
     assert result["peak_acceleration"] == motion.peak_acceleration
     assert result["warnings"] == list(expected.warnings)

@@ -7,10 +7,10 @@ from typing import Annotated
 from pydantic import BaseModel, Field
 
 from rocking.constants import STANDARD_GRAVITY
+from rocking.dimensional.record_scales import HIGHEST_SCALE
 from rocking.errors import in_range, one_of
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
 from rocking.excitation.records.record import UNITS
-from rocking.suites.scales import HIGHEST_SCALE
 from rocking_api.models.blocks import RANGES, HousnerOrNumber, quantity
 from rocking_api.models.params import Format, Params, check_value
 from rocking_api.models.responses import VERSION, ContactResponse

@@ -8,15 +8,16 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
+from rocking.dimensional.problem import restitution_of
+from rocking.dimensional.record_response import respond_to_record
+from rocking.dimensional.record_scales import ScaleThresholds
 from rocking.excitation.records.readers.read_record import parse_record
 from rocking.excitation.records.record import Record
 from rocking.history.contact import COLUMNS, contact_extremes
 from rocking.history.record_history import record_history
 from rocking.history.record_motion import build_record_motion
 from rocking.model.block import Block
-from rocking.suites.block_response import block_response
 from rocking.suites.pulse_fit import fit_pulse
-from rocking.suites.scales import ScaleThresholds, restitution_of
 from rocking_api.http.batch import limited_body
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
@@ -103,8 +104,8 @@ async def _read(params: RecordParams, request: Request, service: Service) -> Rec
 
 def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
     block = Block(params.half_width, params.half_height, params.gravity)
-    found = block_response(
-        record, block, scale=params.scale, restitution=params.restitution, thresholds=params.thresholds, stop=stop
+    found = respond_to_record(
+        block, record, scale=params.scale, restitution=params.restitution, thresholds=params.thresholds, stop=stop
     )
     motion = build_record_motion(
         record,
@@ -126,8 +127,8 @@ def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> R
         meaning=contact.sentence,
         impacts=int(found.response.impacts),
         peak_rotation=finite(float(found.response.peak_rotation)),
-        peak_rotation_deg=finite(math.degrees(found.peak_rotation)),
-        top_displacement=finite(found.top_displacement),
+        peak_rotation_deg=finite(math.degrees(found.rotation)),
+        top_displacement=finite(found.displacement),
         alpha_deg=math.degrees(block.alpha),
         half_diagonal=block.half_diagonal,
         frequency_parameter=block.frequency_parameter,

@@ -4,15 +4,32 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
+from rocking.dimensional.problem import restitution_of
+from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, scale_thresholds
+from rocking.dimensional.response import (
+    BLOCK_FIELDS,
+    DISPLACEMENT,
+    RESTITUTION,
+    ROTATION,
+    SLENDERNESS,
+    describe_size,
+    html_table,
+    scalar_dataset,
+    summary,
+)
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
+from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION, ResponseField
 from rocking.model.outcome import Outcome
 from rocking.model.response import Response
 from rocking.solver.records.record_response import record_response
-from rocking.suites.scales import HIGHEST_SCALE, ScaleThresholds, restitution_of, scale_thresholds
 
 MARGIN = 0.05
 """Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
@@ -30,63 +47,149 @@ MAX_RESAMPLED = 400_000
 """Most samples of the refined record; a longer one is not compared."""
 
 
-@dataclass(frozen=True)
-class BlockResponse:
-    """Response of a block to a record.
+FIELDS = (
+    ROTATION,
+    DISPLACEMENT,
+    OVERTURNED,
+    OUTCOME,
+    IMPACTS,
+    EXCEEDED_ALPHA,
+    PEAK_ROTATION,
+    *BLOCK_FIELDS,
+    ResponseField("scale", "f8", "1", "2.2", "factor of the record"),
+    ResponseField("peak_acceleration", "f8", "m s-2", "2.2", "peak ground acceleration of the scaled record"),
+    SLENDERNESS,
+    RESTITUTION,
+)
+"""Fields of the response to a record in SI units, in order."""
+
+
+@dataclass(frozen=True, repr=False)
+class BlockRecordResponse:
+    """What happens to a block under a record.
 
     Attributes
     ----------
-    response : Response
-        In groups: peak rotation over alpha, outcome, impacts.
+    block : Block
+        The block.
+    record : Record
+        Ground motion, without the factor.
+    scale : float
+        Factor of the record [-].
     restitution : float
         eta [-].
-    slenderness : float
-        g tan(alpha)/PGA of the scaled record [-].
-    peak_rotation : float
-        max |theta| [rad]; nan if it overturns.
-    top_displacement : float
-        Largest horizontal displacement of the top corner above the pivot [m]; nan if it overturns.
+    response : Response
+        In groups, arrays of shape ().
     resampled : Response or None
-        The response to the record interpolated band-limited at an eighth of its step, without resampling the block;
-        None for a record that would be too long.
+        The response to the record interpolated band-limited at an eighth of its step; None for a record that would be
+        too long.
     thresholds : ScaleThresholds or None
         Scales of the record at which the outcome changes; None if they were not asked for.
     warnings : tuple of str
-        Where the answer is in doubt.
+        Where the response is in doubt.
     """
 
-    response: Response
+    block: Block
+    record: Record
+    scale: float
     restitution: float
-    slenderness: float
-    peak_rotation: float
-    top_displacement: float
+    response: Response
     resampled: Response | None
     thresholds: ScaleThresholds | None
     warnings: tuple[str, ...]
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Peak ground acceleration of the scaled record [m/s2]."""
+        return self.scale * self.record.peak_acceleration
+
+    @property
+    def slenderness(self) -> float:
+        """g tan(alpha)/PGA of the scaled record [-]."""
+        return self.block.uplift_acceleration / self.peak_acceleration
 
     @property
     def outcome(self) -> Outcome:
         """The final outcome."""
         return Outcome(int(self.response.outcome))
 
+    @property
+    def overturned(self) -> bool:
+        """Whether the block overturns in the end."""
+        return bool(self.response.overturned)
 
-def block_response(
-    record: Record,
+    @property
+    def impacts(self) -> int:
+        """Number of impacts until the outcome is certain."""
+        return int(self.response.impacts)
+
+    @property
+    def exceeded_alpha(self) -> bool:
+        """Whether |theta| passed alpha at some time."""
+        return bool(self.response.exceeded_alpha)
+
+    @property
+    def peak_rotation(self) -> float:
+        """Peak rotation max |theta|/alpha [-]; nan where the block overturns, 0 without uplift."""
+        return float(self.response.peak_rotation)
+
+    @property
+    def rotation(self) -> float:
+        """Peak rotation [rad]; nan where the block overturns, 0 without uplift."""
+        return self.peak_rotation * self.block.alpha
+
+    @property
+    def displacement(self) -> float:
+        """Largest horizontal displacement of a top corner [m]; nan where the block overturns."""
+        return self.block.top_displacement(self.rotation)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields of `FIELDS` with numbers, and the outcome by its name."""
+        values: dict[str, Any] = {}
+        for field in FIELDS:
+            value = getattr(self if hasattr(self, field.name) else self.block, field.name)
+            values[field.name] = value.name if field is OUTCOME else float(value) if field.dtype == "f8" else value
+        return values
+
+    def to_xarray(self) -> xr.Dataset:
+        """The fields as a data set of scalars, with units, meanings and equation numbers."""
+        return scalar_dataset(FIELDS, self.to_dict() | {OUTCOME.name: int(self.outcome)}, record=self.record.name)
+
+    def to_pandas(self) -> pd.Series:
+        """The fields as a series; units are those of `to_xarray`."""
+        return pd.Series({"record": self.record.name} | self.to_dict())
+
+    def __repr__(self) -> str:
+        """What happened, in words and SI units."""
+        return f"<rocking.BlockRecordResponse: {self._summary()}>"
+
+    def _repr_html_(self) -> str:
+        return html_table(self._summary(), FIELDS, self.to_dict())
+
+    def _summary(self) -> str:
+        motion = f"{self.record.name} scaled to {self.peak_acceleration:.4g} m/s2"
+        count = f"{self.impacts} impact{'' if self.impacts == 1 else 's'}"
+        happened = summary(self.outcome, count, self.rotation, self.displacement)
+        return f"{happened}; block of {describe_size(self.block)} under {motion}"
+
+
+def respond_to_record(
     block: Block,
+    record: Record,
     *,
     scale: float = 1.0,
     restitution: str | float = "housner",
     thresholds: bool = False,
     stop: StopFlag | None = None,
-) -> BlockResponse:
+) -> BlockRecordResponse:
     """Response of a block to a record, by (2.2).
 
     Parameters
     ----------
+    block : Block
+        The block.
     record : Record
         Ground motion.
-    block : Block
-        Block.
     scale : float
         Factor of the record [-], (0, 1e6].
     restitution : "housner" or float
@@ -125,13 +228,12 @@ def block_response(
     if thresholds:
         highest = min(max(10.0 * uplift, 2.0 * float(factor)), HIGHEST_SCALE)
         searched = scale_thresholds(record, block, restitution=eta, highest=highest, stop=stop)
-    peak = float(found.peak_rotation) * block.alpha
-    return BlockResponse(
-        response=found,
+    return BlockRecordResponse(
+        block=block,
+        record=record,
+        scale=float(factor),
         restitution=eta,
-        slenderness=uplift / float(factor),
-        peak_rotation=peak,
-        top_displacement=2.0 * block.half_height * math.sin(peak),
+        response=found,
         resampled=refined,
         thresholds=searched,
         warnings=(

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.dimensional.problem import restitution_of
+from rocking.errors import in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
-from rocking.model.checks import check
-from rocking.model.parameters import RESTITUTION
 from rocking.solver.records.record_response import record_response
 
 Array = NDArray[np.float64]
@@ -52,21 +51,6 @@ class ScaleThresholds:
     scale: Array
     overturns_above: NDArray[np.bool_]
     searched: tuple[float, float]
-
-
-def restitution_of(block: Block, restitution: str | float) -> float:
-    """eta [-] of a block from "housner", (2.4) and 0 where that is negative, or from a number in [0, 1].
-
-    Raises
-    ------
-    InvalidArgumentError
-        For anything else.
-    """
-    if isinstance(restitution, str):
-        if restitution != "housner":
-            raise InvalidArgumentError("restitution", restitution, f"'housner' or a number in {RESTITUTION.interval}")
-        return block.inelastic_restitution
-    return float(check(RESTITUTION, restitution))
 
 
 def scale_thresholds(
