@@ -94,10 +94,10 @@ def test_a_block_at_rest_after_chatter_uplifts_again(alpha):
 
 @pytest.mark.parametrize("alpha", [None, 0.25])
 def test_equal_uplifts_separated_by_rest_give_equal_motion(alpha):
-    question = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.0, "alpha": alpha}
-    one = rocking.peak_response("half_sine", **question)
-    two = rocking.peak_response("sine", **question)
-    assert two.peak_rotation >= one.peak_rotation
+    groups = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.0, "alpha": alpha}
+    one = rocking.peak_response("half_sine", **groups)
+    two = rocking.peak_response("sine", **groups)
+    assert two.peak_rotation >= one.peak_rotation * (1.0 - 1e-14)  # to rounding
     assert two.impacts >= 1
 
 

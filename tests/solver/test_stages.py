@@ -54,9 +54,10 @@ def test_stages_and_event_loop_agree(name):
     pulse = rocking.get_pulse(name)
     s, w, eta = cells(1200, SIGNED.index(name))
     stages, loop = by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta)
-    # where the peaks of two uplifts differ by rounding only, either may be the first
+    # where the peaks of two uplifts differ by rounding only, which 1/(1 - s) amplifies, either may be the first
     tie = (stages["peak_mode"] - loop["peak_mode"]) % 65536 == 0
-    tie &= np.abs(stages["peak_rotation"] - loop["peak_rotation"]) <= 1e-10 * loop["peak_rotation"]
+    rounding = 1e-10 + 1e-15 / np.maximum(1.0 - s, 1e-13)
+    tie &= np.abs(stages["peak_rotation"] - loop["peak_rotation"]) <= rounding * loop["peak_rotation"]
     assert np.count_nonzero(stages["peak_mode"] != loop["peak_mode"]) <= 20
     for field in WHOLE:
         decided = ~tie if field == "peak_mode" else slice(None)

@@ -35,6 +35,16 @@ def record_of(job):
     return f"{records.FOLDER}/{job}.json"
 
 
+def spectrum_files(pulse, etas):
+    """Spectrum cubes of a pulse."""
+    return [f"results/spectra/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+
+
+def overturning_files(pulse, etas):
+    """Boundaries of a pulse."""
+    return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+
+
 def provenance(rule_name, scripts, settings, products):
     """Digests of the code and the settings behind a rule's products, which are listed in the manifest.
 

@@ -10,14 +10,6 @@ wildcard_constraints:
     eta=r"[01]\.[0-9]{2}",
 
 
-def spectrum_files(pulse, etas):
-    return [f"results/spectra/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
-
-
-def overturning_files(pulse, etas):
-    return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
-
-
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",

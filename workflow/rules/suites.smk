@@ -6,11 +6,8 @@ SUITE_FOLDER = f"results/suites/{SUITE['name']}"
 SUITE_FIGURES = {"curves": "fragility", "outcomes": "outcomes", **({"map": "outcomes"} if SUITE["map"] else {})}
 # what the response of a record does not depend on
 OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95, "hazard": None}
-
-
-def suite_record(job):
-    """Path of the record with the digests of the products of a job of this suite."""
-    return record_of(f"suites/{SUITE['name']}/{job}")
+# names of the jobs, of which `record_of` gives the paths of the records of their products
+SUITE_JOBS = f"suites/{SUITE['name']}"
 
 
 wildcard_constraints:
@@ -22,7 +19,7 @@ rule suite_record:
         file=lambda wildcards: str(SUITE_FILES[wildcards.file]),
     output:
         outcomes=f"{SUITE_FOLDER}/records/{{file}}.nc",
-        record=suite_record("records/{file}"),
+        record=record_of(f"{SUITE_JOBS}/records/{{file}}"),
     log:
         f"logs/suites/{SUITE['name']}/{{file}}.log",
     benchmark:
@@ -48,7 +45,7 @@ rule suite_fragility:
         outcomes=f"{SUITE_FOLDER}/outcomes.nc",
         fragility=f"{SUITE_FOLDER}/fragility.nc",
         table=f"{SUITE_FOLDER}/fragility.csv",
-        record=suite_record("fragility"),
+        record=record_of(f"{SUITE_JOBS}/fragility"),
     log:
         f"logs/suites/{SUITE['name']}/fragility.log",
     benchmark:
@@ -77,7 +74,7 @@ for _figure, _source in SUITE_FIGURES.items():
             **{_source: f"{SUITE_FOLDER}/{_source}.nc"},
         output:
             **_files,
-            record=suite_record(f"figures/{_figure}"),
+            record=record_of(f"{SUITE_JOBS}/figures/{_figure}"),
         log:
             f"logs/suites/{SUITE['name']}/{_figure}.log",
         benchmark:
@@ -102,11 +99,11 @@ rule suite_manifest:
         records=[
             *expand(rules.suite_record.output.record, file=SUITE_FILES),
             rules.suite_fragility.output.record,
-            *(suite_record(f"figures/{figure}") for figure in SUITE_FIGURES),
+            *(record_of(f"{SUITE_JOBS}/figures/{figure}") for figure in SUITE_FIGURES),
         ],
     output:
         manifest=f"{SUITE_FOLDER}/manifest.json",
-        record=suite_record("manifest"),
+        record=record_of(f"{SUITE_JOBS}/manifest"),
     log:
         f"logs/suites/{SUITE['name']}/manifest.log",
     benchmark:
