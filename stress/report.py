@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from stress.families import BY_NAME
+from stress.speed import MAX_PER_IMPACT
 
 MAX_ERROR_IN_ULPS = 1000.0
 """Maximum error of the peak over the effect of one ulp of the input: three of sixteen digits lost by rounding."""
@@ -89,7 +90,7 @@ def violations(records: Mapping[str, Mapping[str, Any]]) -> list[str]:
                 largest_error if largest_error > MAX_ERROR_IN_ULPS else 0,
                 "times the effect of one ulp is the largest error",
             ),
-            "times": (slow if slow > 1.0 else 0, "ordinary cells per impact is the time of a slow cell"),
+            "times": (slow if slow > MAX_PER_IMPACT else 0, "ordinary cells per impact is the time of a slow cell"),
         }
         checked = {requirement: checked[requirement] for requirement in BY_NAME[name].requirements}
         for symmetry in EXACT_SYMMETRIES:

@@ -18,8 +18,11 @@ FEW, MANY = 8, 256
 LONG_CELL = 20.0
 """Time above which few copies are used [us]."""
 
-SLOW = 100.0
+SLOW = 400.0
 """Time over the median ordinary cell above which a cell is slow and must have many impacts."""
+
+MAX_PER_IMPACT = 8.0
+"""Most ordinary cells that an impact of a slow cell may take; an ordinary slender cell is solved in a SIMD vector."""
 
 
 def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:

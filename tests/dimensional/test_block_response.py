@@ -169,3 +169,54 @@ def test_dimensionless_response_as_a_table():
     single = rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
     assert len(single.to_pandas()) == 1
     assert "rocks and comes to rest" in single._repr_html_()
+
+
+RECORD = rocking.Record(9.81 * 0.5 * np.sin(np.arange(400) * 0.05), 0.01, unit="m/s2", name="made up")
+
+
+def test_a_record_with_a_scale_is_solved_in_groups():
+    block = rocking.Block(half_width=0.2, half_height=0.8)
+    found = block.response(RECORD, scale=0.55)
+    expected = rocking.record_response(
+        RECORD,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=block.uplift_acceleration / (0.55 * RECORD.peak_acceleration),
+        restitution=block.housner_restitution,
+        alpha=block.alpha,
+    )
+    assert (found.outcome, found.impacts) == (expected.outcome, expected.impacts)
+    assert found.peak_rotation == expected.peak_rotation > 0.0
+    assert found.rotation == found.peak_rotation * block.alpha
+    assert found.displacement == pytest.approx(2.0 * block.half_height * math.sin(found.rotation))
+    assert repr(found).startswith("<rocking.BlockRecordResponse: rocks and comes to rest: peak rotation")
+    assert "under made up scaled to 2.69" in repr(found)
+    data = found.to_xarray()
+    assert data["displacement"].attrs["units"] == "m"
+    assert float(data["scale"]) == 0.55
+    assert data.attrs["record"] == found.to_pandas()["record"] == "made up"
+    assert found.to_pandas()["outcome"] == "SAFE"
+    assert "<td>peak rotation max |theta|</td>" in found._repr_html_()
+
+
+def test_a_record_at_a_large_scale_overturns_and_has_thresholds():
+    found = rocking.Block(half_width=0.2, half_height=0.8).response(RECORD, scale=4.0, thresholds=True)
+    assert found.overturned
+    assert math.isnan(found.rotation)
+    assert found.thresholds.scale[0] < 4.0
+
+
+@pytest.mark.parametrize(
+    ("excitation", "arguments", "parameter"),
+    [
+        (RECORD, {"peak_acceleration": 3.0}, "peak_acceleration"),
+        (RECORD, {"period": 0.5}, "period"),
+        (RECORD, {"scale": 0.0}, "scale"),
+        ("sine", {"peak_acceleration": 3.0, "period": 0.5, "scale": 1.0}, "scale"),
+        ("sine", {"peak_acceleration": 3.0}, "period"),
+        ("sine", {"period": 0.5}, "peak_acceleration"),
+    ],
+)
+def test_arguments_of_the_other_kind_of_excitation_are_refused(excitation, arguments, parameter):
+    with pytest.raises(InvalidArgumentError) as caught:
+        rocking.Block(half_width=0.2, half_height=0.8).response(excitation, **arguments)
+    assert caught.value.parameter == parameter
