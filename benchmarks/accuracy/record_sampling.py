@@ -18,7 +18,7 @@ from rocking.excitation.records.readers.read_record import read_record
 from rocking.excitation.records.record import Record
 from rocking.solver.records.record_response import record_response
 
-FOLDER = Path(__file__).parents[2] / "tests" / "data" / "records"
+FOLDER = Path(__file__).parents[2] / "workflow" / "motions"
 FILES = [FOLDER / f"{name}.csv" for name in ("napa_HNE", "napa_HNN", "synthetic_31", "synthetic_32", "synthetic_33")]
 FACTOR = 8
 LARGE = 0.3

@@ -72,7 +72,7 @@ def test_seismic_formats_without_obspy_name_the_package(monkeypatch) -> None:
 
 
 def test_the_south_napa_record_is_read() -> None:
-    record = rocking.read_record("tests/data/records/napa_HNE.csv")
+    record = rocking.read_record("workflow/motions/napa_HNE.csv")
     assert (record.samples, record.time_step) == (6997, 0.005)
     assert record.peak_acceleration == pytest.approx(3.656, abs=2e-3)
 

@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 
 from rocking.excitation.records.record import Record
 
-FOLDER = Path(__file__).parents[2] / "data" / "records"
+ROOT = Path(__file__).parents[3]
+MOTIONS = ROOT / "workflow" / "motions"
+TABLE = ROOT / "tests" / "data" / "records" / "responses.csv"
 
 
 @lru_cache(maxsize=8)
 def samples(name: str) -> NDArray[np.float64]:
     """Return the acceleration [g] of a record of the table."""
-    return np.loadtxt(FOLDER / f"{name}.csv", delimiter=",", skiprows=1)[:, 1]
+    return np.loadtxt(MOTIONS / f"{name}.csv", delimiter=",", skiprows=1)[:, 1]
 
 
 def record(name: str, time_step: float) -> Record:
@@ -40,7 +42,7 @@ class Row:
 def rows() -> list[Row]:
     """Return all cases; the slenderness refers to the samples used."""
     found = []
-    with (FOLDER / "responses.csv").open(newline="") as stream:
+    with TABLE.open(newline="") as stream:
         for row in csv.DictReader(stream):
             whole = samples(row["record"])
             first, last = map(int, row["n"].split(":"))
