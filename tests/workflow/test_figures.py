@@ -21,7 +21,8 @@ from tests.workflow_fixtures import PROJECT, SMOKE
 from workflow.figures import figure_04, figure_09, figure_10, similar_histories
 from workflow.figures.boundary_lines import Lines, lines_of
 from workflow.scripts.figure import main
-from workflow.scripts.overturning import curves_of, described
+from workflow.scripts.overturning import described
+from workflow.scripts.overturning_part import curves_of
 
 CAPTIONS = (PROJECT / "docs/figures.md").read_text(encoding="utf-8")
 CONFIG = PROJECT / "workflow/config"

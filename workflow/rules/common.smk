@@ -26,6 +26,7 @@ try:
 except ConfigurationError as error:
     sys.exit(f"Configuration refused: {error}")  # one line; WorkflowError would add where in this file it was raised
 
+PARTS = "results/.parts"  # parts of products, deleted when the product is made
 PRODUCTS = {}  # path -> rule and digests, for the manifest
 FINISHED = []  # files of a complete run
 
@@ -33,6 +34,11 @@ FINISHED = []  # files of a complete run
 def record_of(job):
     """Path of the record with the digests of the products of a job."""
     return f"{records.FOLDER}/{job}.json"
+
+
+def part_of(job, provenance):
+    """Path of a part of a product, with a digest of its code and settings: no part of others is taken for it."""
+    return f"{PARTS}/{job}.{settings_digest(provenance)[:16]}.nc"
 
 
 def spectrum_files(pulse, etas):

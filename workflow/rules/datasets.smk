@@ -2,12 +2,13 @@
 # because starting Python and loading the compiled solver takes longer than filling a cube. These jobs have priority, as
 # figures and claims depend on them.
 ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
+ANGLES = {str(angle): angle for angle in config["grid"]["alpha_deg"]}
 PULSES = config["pulses"]
 
 
 wildcard_constraints:
     pulse="[a-z0-9_]+",
-    eta=r"[01]\.[0-9]{2}",
+    angle="|".join(map(re.escape, ANGLES)),
 
 
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
@@ -51,7 +52,31 @@ rule spectra:
         "../scripts/spectra.py"
 
 
+# one job for each pulse and angle traces the curves of all restitutions, which share the grid
+rule overturning_part:
+    output:
+        part=temp(part_of("overturning/{pulse}-{angle}", OVERTURNING_PROVENANCE)),
+    log:
+        "logs/overturning/{pulse}-{angle}.log",
+    benchmark:
+        "logs/benchmarks/overturning-{pulse}-{angle}.tsv"
+    priority: 3
+    params:
+        pulse=lambda wildcards: wildcards.pulse,
+        restitution=config["restitution"],
+        alpha_deg=lambda wildcards: ANGLES[wildcards.angle],
+        nodes=lambda wildcards: config["boundary"]["nodes_rigid" if ANGLES[wildcards.angle] else "nodes"],
+        slenderness=config["boundary"]["slenderness"],
+        frequency_ratio=config["boundary"]["frequency_ratio"],
+    message:
+        "Overturning boundaries of the {wildcards.pulse} pulse at {wildcards.angle} degrees"
+    script:
+        "../scripts/overturning_part.py"
+
+
 rule overturning:
+    input:
+        parts=expand(rules.overturning_part.output.part, angle=ANGLES, allow_missing=True),
     output:
         boundaries=overturning_files("{pulse}", ETAS),
         record=record_of("overturning/{pulse}"),
@@ -59,11 +84,11 @@ rule overturning:
         "logs/overturning/{pulse}.log",
     benchmark:
         "logs/benchmarks/overturning-{pulse}.tsv"
-    priority: 2
+    priority: 3
     params:
-        **OVERTURNING_SETTINGS,
-        provenance=OVERTURNING_PROVENANCE,
         pulse=lambda wildcards: wildcards.pulse,
+        restitution=config["restitution"],
+        provenance=OVERTURNING_PROVENANCE,
     message:
         "Overturning boundaries of the {wildcards.pulse} pulse"
     script:

@@ -15,7 +15,8 @@ from workflow.run_lock import join_run
 def run(task: Callable[..., None], snakemake: Any) -> None:
     """Call `task` with the named inputs, outputs and parameters of the job; its output goes to the log of the job.
 
-    The output `record` is not passed to the task: the digests of the other outputs are written to it afterwards.
+    The output `record` is not passed to the task: the digests of the other outputs are written to it afterwards. Parts
+    of products, which end with a digest of their own, have no record.
 
     Parameters
     ----------
@@ -26,13 +27,14 @@ def run(task: Callable[..., None], snakemake: Any) -> None:
     """
     join_run()
     paths = {name: _paths(value) for part in (snakemake.input, snakemake.output) for name, value in part.items()}
-    record = paths.pop("record")
+    record = paths.pop("record", None)
     log = Path(snakemake.log[0])
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as stream, redirect_stdout(stream), redirect_stderr(stream):
         try:
             task(**paths, **dict(snakemake.params.items()))
-            write_record(record, (path for path in map(Path, snakemake.output) if path != record))
+            if record:
+                write_record(record, (path for path in map(Path, snakemake.output) if path != record))
         except BaseException:
             traceback.print_exc()  # into the log, which Snakemake shows when a job fails
             raise
