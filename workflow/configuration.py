@@ -23,14 +23,20 @@ from pydantic import (
 
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import PULSE_NAMES
+from rocking.spectra.bands import HALO_ABOVE, HALO_BELOW, bands
 from rocking.suites.configuration import suite_configuration
 from workflow.scripts.axes import steps_between
 
-NODES = 200_000_000
-"""Largest number of nodes of the cubes, or of the boundary grids, of one pulse, which are in memory together."""
+HALO = HALO_BELOW + HALO_ABOVE
 
-BYTES = 125
-"""Memory per node while the cubes of a pulse are computed [bytes], measured from 0.2 to 8 million nodes."""
+NODES = 200_000_000
+"""Largest number of nodes of a tile, of a cube, or of the boundary grids of one pulse, which are in memory together."""
+
+BYTES = 95
+"""Memory per node while a tile is computed [bytes], measured from 0.5 to 12 million nodes."""
+
+TILE_NODES = 12_000_000
+"""Nodes that are computed for a tile, about, unless the configuration states `tile_rows`: 1.3 GB and some minutes."""
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
@@ -54,18 +60,21 @@ class Section(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _keys(cls, given: Any) -> Any:
-        """Raise an error unless the keys are the fields."""
-        keys, fields = set(given if isinstance(given, dict) else ()), set(cls.model_fields)
-        if keys != fields:
-            found = [f"unknown key {key}" for key in sorted(map(str, keys - fields))]
-            found += [f"missing key {key}" for key in sorted(fields - keys)]
+        """Raise an error unless the keys are the fields, of which some may be missing."""
+        keys, fields = set(given if isinstance(given, dict) else ()), cls.model_fields
+        found = [f"unknown key {key}" for key in sorted(map(str, keys - set(fields)))]
+        found += [f"missing key {key}" for key in sorted(fields) if fields[key].is_required() and key not in keys]
+        if found:
             raise ValueError(f"{', '.join(found)}; the keys are {', '.join(cls.model_fields) or 'none'}")
         return given
 
 
-def section(**fields: Any) -> Any:
-    """A `Section` with these keys and types of values."""
-    return create_model("Section", __base__=Section, **{name: (kind, ...) for name, kind in fields.items()})
+def section(optional: Mapping[str, Any] | None = None, **fields: Any) -> Any:
+    """A `Section` with these keys and types of values; `optional` ones may be missing."""
+    kinds = {name: (kind, ...) for name, kind in fields.items()} | {
+        name: (kind, None) for name, kind in (optional or {}).items()
+    }
+    return create_model("Section", __base__=Section, **kinds)
 
 
 def leaf(allowed: str, accepts: Callable[[Any], bool]) -> Any:
@@ -226,6 +235,7 @@ FIGURES = section(
 )
 
 CONFIGURATION = section(
+    {"tile_rows": integer(1, NODES)},  # rows of the spectrum cubes that one job computes; products do not depend on it
     title=leaf("a text", lambda value: isinstance(value, str)),
     pulses=PULSE_LIST,
     restitution=Annotated[several(ETA, ascending=True), AfterValidator(_two_decimals)],
@@ -303,17 +313,32 @@ def _listed(value: Any) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
+def tile_bands(config: Mapping[str, Any]) -> list[tuple[int, int]]:
+    """The bands of rows of the spectrum cubes, one for each tile."""
+    return bands(1 + sum(steps_between(**config["grid"]["slenderness"])), _tile_rows(config))
+
+
+def _tile_rows(config: Mapping[str, Any]) -> int:
+    """Rows of a tile, by default so many that it has about `TILE_NODES` nodes with its halo."""
+    grid = config["grid"]
+    of_row = len(config["restitution"]) * len(grid["alpha_deg"]) * grid["frequency_ratio"]["points"]
+    return config.get("tile_rows") or max(TILE_NODES // of_row - HALO, 1)
+
+
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
     """Grids that do not fit into memory, from their sizes."""
     grid, boundary, etas = config["grid"], config["boundary"], len(config["restitution"])
     rows, columns = 1 + sum(steps_between(**grid["slenderness"])), grid["frequency_ratio"]["points"]
     limit = f"allowed: {NODES:,}"
-    if (nodes := len(grid["alpha_deg"]) * rows * columns * etas) > NODES:
-        axes = (
-            f"{len(grid['alpha_deg'])} alpha_deg x {rows} slenderness x {columns} frequency_ratio x {etas} restitution"
-        )
-        needed, most = (f"{count * BYTES / 1e9:.0f} GB" for count in (nodes, NODES))
-        yield f"grid = {axes} = {nodes:,} nodes, {needed} for one pulse; {limit}, {most}"
+    of_row = len(grid["alpha_deg"]) * columns
+    for what, nodes in (
+        ("one restitution", rows * of_row),
+        ("a tile", min(_tile_rows(config) + HALO, rows) * of_row * etas),
+    ):
+        if nodes > NODES:
+            axes = f"{len(grid['alpha_deg'])} alpha_deg x {rows} slenderness x {columns} frequency_ratio"
+            needed, most = (f"{count * BYTES / 1e9:.0f} GB" for count in (nodes, NODES))
+            yield f"grid = {axes} x {etas} restitution: {nodes:,} nodes in {what}, {needed}; {limit}, {most}"
     for key in ("nodes", "nodes_rigid"):
         if (nodes := boundary[key] ** 2 * etas) > NODES:
             yield f"boundary.{key} = {boundary[key]}: {nodes:,} nodes with {etas} restitution; {limit}"

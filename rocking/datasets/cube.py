@@ -163,7 +163,7 @@ def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
     return dataset.assign_attrs({**_GLOBAL, **dataset.attrs, **attributes})
 
 
-def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
+def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str, int] | None = None) -> None:
     """Write a netCDF-4 file atomically; equal content gives equal bytes.
 
     Parameters
@@ -173,6 +173,8 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
         (`append_checksum`). `read_dataset` detects damage by them.
     path : path
         Parent folders are created; an existing file is replaced.
+    chunks : mapping, optional
+        Size of the chunks of the file along dimensions; by default a variable is one chunk.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -181,7 +183,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str) -> None:
     os.close(handle)
     temporary = Path(name)
     try:
-        signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed))
+        signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed, chunks or {}))
         append_checksum(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
@@ -200,6 +202,18 @@ def read_dataset(path: Path | str) -> xr.Dataset:
         If the file is missing, cannot be read, was not written by this package, or is damaged.
     """
     return decode_dataset(read_content(path), path)
+
+
+def open_dataset(path: Path | str) -> xr.Dataset:
+    """Open a file written by `write_dataset` without reading its variables, once the digest at its end is checked.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, cannot be read, was not written by this package, or is damaged.
+    """
+    _raise_if_damaged(read_content(path), path)
+    return xr.open_dataset(path, engine="netcdf4", decode_times=False, cache=False)
 
 
 def read_content(path: Path | str) -> bytes:
@@ -227,9 +241,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
     DatasetError
         If the bytes were not written by this package or are damaged.
     """
-    damage = find_damage(content)
-    if damage is not None:  # the netCDF library does not return for some damaged files
-        raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
+    _raise_if_damaged(content, path)
     try:
         store = NetCDF4DataStore(netCDF4.Dataset("in memory", memory=content))  # type: ignore[no-untyped-call]
         with xr.open_dataset(store, decode_times=False) as opened:
@@ -243,6 +255,12 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
     if written != found:
         raise DatasetError(f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again")
     return dataset
+
+
+def _raise_if_damaged(content: bytes, path: Path | str) -> None:
+    damage = find_damage(content)
+    if damage is not None:  # the netCDF library does not return for some damaged files
+        raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
 
 
 def read_spectrum(path: Path | str) -> xr.Dataset:
@@ -276,14 +294,15 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
     return cube
 
 
-def _encoding(dataset: xr.Dataset) -> dict[str, dict[str, Any]]:
+def _encoding(dataset: xr.Dataset, chunks: Mapping[str, int]) -> dict[str, dict[str, Any]]:
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
         chosen: dict[str, Any] = {"_FillValue": None}
         if name not in dataset.coords and variable.dtype.kind == "f":
             chosen["_FillValue"] = np.nan
         if variable.ndim and variable.size > 64 and variable.dtype.kind in "fiu":
-            chosen |= {"zlib": True, "complevel": 4, "shuffle": True, "chunksizes": variable.shape}
+            sizes = tuple(chunks.get(str(dimension), size) for dimension, size in variable.sizes.items())
+            chosen |= {"zlib": True, "complevel": 4, "shuffle": True, "chunksizes": sizes}
         encoding[str(name)] = chosen
     return encoding
 

@@ -103,9 +103,21 @@ def spectra(
     angles = check_alpha(alpha)
     etas = check(RESTITUTION, restitution)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
+    layers, errors = _layers(grid, etas, angles, barred)
+    errors |= _errors_between_slices(grid, layers, etas, angles)
+    axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
+    for k, eta in enumerate(etas):
+        cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
+        layers[k].clear()  # the caller may keep the cube
+        yield cube.assign_attrs(restitution_slices=etas)
+
+
+def _layers(
+    grid: _Grid, etas: Array, angles: Array, barred: NDArray[np.bool_] | None
+) -> tuple[list[list[GridLayer]], dict[str, Array]]:
+    """The layers by restitution and angle, and the errors (l, k, n - 1, m - 1) of interpolation in their cells."""
     layers: list[list[GridLayer]] = [[] for _ in etas]
-    shape = (etas.size, angles.size, rows.size - 1, columns.size - 1)
-    errors = {name: np.full(shape, np.nan) for name in ("interpolation_error", "restitution_error", "alpha_error")}
+    errors = grid.no_errors(etas, angles)
     for a, angle in enumerate(angles):
         for first in range(0, etas.size, BATCH_SIZE):
             some = etas[first : first + BATCH_SIZE]
@@ -114,22 +126,27 @@ def spectra(
                 bars = None if barred is None else barred[first + k, a]
                 layers[first + k].append(GridLayer.of(grid.mesh, nodes, k, bars))
             made = [layers[first + k][a] for k in range(some.size)]
-            errors["interpolation_error"][first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
+            errors[first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
+    return layers, {"interpolation_error": errors}
+
+
+def _errors_between_slices(
+    grid: _Grid, layers: Sequence[Sequence[GridLayer]], etas: Array, angles: Array
+) -> dict[str, Array]:
+    """The errors (l, k, n - 1, m - 1) of interpolation halfway to the next restitution and to the next angle."""
+    by_eta, by_angle = grid.no_errors(etas, angles), grid.no_errors(etas, angles)
     kinds = [[layer.kinds() for layer in row] for row in layers]
     for a, angle in enumerate(angles):
         along = [row[a] for row in layers], [row[a] for row in kinds]
         intervals = [LevelInterval.of(*along, etas, 1, k) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
         middles = np.array([interval.middle() for interval in intervals])
         for interval, error in zip(intervals, grid.errors_between(intervals, middles, angle, DIRECT), strict=True):
-            errors["restitution_error"][interval.lower, a] = error
+            by_eta[interval.lower, a] = error
     for a in _interval_starts(angles, MAX_SPACING["alpha"]):
         # the equation of motion depends on alpha through its square only
         intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
-        errors["alpha_error"][:, a] = grid.errors_between(intervals, etas, intervals[0].middle())
-    axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
-    for k, eta in enumerate(etas):
-        cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
-        yield cube.assign_attrs(restitution_slices=etas)
+        by_angle[:, a] = grid.errors_between(intervals, etas, intervals[0].middle())
+    return {"restitution_error": by_eta, "alpha_error": by_angle}
 
 
 def _interval_starts(slices: Array, spacing: float) -> list[int]:
@@ -146,6 +163,10 @@ class _Grid:
     columns: Array
     threads: int | None
     stop: StopFlag | None
+
+    def no_errors(self, etas: Array, angles: Array) -> Array:
+        """An array (etas, angles, n - 1, m - 1) of nan, for errors of the cells."""
+        return np.full((etas.size, angles.size, self.mesh.rows.size - 1, self.mesh.columns.size - 1), np.nan)
 
     def nodes(self, etas: Array, angle: float) -> Response:
         """All nodes, for each restitution: shape (n, m, restitutions)."""

@@ -54,16 +54,19 @@ class GridLayer:
 
     @classmethod
     def of(cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None) -> GridLayer:
-        """The k-th restitution of solved nodes (n, m, restitutions); cells `barred` (n - 1, m - 1) have no stencil."""
-        outcome, impacts, mode = nodes.outcome[..., k], nodes.impacts[..., k], nodes.peak_mode[..., k]
+        """The k-th restitution of solved nodes (n, m, restitutions); cells `barred` (n - 1, m - 1) have no stencil.
+
+        The fields are copied: views would keep all fields of all restitutions in memory.
+        """
+        fields = ("peak_rotation", "outcome", "impacts", "exceeded_alpha", "peak_mode")
+        peak, outcome, impacts, exceeded, mode = (np.ascontiguousarray(getattr(nodes, f)[..., k]) for f in fields)
         safe = outcome == Outcome.SAFE
         codes = np.where(interpolated_cells(safe), PEAK, NO_STENCIL)
         codes = np.where(interpolated_cells(safe & (mode % 2 == 1)), SQUARED, codes)
         codes = np.where(_same_overturning(outcome_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
-        peak = np.ascontiguousarray(nodes.peak_rotation[..., k])
-        return cls(mesh, peak, outcome, impacts, nodes.exceeded_alpha[..., k], mode, codes.astype(np.int8))
+        return cls(mesh, peak, outcome, impacts, exceeded, mode, codes.astype(np.int8))
 
     @property
     def smooth(self) -> Flags:

@@ -94,7 +94,7 @@ def test_changed_module_reruns_only_dependent_jobs(smoke_run: Path, tmp_path: Pa
         "rocking/orientation.py": {"table_1", "claims"},
         "rocking/groups/scale_law.py": {"figure_scale_law", "claims"},
         "workflow/figures/figure_07.py": {"figure_07"},
-        "workflow/scripts/spectra.py": {"spectra", "figure_scale_law", "claims"},
+        "workflow/scripts/spectra.py": {"spectrum_tile", "spectra", "figure_scale_law", "claims"},
     }.items():
         before = (project / module).read_text()
         (project / module).write_text(before + "\n# a change\n")

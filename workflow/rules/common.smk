@@ -12,7 +12,7 @@ os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.enviro
 from rocking.datasets.provenance import code_digest, settings_digest
 from rocking.suites.configuration import suite_configuration
 from workflow import records
-from workflow.configuration import ConfigurationError, check, restitutions
+from workflow.configuration import ConfigurationError, check, restitutions, tile_bands
 from workflow.run_lock import RUN_ID, RunningError, acquire
 
 from snakemake.exceptions import WorkflowError

@@ -1,20 +1,22 @@
-# Spectrum cubes and overturning boundaries: one job per pulse makes the files of all its coefficients of restitution,
-# because starting Python and loading the compiled solver takes longer than filling a cube. These jobs have priority, as
-# figures and claims depend on them.
+# Overturning boundaries, then spectrum cubes. Boundaries are traced by pulse and angle, cubes filled by pulse and band of
+# rows, each for all coefficients of restitution, which share the starts of the motions; one job of the pulse joins these
+# parts to the files of each restitution. These jobs have priority, as figures and claims depend on them.
 ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
 ANGLES = {str(angle): angle for angle in config["grid"]["alpha_deg"]}
+BANDS = {f"{first}-{last}": (first, last) for first, last in tile_bands(config)}
 PULSES = config["pulses"]
 
 
 wildcard_constraints:
     pulse="[a-z0-9_]+",
     angle="|".join(map(re.escape, ANGLES)),
+    band="|".join(BANDS),
 
 
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",
-    ["scripts/spectra.py"],
+    ["scripts/spectra.py", "scripts/spectrum_tile.py"],
     SPECTRUM_SETTINGS,
     [path for pulse in PULSES for path in spectrum_files(pulse, ETAS)],
 )
@@ -29,27 +31,6 @@ OVERTURNING_PROVENANCE = provenance(
     OVERTURNING_SETTINGS,
     [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
 )
-
-
-rule spectra:
-    input:
-        boundaries=overturning_files("{pulse}", ETAS),
-    output:
-        cubes=spectrum_files("{pulse}", ETAS),
-        record=record_of("spectra/{pulse}"),
-    log:
-        "logs/spectra/{pulse}.log",
-    benchmark:
-        "logs/benchmarks/spectra-{pulse}.tsv"
-    priority: 2
-    params:
-        **SPECTRUM_SETTINGS,
-        provenance=SPECTRUM_PROVENANCE,
-        pulse=lambda wildcards: wildcards.pulse,
-    message:
-        "Spectrum cubes of the {wildcards.pulse} pulse"
-    script:
-        "../scripts/spectra.py"
 
 
 # one job for each pulse and angle traces the curves of all restitutions, which share the grid
@@ -93,3 +74,44 @@ rule overturning:
         "Overturning boundaries of the {wildcards.pulse} pulse"
     script:
         "../scripts/overturning.py"
+
+
+rule spectrum_tile:
+    input:
+        boundaries=rules.overturning.output.boundaries,
+    output:
+        # the cells that are not interpolated depend on the code of the boundaries too
+        part=temp(part_of("spectra/{pulse}-rows-{band}", {**SPECTRUM_PROVENANCE, "boundaries": OVERTURNING_PROVENANCE})),
+    log:
+        "logs/spectra/{pulse}-rows-{band}.log",
+    benchmark:
+        "logs/benchmarks/spectra-{pulse}-rows-{band}.tsv"
+    priority: 2
+    params:
+        **SPECTRUM_SETTINGS,
+        pulse=lambda wildcards: wildcards.pulse,
+        band=lambda wildcards: BANDS[wildcards.band],
+    message:
+        "Spectrum cubes of the {wildcards.pulse} pulse, rows {wildcards.band}"
+    script:
+        "../scripts/spectrum_tile.py"
+
+
+rule spectra:
+    input:
+        tiles=expand(rules.spectrum_tile.output.part, band=BANDS, allow_missing=True),
+    output:
+        cubes=spectrum_files("{pulse}", ETAS),
+        record=record_of("spectra/{pulse}"),
+    log:
+        "logs/spectra/{pulse}.log",
+    benchmark:
+        "logs/benchmarks/spectra-{pulse}.tsv"
+    priority: 3
+    params:
+        pulse=lambda wildcards: wildcards.pulse,
+        provenance=SPECTRUM_PROVENANCE,
+    message:
+        "Spectrum cubes of the {wildcards.pulse} pulse"
+    script:
+        "../scripts/spectra.py"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import traceback
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
@@ -32,12 +33,18 @@ def run(task: Callable[..., None], snakemake: Any) -> None:
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as stream, redirect_stdout(stream), redirect_stderr(stream):
         try:
-            task(**paths, **dict(snakemake.params.items()))
+            task(**paths, **_arguments(task, snakemake))
             if record:
                 write_record(record, (path for path in map(Path, snakemake.output) if path != record))
         except BaseException:
             traceback.print_exc()  # into the log, which Snakemake shows when a job fails
             raise
+
+
+def _arguments(task: Callable[..., None], snakemake: Any) -> dict[str, Any]:
+    """The parameters of the job; also its number of threads if the task takes it."""
+    threads = {"threads": snakemake.threads} if "threads" in inspect.signature(task).parameters else {}
+    return {**snakemake.params, **threads}
 
 
 def _paths(value: Any) -> Path | list[Path]:

@@ -1,0 +1,79 @@
+"""Tiles of spectrum cubes: bands of rows computed one by one in bounded memory, and joined to whole cubes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset
+from rocking.spectra.bands import rows_with_halo
+from rocking.spectra.cubes import spectra
+
+
+def spectrum_tile(
+    pulse: str,
+    band: tuple[int, int],
+    *,
+    restitution: ArrayLike,
+    slenderness: ArrayLike,
+    barred: NDArray[np.bool_] | None = None,
+    **grid: Any,
+) -> xr.Dataset:
+    """The rows of a band of the spectrum cubes of one pulse, at all restitutions.
+
+    Parameters
+    ----------
+    pulse : str
+        Name of the pulse.
+    band : (int, int)
+        First row of nodes, and the one after the last.
+    restitution : array_like, shape (l,)
+        eta [-], [0, 1], ascending.
+    slenderness : array_like, shape (n,), n >= 4
+        1/a [-], of all rows of the cubes, > 0, ascending.
+    barred : bool array, shape (l, k, rows - 1, m - 1), optional
+        Cells that are not interpolated, in `rows_with_halo` of the band.
+    **grid
+        Other arguments as for `spectra`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of a cube over (restitution, alpha, slenderness, frequency_ratio).
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    etas, rows = (np.asarray(values, dtype=np.float64) for values in (restitution, slenderness))
+    around = rows_with_halo(band, rows.size)
+    own = slice(band[0] - around.start, band[1] - around.start)
+    variables: dict[str, NDArray[Any]] = {}
+    for k, cube in enumerate(spectra(pulse, restitution=etas, slenderness=rows[around], barred=barred, **grid)):
+        part = cube.isel(slenderness=own)
+        for name, (dtype, _) in VARIABLES.items():
+            whole = variables.setdefault(name, np.empty((etas.size, *part[name].shape), dtype=dtype))
+            whole[k] = part[name].values
+    axes = {name: (name, part[name].values, AXES[name]) for name in DIMENSIONS}
+    dimensions = ("restitution", *DIMENSIONS)
+    return xr.Dataset({name: (dimensions, values) for name, values in variables.items()}, {"restitution": etas, **axes})
+
+
+def join_tiles(pulse: str, tiles: Sequence[xr.Dataset]) -> Iterator[xr.Dataset]:
+    """The spectrum cubes of which `tiles` are the bands, in ascending order, one for each restitution in turn.
+
+    A tile that is read from its file when needed is read one restitution at a time.
+    """
+    etas = tiles[0]["restitution"].values
+    axes = {name: tiles[0][name].values for name in DIMENSIONS}
+    axes["slenderness"] = np.concatenate([tile["slenderness"].values for tile in tiles])
+    for k, eta in enumerate(etas):
+        slices = [tile.isel(restitution=k) for tile in tiles]
+        variables = {name: np.concatenate([part[name].values for part in slices], axis=1) for name in VARIABLES}
+        cube = build_spectrum_dataset(variables, pulse=pulse, restitution=float(eta), axes=axes)
+        yield cube.assign_attrs(restitution_slices=etas)
