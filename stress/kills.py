@@ -110,7 +110,7 @@ def kill_at_random(folder: Path, stage: Iterable[str], what: str, draw: random.R
     latest, where = 40.0, TOO_LATE
     while where == TOO_LATE:
         for pattern in stage:
-            for record in (folder / "results/.records").glob(f"{pattern}.json"):
+            for record in (folder / "results/.records").glob(f"{pattern}.*.json"):
                 record.unlink()
         moment = time.monotonic() + draw.uniform(0.5, latest)
         where, latest = interrupt(folder, what, lambda _, end=moment: time.monotonic() > end), 0.7 * latest

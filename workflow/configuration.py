@@ -315,30 +315,44 @@ def _listed(value: Any) -> list[Any]:
 
 def tile_bands(config: Mapping[str, Any]) -> list[tuple[int, int]]:
     """The bands of rows of the spectrum cubes, one for each tile."""
-    return bands(1 + sum(steps_between(**config["grid"]["slenderness"])), _tile_rows(config))
+    return bands(_rows(config), _tile_rows(config))
+
+
+def nodes_of_tile(config: Mapping[str, Any]) -> int:
+    """Nodes that are computed for the largest tile, with its halo."""
+    return min(_tile_rows(config) + HALO, _rows(config)) * _nodes_of_row(config) * len(config["restitution"])
+
+
+def nodes_of_cube(config: Mapping[str, Any]) -> int:
+    """Nodes of the cube of one restitution."""
+    return _rows(config) * _nodes_of_row(config)
 
 
 def _tile_rows(config: Mapping[str, Any]) -> int:
-    """Rows of a tile, by default so many that it has about `TILE_NODES` nodes with its halo."""
-    grid = config["grid"]
-    of_row = len(config["restitution"]) * len(grid["alpha_deg"]) * grid["frequency_ratio"]["points"]
-    return config.get("tile_rows") or max(TILE_NODES // of_row - HALO, 1)
+    """Most rows of a tile, by default so many that it has about `TILE_NODES` nodes with its halo."""
+    of_row = _nodes_of_row(config) * len(config["restitution"])
+    return int(config.get("tile_rows") or max(TILE_NODES // of_row - HALO, 1))
+
+
+def _rows(config: Mapping[str, Any]) -> int:
+    return 1 + sum(steps_between(**config["grid"]["slenderness"]))
+
+
+def _nodes_of_row(config: Mapping[str, Any]) -> int:
+    return len(config["grid"]["alpha_deg"]) * int(config["grid"]["frequency_ratio"]["points"])
 
 
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
     """Grids that do not fit into memory, from their sizes."""
     grid, boundary, etas = config["grid"], config["boundary"], len(config["restitution"])
-    rows, columns = 1 + sum(steps_between(**grid["slenderness"])), grid["frequency_ratio"]["points"]
     limit = f"allowed: {NODES:,}"
-    of_row = len(grid["alpha_deg"]) * columns
-    for what, nodes in (
-        ("one restitution", rows * of_row),
-        ("a tile", min(_tile_rows(config) + HALO, rows) * of_row * etas),
-    ):
+    for what, nodes in (("one restitution", nodes_of_cube(config)), ("a tile", nodes_of_tile(config))):
         if nodes > NODES:
-            axes = f"{len(grid['alpha_deg'])} alpha_deg x {rows} slenderness x {columns} frequency_ratio"
+            axes = f"{len(grid['alpha_deg'])} alpha_deg x {_rows(config)} slenderness"
+            axes += f" x {grid['frequency_ratio']['points']} frequency_ratio x {etas} restitution"
             needed, most = (f"{count * BYTES / 1e9:.0f} GB" for count in (nodes, NODES))
-            yield f"grid = {axes} x {etas} restitution: {nodes:,} nodes in {what}, {needed}; {limit}, {most}"
+            yield f"grid = {axes}: {nodes:,} nodes in {what}, {needed}; {limit}, {most}"
+            return
     for key in ("nodes", "nodes_rigid"):
         if (nodes := boundary[key] ** 2 * etas) > NODES:
             yield f"boundary.{key} = {boundary[key]}: {nodes:,} nodes with {etas} restitution; {limit}"

@@ -1,6 +1,8 @@
 """Digests of the products, recorded by the job that made them: a product that differs from its record is made again.
 
-The record of a job is one of its outputs: a job without its record is run again, as without any other output.
+The record of a job is one of its outputs: a job without its record is run again, as without any other output. Its name
+contains a digest of the code and the settings of the job, so that it is missing after a change of them, whether or not
+Snakemake has noted what the products were made from (it has not for a job that went on after its run was killed).
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.datasets.checksum import sha256_of_file
+from rocking.datasets.provenance import settings_digest
 
 FOLDER = Path("results/.records")
 
@@ -20,8 +23,23 @@ def digest(path: Path) -> dict[str, Any]:
     return {"sha256": sha256_of_file(path), "size": path.stat().st_size}
 
 
+def record_name(job: str, provenance: Mapping[str, Any]) -> str:
+    """Name in the folder of the record of a job, with a digest of what its products are made from."""
+    return f"{job}.{settings_digest(provenance)[:16]}.json"
+
+
+def records_of(folder: Path, job: str) -> list[Path]:
+    """The records of a job in the folder of a run, by its name such as `spectra/sine`; one, if the run is finished."""
+    place = (folder / FOLDER / job).parent
+    return sorted(path for path in place.glob("*.json") if path.name.rsplit(".", 2)[0] == Path(job).name)
+
+
 def write_record(record: Path, products: Iterable[Path]) -> None:
-    """Write the digests of the products of a job."""
+    """Write the digests of the products of a job, and delete its records of former products."""
+    job = record.name.rsplit(".", 2)[0]
+    for former in record.parent.glob("*.json"):
+        if former.name.rsplit(".", 2)[0] == job:
+            former.unlink()
     content = {path.as_posix(): digest(path) for path in products}
     record.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 

@@ -12,16 +12,21 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 from snakemake.cli import main as snakemake
 
+from workflow.parts import forget_damaged_parts
 from workflow.records import forget_false_records
 from workflow.run_lock import FOLDER, RUN_ID, RunningError, acquire, end_with
 
+MEMORY_SHARE = 0.8
+"""Share of the memory of the machine that the jobs of a run may use together [-], by what their rules state."""
+
 
 def main(arguments: Sequence[str]) -> None:
-    """Lock the folder, delete records that do not match their products, and call Snakemake."""
+    """Lock the folder, delete records that do not match their products and damaged parts, and call Snakemake."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--directory", "-d", type=Path, default=Path())
     parser.add_argument("--configfile", "--configfiles", type=Path, nargs="+", default=[])
@@ -36,9 +41,17 @@ def main(arguments: Sequence[str]) -> None:
     except RunningError as error:
         sys.exit(str(error))
     use_temporary_folder(options.directory)
-    for difference in forget_false_records(options.directory):
+    for difference in chain(forget_false_records(options.directory), forget_damaged_parts(options.directory)):
         print(f"{difference}; it is made again", flush=True)
-    snakemake(list(arguments))
+    snakemake([*_memory_limit(arguments), *arguments])
+
+
+def _memory_limit(arguments: Sequence[str]) -> list[str]:
+    """The option of Snakemake that keeps the memory of all jobs together below a share of that of this machine."""
+    if any(argument.partition("=")[0] in ("--resources", "--res", "--workflow-profile") for argument in arguments):
+        return []  # another engine has its own limits
+    megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") * MEMORY_SHARE / 1e6
+    return [f"--resources=mem_mb={megabytes:.0f}"]
 
 
 def use_temporary_folder(directory: Path) -> None:

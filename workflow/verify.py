@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
 
-from workflow.records import FOLDER, differences, false_records, read_record
+from workflow.records import FOLDER, differences, false_records, read_record, records_of
 
 MANIFEST = "results/manifest.json"
 
-LISTS = {MANIFEST: "manifest.json", "results/checks.txt": "check_results.json"}
-"""Products that the manifest cannot list, and the record of each."""
+LISTS = {MANIFEST: "manifest", "results/checks.txt": "check_results"}
+"""Products that the manifest cannot list, and the job of each."""
 
 SUITES = "results/suites/*/manifest.json"
 """Manifests of the suites of records."""
@@ -27,19 +27,18 @@ def problems(folder: Path) -> Iterator[str]:
     """
     suites = sorted(path.relative_to(folder).as_posix() for path in folder.glob(SUITES))
     for name in suites:
-        flaws = [*_flaws_of_list(folder, name, name.removeprefix("results/"))]
+        flaws = [*_flaws_of_list(folder, name, name.removeprefix("results/").removesuffix(".json"))]
         yield from flaws or _flaws_of_products(folder, name)
-    if not suites or (folder / MANIFEST).exists() or (folder / FOLDER / LISTS[MANIFEST]).exists():
+    if not suites or (folder / MANIFEST).exists() or records_of(folder, LISTS[MANIFEST]):
         yield from _problems_of_paper(folder)
 
 
 def _problems_of_paper(folder: Path) -> Iterator[str]:
-    flaws = {name: [*_flaws_of_list(folder, name, record)] for name, record in LISTS.items()}
+    flaws = {name: [*_flaws_of_list(folder, name, job)] for name, job in LISTS.items()}
     yield from chain.from_iterable(flaws.values())
     if flaws[MANIFEST]:
-        yield from chain.from_iterable(
-            found for record, found in false_records(folder) if record.name not in LISTS.values()
-        )
+        listed = [record for job in LISTS.values() for record in records_of(folder, job)]
+        yield from chain.from_iterable(found for record, found in false_records(folder) if record not in listed)
     else:
         yield from _flaws_of_products(folder, MANIFEST)
 
@@ -51,12 +50,13 @@ def _flaws_of_products(folder: Path, manifest: str) -> Iterator[str]:
     yield from differences(folder, {f"{place}/{name}": entry for name, entry in products.items()})
 
 
-def _flaws_of_list(folder: Path, name: str, record_name: str) -> Iterator[str]:
-    record = folder / FOLDER / record_name
+def _flaws_of_list(folder: Path, name: str, job: str) -> Iterator[str]:
+    records = records_of(folder, job)
     try:
+        (record,) = records
         yield from differences(folder, {name: read_record(record)[name]})
     except (OSError, ValueError, KeyError):
-        yield f"{record}: the record of {name} is missing or damaged"
+        yield f"{folder / FOLDER / job}.*.json: the record of {name} is missing or damaged"
 
 
 def main(folder: Path) -> None:

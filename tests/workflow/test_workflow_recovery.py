@@ -10,12 +10,16 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
+from rocking.datasets.cube import write_dataset
 from stress.kills import KILLED, content, interrupt, project
 from stress.kills import reproduce as make_reproduce
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
-from workflow.records import forget_false_records
+from workflow.parts import delete_former_parts, forget_damaged_parts
+from workflow.records import forget_false_records, records_of
 from workflow.run_lock import RunningError, acquire
 from workflow.verify import problems
 
@@ -67,24 +71,41 @@ def test_wrong_product_is_named_and_its_record_deleted(
     records = set((run / "results/.records").rglob("*.json"))
     assert [*problems(run)] == []
     assert [*forget_false_records(run)] == []
+    of_job = records_of(run, job)
+    assert len(of_job) == 1
     spoil(run / "results" / name)
     (line,) = problems(run)
     assert line.startswith(f"{run / 'results' / name}: ")
     assert [*forget_false_records(run)] == [line]
-    assert records - set((run / "results/.records").rglob("*.json")) == {run / f"results/.records/{job}.json"}
+    assert records - set((run / "results/.records").rglob("*.json")) == set(of_job)
 
 
 @pytest.mark.parametrize("spoil", [flipped, emptied])
 def test_damaged_record_is_deleted(spoil: Callable[[Path], None], run: Path) -> None:
-    record = run / "results/.records/figures/figure-04.json"
+    (record,) = records_of(run, "figures/figure-04")
     spoil(record)
     assert [*forget_false_records(run)] != []
     assert not record.exists()
 
 
+def test_damaged_and_former_parts_are_deleted(tmp_path: Path) -> None:
+    folder = tmp_path / "results/.parts/spectra"
+    names = ["sine-rows-0-36.a.nc", "sine-rows-36-73.a.nc", "sine-rows-0-36.b.nc", "sine_two-rows-0-36.b.nc"]
+    for name in names:
+        write_dataset(xr.Dataset({"a": ("x", np.arange(100.0))}), folder / name)
+    assert [*forget_damaged_parts(tmp_path)] == []
+    delete_former_parts([folder / name for name in names[:2]], "sine")
+    assert {path.name for path in folder.iterdir()} == {*names[:2], names[3]}
+    flipped(folder / names[0])
+    (reason,) = forget_damaged_parts(tmp_path)
+    assert reason.startswith(f"{folder / names[0]}: damaged")
+    assert {path.name for path in folder.iterdir()} == {names[1], names[3]}
+
+
 def test_each_missing_product_or_record_is_planned(run: Path) -> None:
-    for name in (CUBE, FIGURE, "claims.md", ".records/figures/figure-07.json", ".records/check_results.json"):
-        (run / "results" / name).unlink()
+    for path in (*(run / "results" / name for name in (CUBE, FIGURE, "claims.md")),
+                 *records_of(run, "figures/figure-07"), *records_of(run, "check_results")):  # fmt: skip
+        path.unlink()
     planned = rules_to_run(snakemake(run, "--dry-run").stdout)
     of_cube = {"spectrum_tile", "spectra", "figure_scale_law", "claims"}
     assert planned == of_cube | {"figure_04", "figure_07", "manifest", "check_results", "all"}
@@ -114,7 +135,8 @@ def test_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Path,
     for part in ("results", "logs", ".snakemake"):
         shutil.copytree(smoke_run / part, folder / part)
     before = content(folder)
-    (folder / "results/.records/spectra/cosine.json").unlink()
+    for record in records_of(folder, "spectra/cosine"):
+        record.unlink()
     for what in KILLED:
         assert interrupt(folder, what, lambda jobs: "spectrum_tile" in jobs).startswith("in spectrum_tile")
     left = folder / "results/spectra/cosine/.eta-0.85.nc.abc.partial"

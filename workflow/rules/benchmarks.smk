@@ -15,7 +15,7 @@ rule work_precision:
         "logs/bench/work-precision-{diagram}.tsv"
     wildcard_constraints:
         diagram="|".join(DIAGRAMS),
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("cost/work_precision"),
         baselines=installed_baselines,
@@ -54,7 +54,7 @@ rule tolerance:
         "logs/bench/tolerance.log",
     benchmark:
         "logs/bench/tolerance.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("accuracy/tolerance"),
     message:
@@ -70,7 +70,7 @@ rule solver:
         "logs/bench/solver.log",
     benchmark:
         "logs/bench/solver.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("cost/solver"),
     message:
@@ -87,7 +87,7 @@ rule growth:
         "logs/bench/growth.log",
     benchmark:
         "logs/bench/growth.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("cost/growth"),
     message:
@@ -106,7 +106,7 @@ rule grid_size:
         "logs/bench/grid-size.log",
     benchmark:
         "logs/bench/grid-size.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("accuracy/grid_size"),
     message:
@@ -122,7 +122,7 @@ rule first_call:
         "logs/bench/first-call.log",
     benchmark:
         "logs/bench/first-call.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("cost/first_call"),
     message:
@@ -140,7 +140,7 @@ rule service:
         "logs/bench/service.log",
     benchmark:
         "logs/bench/service.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("service/performance"),
     message:
@@ -158,7 +158,7 @@ rule ablations:
         "logs/bench/ablations.log",
     benchmark:
         "logs/bench/ablations.tsv"
-    threads: workflow.cores
+    threads: CORES
     params:
         code=benchmark_code("ablations/suite"),
     message:

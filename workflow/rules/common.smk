@@ -1,4 +1,5 @@
 # Definitions for all rules, and digests by which Snakemake detects products that are out of date.
+import math
 import os
 import re
 import sys
@@ -11,8 +12,16 @@ os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.enviro
 
 from rocking.datasets.provenance import code_digest, settings_digest
 from rocking.suites.configuration import suite_configuration
-from workflow import records
-from workflow.configuration import ConfigurationError, check, restitutions, tile_bands
+from workflow import parts, records
+from workflow.configuration import (
+    BYTES,
+    ConfigurationError,
+    check,
+    nodes_of_cube,
+    nodes_of_tile,
+    restitutions,
+    tile_bands,
+)
 from workflow.run_lock import RUN_ID, RunningError, acquire
 
 from snakemake.exceptions import WorkflowError
@@ -26,19 +35,25 @@ try:
 except ConfigurationError as error:
     sys.exit(f"Configuration refused: {error}")  # one line; WorkflowError would add where in this file it was raised
 
-PARTS = "results/.parts"  # parts of products, deleted when the product is made
 PRODUCTS = {}  # path -> rule and digests, for the manifest
 FINISHED = []  # files of a complete run
+# of this process; an engine on several machines has no number of cores
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def record_of(job):
+def record_of(job, provenance):
     """Path of the record with the digests of the products of a job."""
-    return f"{records.FOLDER}/{job}.json"
+    return f"{records.FOLDER}/{records.record_name(job, provenance)}"
 
 
 def part_of(job, provenance):
-    """Path of a part of a product, with a digest of its code and settings: no part of others is taken for it."""
-    return f"{PARTS}/{job}.{settings_digest(provenance)[:16]}.nc"
+    """Path of a part of a product."""
+    return f"{parts.FOLDER}/{parts.part_name(job, provenance)}"
+
+
+def memory(megabytes):
+    """Memory of a job [MB], more with each attempt, for engines that end jobs which need more than they state."""
+    return lambda wildcards, attempt: math.ceil(attempt * megabytes)
 
 
 def spectrum_files(pulse, etas):

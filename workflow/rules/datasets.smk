@@ -13,6 +13,7 @@ wildcard_constraints:
     band="|".join(BANDS),
 
 
+TILE_MB, CUBE_MB = (200 + BYTES * nodes / 1e6 for nodes in (nodes_of_tile(config), nodes_of_cube(config)))
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",
@@ -42,6 +43,9 @@ rule overturning_part:
     benchmark:
         "logs/benchmarks/overturning-{pulse}-{angle}.tsv"
     priority: 3
+    resources:
+        mem_mb=memory(600),
+        runtime=240,
     params:
         pulse=lambda wildcards: wildcards.pulse,
         restitution=config["restitution"],
@@ -60,12 +64,16 @@ rule overturning:
         parts=expand(rules.overturning_part.output.part, angle=ANGLES, allow_missing=True),
     output:
         boundaries=overturning_files("{pulse}", ETAS),
-        record=record_of("overturning/{pulse}"),
+        record=record_of("overturning/{pulse}", OVERTURNING_PROVENANCE),
     log:
         "logs/overturning/{pulse}.log",
     benchmark:
         "logs/benchmarks/overturning-{pulse}.tsv"
     priority: 3
+    localrule: True
+    resources:
+        mem_mb=memory(400),
+        runtime=30,
     params:
         pulse=lambda wildcards: wildcards.pulse,
         restitution=config["restitution"],
@@ -87,6 +95,9 @@ rule spectrum_tile:
     benchmark:
         "logs/benchmarks/spectra-{pulse}-rows-{band}.tsv"
     priority: 2
+    resources:
+        mem_mb=memory(TILE_MB),
+        runtime=240,
     params:
         **SPECTRUM_SETTINGS,
         pulse=lambda wildcards: wildcards.pulse,
@@ -102,12 +113,15 @@ rule spectra:
         tiles=expand(rules.spectrum_tile.output.part, band=BANDS, allow_missing=True),
     output:
         cubes=spectrum_files("{pulse}", ETAS),
-        record=record_of("spectra/{pulse}"),
+        record=record_of("spectra/{pulse}", SPECTRUM_PROVENANCE),
     log:
         "logs/spectra/{pulse}.log",
     benchmark:
         "logs/benchmarks/spectra-{pulse}.tsv"
     priority: 3
+    resources:
+        mem_mb=memory(CUBE_MB),
+        runtime=120,
     params:
         pulse=lambda wildcards: wildcards.pulse,
         provenance=SPECTRUM_PROVENANCE,

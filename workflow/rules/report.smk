@@ -1,5 +1,6 @@
 # The claims of the paper against the results, the manifest of all products, and the tests of the finished products.
 CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md"}
+CLAIMS_PROVENANCE = provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values())
 
 
 rule claims:
@@ -13,15 +14,18 @@ rule claims:
         housner="results/figures/figure-master-housner.nc",
     output:
         **CLAIM_FILES,
-        record=record_of("claims"),
+        record=record_of("claims", CLAIMS_PROVENANCE),
     log:
         "logs/claims.log",
     benchmark:
         "logs/benchmarks/claims.tsv"
     priority: 1
+    resources:
+        mem_mb=memory(1000),
+        runtime=60,
     params:
         **config["claims"],
-        provenance=provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values()),
+        provenance=CLAIMS_PROVENANCE,
     message:
         "Checking the quantitative claims of the paper"
     script:
@@ -29,10 +33,13 @@ rule claims:
 
 
 RECORDS = [
-    *expand(record_of("{kind}/{pulse}"), kind=["overturning", "spectra"], pulse=PULSES),
-    *(record_of(f"figures/{figure}") for figure in FIGURES),
-    record_of("claims"),
+    *expand(rules.overturning.output.record, pulse=PULSES),
+    *expand(rules.spectra.output.record, pulse=PULSES),
+    *FIGURE_RECORDS,
+    rules.claims.output.record,
 ]
+MANIFEST_CODE = code_digest(PROJECT / "workflow/scripts/manifest.py")
+CHECKS_CODE = code_digest(*(PROJECT / "workflow/checks").glob("*.py"))
 
 
 rule manifest:
@@ -41,15 +48,19 @@ rule manifest:
         records=RECORDS,
     output:
         manifest="results/manifest.json",
-        record=record_of("manifest"),
+        record=record_of("manifest", {"code": MANIFEST_CODE, "sources": PRODUCTS, "title": config["title"]}),
     log:
         "logs/manifest.log",
     benchmark:
         "logs/benchmarks/manifest.tsv"
+    localrule: True
+    resources:
+        mem_mb=memory(300),
+        runtime=30,
     params:
         sources=PRODUCTS,
         title=config["title"],
-        code=code_digest(PROJECT / "workflow/scripts/manifest.py"),
+        code=MANIFEST_CODE,
     message:
         "Listing all products"
     script:
@@ -62,13 +73,16 @@ rule check_results:
         tests=[str(path) for path in sorted((PROJECT / "workflow/checks").glob("*.py"))],
     output:
         report="results/checks.txt",
-        record=record_of("check_results"),
+        record=record_of("check_results", {"code": CHECKS_CODE}),
     log:
         "logs/check_results.log",
     benchmark:
         "logs/benchmarks/check_results.tsv"
+    resources:
+        mem_mb=memory(800),
+        runtime=60,
     params:
-        code=code_digest(*(PROJECT / "workflow/checks").glob("*.py")),
+        code=CHECKS_CODE,
     message:
         "Testing the finished products"
     script:

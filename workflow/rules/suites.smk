@@ -9,6 +9,19 @@ OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95, "haz
 # names of the jobs, of which `record_of` gives the paths of the records of their products
 SUITE_JOBS = f"suites/{SUITE['name']}"
 
+RECORD_PROVENANCE = provenance(
+    "suite_record",
+    ["scripts/suite_record.py"],
+    OUTCOME_SETTINGS,
+    [f"{SUITE_FOLDER}/records/{name}.nc" for name in SUITE_FILES],
+)
+FRAGILITY_PROVENANCE = provenance(
+    "suite_fragility",
+    ["scripts/suite_fragility.py"],
+    SUITE,
+    [f"{SUITE_FOLDER}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")],
+)
+
 
 wildcard_constraints:
     file="|".join(map(re.escape, SUITE_FILES)),
@@ -19,19 +32,17 @@ rule suite_record:
         file=lambda wildcards: str(SUITE_FILES[wildcards.file]),
     output:
         outcomes=f"{SUITE_FOLDER}/records/{{file}}.nc",
-        record=record_of(f"{SUITE_JOBS}/records/{{file}}"),
+        record=record_of(f"{SUITE_JOBS}/records/{{file}}", RECORD_PROVENANCE),
     log:
         f"logs/suites/{SUITE['name']}/{{file}}.log",
     benchmark:
         f"logs/benchmarks/suite-{SUITE['name']}-{{file}}.tsv"
+    resources:
+        mem_mb=memory(800),
+        runtime=120,
     params:
         suite=OUTCOME_SETTINGS,
-        provenance=provenance(
-            "suite_record",
-            ["scripts/suite_record.py"],
-            OUTCOME_SETTINGS,
-            [f"{SUITE_FOLDER}/records/{name}.nc" for name in SUITE_FILES],
-        ),
+        provenance=RECORD_PROVENANCE,
     message:
         "Responses to {wildcards.file}"
     script:
@@ -45,27 +56,31 @@ rule suite_fragility:
         outcomes=f"{SUITE_FOLDER}/outcomes.nc",
         fragility=f"{SUITE_FOLDER}/fragility.nc",
         table=f"{SUITE_FOLDER}/fragility.csv",
-        record=record_of(f"{SUITE_JOBS}/fragility"),
+        record=record_of(f"{SUITE_JOBS}/fragility", FRAGILITY_PROVENANCE),
     log:
         f"logs/suites/{SUITE['name']}/fragility.log",
     benchmark:
         f"logs/benchmarks/suite-{SUITE['name']}-fragility.tsv"
+    resources:
+        mem_mb=memory(800),
+        runtime=60,
     params:
         suite=SUITE,
-        provenance=provenance(
-            "suite_fragility",
-            ["scripts/suite_fragility.py"],
-            SUITE,
-            [f"{SUITE_FOLDER}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")],
-        ),
+        provenance=FRAGILITY_PROVENANCE,
     message:
         "Fragility under the suite"
     script:
         "../scripts/suite_fragility.py"
 
 
+SUITE_FIGURE_RECORDS = []
+
 for _figure, _source in SUITE_FIGURES.items():
     _files = {kind: f"{SUITE_FOLDER}/figures/{_figure}.{kind}" for kind in ("svg", "png", "nc")}
+    _provenance = provenance(
+        f"suite_figure_{_figure}", ["scripts/figure.py", f"figures/suite_{_figure}.py"], {}, _files.values()
+    )
+    SUITE_FIGURE_RECORDS.append(record_of(f"{SUITE_JOBS}/figures/{_figure}", _provenance))
 
     rule:
         name:
@@ -74,23 +89,25 @@ for _figure, _source in SUITE_FIGURES.items():
             **{_source: f"{SUITE_FOLDER}/{_source}.nc"},
         output:
             **_files,
-            record=record_of(f"{SUITE_JOBS}/figures/{_figure}"),
+            record=SUITE_FIGURE_RECORDS[-1],
         log:
             f"logs/suites/{SUITE['name']}/{_figure}.log",
         benchmark:
             f"logs/benchmarks/suite-{SUITE['name']}-{_figure}.tsv"
+        localrule: True
+        resources:
+            mem_mb=memory(800),
+            runtime=60,
         params:
             figure=f"suite_{_figure}",
-            provenance=provenance(
-                f"suite_figure_{_figure}",
-                ["scripts/figure.py", f"figures/suite_{_figure}.py"],
-                {},
-                _files.values(),
-            ),
+            provenance=_provenance,
         message:
             f"Drawing {_figure} of the suite"
         script:
             "../scripts/figure.py"
+
+
+SUITE_MANIFEST_CODE = code_digest(PROJECT / "workflow/scripts/manifest.py")
 
 
 rule suite_manifest:
@@ -99,19 +116,25 @@ rule suite_manifest:
         records=[
             *expand(rules.suite_record.output.record, file=SUITE_FILES),
             rules.suite_fragility.output.record,
-            *(record_of(f"{SUITE_JOBS}/figures/{figure}") for figure in SUITE_FIGURES),
+            *SUITE_FIGURE_RECORDS,
         ],
     output:
         manifest=f"{SUITE_FOLDER}/manifest.json",
-        record=record_of(f"{SUITE_JOBS}/manifest"),
+        record=record_of(
+            f"{SUITE_JOBS}/manifest", {"code": SUITE_MANIFEST_CODE, "sources": PRODUCTS, "title": config["title"]}
+        ),
     log:
         f"logs/suites/{SUITE['name']}/manifest.log",
     benchmark:
         f"logs/benchmarks/suite-{SUITE['name']}-manifest.tsv"
+    localrule: True
+    resources:
+        mem_mb=memory(300),
+        runtime=30,
     params:
         sources=PRODUCTS,
         title=config["title"],
-        code=code_digest(PROJECT / "workflow/scripts/manifest.py"),
+        code=SUITE_MANIFEST_CODE,
     message:
         "Listing the products of the suite"
     script:

@@ -17,6 +17,7 @@ from rocking.datasets.cube import (
     scalar_coordinates,
     write_dataset,
 )
+from workflow.parts import delete_former_parts
 from workflow.scripts.job import run
 from workflow.scripts.overturning_part import ACCURACY, unstacked
 
@@ -39,6 +40,7 @@ def main(
         curves = described(joined, pulse, eta).assign_attrs(accuracy_of(traced))
         write_dataset(describe(curves, **provenance), path)
         print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
+    delete_former_parts(parts, pulse)
 
 
 def accuracy_of(traced: Sequence[xr.Dataset]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rocking.datasets.cube import describe, open_dataset, write_dataset
 from rocking.spectra.tiles import join_tiles
+from workflow.parts import delete_former_parts
 from workflow.scripts.job import run
 
 
@@ -22,6 +23,7 @@ def main(
         for cube, path in zip(join_tiles(pulse, parts), cubes, strict=True):
             write_dataset(describe(cube, **provenance), path)
             print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
+    delete_former_parts(tiles, pulse)
 
 
 if __name__ == "__main__":
