@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce verify test browser serve bench stress fuzz mutants lock environment FORCE
+.PHONY: help reproduce verify test browser serve bench stress slurm fuzz mutants lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -48,13 +48,20 @@ bench: .venv/project ## run the benchmarks: run time, error, interpolation, serv
 stress: .venv/project ## compare 3,800 hard cases with 192-bit references; one to two minutes
 	python -m stress
 
+slurm: .venv/project ## make data sets through a Slurm cluster of one node and compare all bytes with a local run; needs root
+	@.venv/bin/python -m pip install --quiet --no-deps --upgrade --target build/slurm $(SLURM_PLUGIN)
+	python -m stress.slurm
+
+# Besides these the plugin needs what is locked; it is not installed into .venv.
+SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin-slurm-jobstep==0.6.1
+
 fuzz: .venv/project ## send 5,000 random requests to the service; three minutes (SEED= for others)
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/api/test_api_fuzz.py
 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),32) --seed $(or $(SEED),1)
 
-# Extra `seismic` is large and optional: it is not locked.
+# Extras `seismic` and `slurm` are optional: they are not locked.
 LOCKED := service plot workflow dev
 
 lock: ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions)

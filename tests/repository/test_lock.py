@@ -17,8 +17,8 @@ LOCK = (ROOT / "environment.lock").read_text()
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PINS = {canonicalize_name(name): version for name, version in re.findall(r"^([\w.-]+)==(\S+)", LOCK, re.MULTILINE)}
 EXTRAS = PROJECT["project"]["optional-dependencies"]
-UNLOCKED = ("seismic",)
-"""Extras that are not in the lock: large packages that few users need."""
+UNLOCKED = ("seismic", "slurm")
+"""Extras that are not in the lock: packages that few users need."""
 
 DIRECT = [
     *PROJECT["build-system"]["requires"],

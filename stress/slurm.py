@@ -1,0 +1,202 @@
+"""Make data sets through Slurm and compare all bytes with those of a local run: `python -m stress.slurm`, `make slurm`.
+
+Where `sinfo` finds no cluster, one of one node is started on this machine, from the packages of Debian, which root
+installs if they are missing, and ended afterwards. Where that is not possible the program says why, and ends without an
+error. The executor plugin comes from the extra `slurm` of the project.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from stress.kills import PROJECT
+from workflow.records import digest
+
+CONFIGURATION = "workflow/config/smoke.yaml"
+TARGETS = (
+    "results/spectra/sine/eta-0.85.nc", "results/spectra/cosine/eta-0.85.nc", "results/figures/figure-scale-law.nc",
+)  # fmt: skip
+"""Products to make: boundaries, cubes and a figure, by jobs of the cluster and by local ones."""
+
+PACKAGES = ("slurmctld", "slurmd", "slurm-client", "munge")
+SETTINGS = Path("/etc/slurm/slurm.conf")
+"""Where job steps look for the settings of the cluster."""
+
+MUNGE = Path("/run/munge")
+"""Folder of the socket of munged, which Slurm uses for authentication."""
+
+PLUGIN = PROJECT / "build/slurm"
+"""Folder of the executor plugin, see the target `slurm` of the Makefile."""
+
+SLURM = ("--workflow-profile", "profiles/slurm", "--slurm-no-account", "--slurm-status-command", "squeue")
+
+START_TIMEOUT = 60.0
+"""Time for which the cluster may start [s]."""
+
+
+class UnavailableError(RuntimeError):
+    """Slurm cannot be used on this machine."""
+
+
+def settings(host: str, folder: Path) -> str:
+    """Return the settings of a cluster of one node, without control groups and without accounting."""
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") * 0.9 / 2**20
+    return f"""\
+ClusterName=rocking
+SlurmctldHost={host}(127.0.0.1)
+AuthType=auth/munge
+ProctrackType=proctrack/pgid
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core_Memory
+SlurmUser=root
+SlurmdUser=root
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+ReturnToService=2
+NodeName={host} NodeAddr=127.0.0.1 CPUs={len(os.sched_getaffinity(0))} RealMemory={memory:.0f} State=UNKNOWN
+PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def succeeds(*command: str) -> bool:
+    """Return whether a command exists and ends without an error."""
+    return bool(shutil.which(command[0])) and subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def install() -> None:
+    """Install the packages of Debian that are missing.
+
+    Raises
+    ------
+    UnavailableError
+        Without apt, or if it fails.
+    """
+    if all(map(shutil.which, ("slurmctld", "slurmd", "sbatch", "munged"))):
+        return
+    if not shutil.which("apt-get"):
+        raise UnavailableError(f"no Slurm, and no apt-get to install {', '.join(PACKAGES)}")
+    environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    command = ["apt-get", "install", "--yes", "--no-install-recommends", *PACKAGES]
+    installed = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if installed.returncode != 0:
+        raise UnavailableError(f"{' '.join(command)} failed: {installed.stderr.strip().splitlines()[-1:]}")
+
+
+@contextmanager
+def cluster(folder: Path) -> Iterator[None]:
+    """Use the cluster of this machine, or one that runs for the time of the context.
+
+    Raises
+    ------
+    UnavailableError
+        If there is none and it cannot be started.
+    """
+    if succeeds("sinfo", "--noheader"):
+        yield
+        return
+    if SETTINGS.exists():
+        raise UnavailableError(f"{SETTINGS} exists, but its cluster does not answer")
+    if os.geteuid() != 0:
+        raise UnavailableError("only root can start a cluster")
+    install()
+    for name in ("state", "spool"):
+        (folder / name).mkdir()
+    with ExitStack() as stack:
+        SETTINGS.write_text(settings(socket.gethostname().partition(".")[0], folder))
+        stack.callback(SETTINGS.unlink)
+        if not succeeds("munge", "--no-input"):
+            MUNGE.mkdir(exist_ok=True)
+            shutil.chown(MUNGE, "munge", "munge")
+            stack.enter_context(service(folder, "munged", "--foreground", user="munge"))
+            wait_for(("munge", "--no-input"))
+        stack.enter_context(service(folder, "slurmctld", "-D"))
+        stack.enter_context(service(folder, "slurmd", "-D"))
+        wait_for(("srun", "--immediate=5", "true"))
+        yield
+
+
+@contextmanager
+def service(folder: Path, *command: str, user: str | None = None) -> Iterator[None]:
+    """Run a program in the background, with a log in the folder, for the time of the context."""
+    with (
+        (folder / f"{command[0]}.log").open("wb") as log,
+        subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, user=user) as process,
+    ):
+        try:
+            yield
+        finally:
+            process.terminate()
+
+
+def wait_for(command: Sequence[str]) -> None:
+    """Wait until a command succeeds.
+
+    Raises
+    ------
+    UnavailableError
+        If it does not within `START_TIMEOUT`.
+    """
+    end = time.monotonic() + START_TIMEOUT
+    while not succeeds(*command):
+        if time.monotonic() > end:
+            raise UnavailableError(f"`{' '.join(command)}` did not succeed within {START_TIMEOUT:g} s")
+        time.sleep(0.5)
+
+
+def make(directory: Path, *options: str) -> float:
+    """Run the workflow in a directory; return the time it took [s]."""
+    start = time.perf_counter()
+    command = [
+        sys.executable, "-m", "workflow.run", *options, "--configfile", CONFIGURATION, "--directory", directory,
+        "--nocolor", "--", *TARGETS,
+    ]  # fmt: skip
+    path = os.pathsep.join(filter(None, [str(PLUGIN), os.environ.get("PYTHONPATH")]))
+    done = subprocess.run(
+        command, cwd=PROJECT, env={**os.environ, "PYTHONPATH": path}, text=True, check=False,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    if done.returncode != 0:
+        sys.exit(done.stdout)
+    return time.perf_counter() - start
+
+
+def digests(directory: Path) -> dict[str, str]:
+    """Return the sha256 of every file that a run left in its results."""
+    files = (path for path in (directory / "results").rglob("*") if path.is_file())
+    return {path.relative_to(directory).as_posix(): digest(path)["sha256"] for path in sorted(files)}
+
+
+def main() -> None:
+    """Command line; exit status 1 unless all files are equal."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        try:
+            with cluster(folder):
+                through_slurm = make(folder / "slurm", *SLURM)
+        except UnavailableError as error:
+            print(f"skipped: {error}")
+            return
+        local = make(folder / "local", "--cores", "all")
+        expected, found = digests(folder / "local"), digests(folder / "slurm")
+        differing = sorted(name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name))
+    print(f"{len(expected)} files; {local:.0f} s local, {through_slurm:.0f} s through Slurm")
+    sys.exit(f"different: {', '.join(differing)}" if differing else 0)
+
+
+if __name__ == "__main__":
+    main()
