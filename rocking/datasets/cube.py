@@ -204,8 +204,17 @@ def read_dataset(path: Path | str) -> xr.Dataset:
     return decode_dataset(read_content(path), path)
 
 
-def open_dataset(path: Path | str) -> xr.Dataset:
-    """Open a file written by `write_dataset` without reading its variables, once the digest at its end is checked.
+def read_slice(path: Path | str, **indexers: int) -> xr.Dataset:
+    """Read the slice at an index of some dimensions from a file that `check_file` has accepted.
+
+    The file is closed again: the library keeps up to some megabytes of each variable of an open file.
+    """
+    with xr.open_dataset(path, engine="netcdf4", decode_times=False, cache=False) as opened:
+        return opened.isel(indexers).load()
+
+
+def check_file(path: Path | str) -> None:
+    """Check the digest at the end of a file written by `write_dataset`.
 
     Raises
     ------
@@ -213,7 +222,6 @@ def open_dataset(path: Path | str) -> xr.Dataset:
         If the file is missing, cannot be read, was not written by this package, or is damaged.
     """
     _raise_if_damaged(read_content(path), path)
-    return xr.open_dataset(path, engine="netcdf4", decode_times=False, cache=False)
 
 
 def read_content(path: Path | str) -> bytes:

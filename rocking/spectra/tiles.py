@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset
+from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, check_file, read_slice
 from rocking.spectra.bands import rows_with_halo
 from rocking.spectra.cubes import spectra
 
@@ -64,16 +65,24 @@ def spectrum_tile(
     return xr.Dataset({name: (dimensions, values) for name, values in variables.items()}, {"restitution": etas, **axes})
 
 
-def join_tiles(pulse: str, tiles: Sequence[xr.Dataset]) -> Iterator[xr.Dataset]:
-    """The spectrum cubes of which `tiles` are the bands, in ascending order, one for each restitution in turn.
+def join_tiles(pulse: str, tiles: Sequence[Path]) -> Iterator[xr.Dataset]:
+    """The spectrum cubes of which files of tiles hold the bands, in ascending order; one for each restitution in turn.
 
-    A tile that is read from its file when needed is read one restitution at a time.
+    One restitution at a time is in memory.
+
+    Raises
+    ------
+    DatasetError
+        If a file is missing or damaged.
     """
-    etas = tiles[0]["restitution"].values
-    axes = {name: tiles[0][name].values for name in DIMENSIONS}
-    axes["slenderness"] = np.concatenate([tile["slenderness"].values for tile in tiles])
+    for path in tiles:
+        check_file(path)
+    etas = read_slice(tiles[0], **dict.fromkeys(DIMENSIONS, 0))["restitution"].values
     for k, eta in enumerate(etas):
-        slices = [tile.isel(restitution=k) for tile in tiles]
-        variables = {name: np.concatenate([part[name].values for part in slices], axis=1) for name in VARIABLES}
+        parts = [read_slice(path, restitution=k) for path in tiles]
+        axes = {name: parts[0][name].values for name in DIMENSIONS}
+        axes["slenderness"] = np.concatenate([part["slenderness"].values for part in parts])
+        variables = {name: np.concatenate([part[name].values for part in parts], axis=1) for name in VARIABLES}
+        del parts
         cube = build_spectrum_dataset(variables, pulse=pulse, restitution=float(eta), axes=axes)
         yield cube.assign_attrs(restitution_slices=etas)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.datasets.cube import open_dataset, write_dataset
+from rocking.datasets.cube import write_dataset
+from rocking.errors import DatasetError
 from rocking.spectra.bands import bands, rows_with_halo
 from rocking.spectra.cubes import REFINE_TOL, spectra
 from rocking.spectra.tiles import join_tiles, spectrum_tile
@@ -42,15 +43,16 @@ def test_joined_tiles_have_the_bytes_of_the_whole(
         nodes = rows_with_halo(band, ROWS.size)
         bars = barred[:, :, nodes.start : nodes.stop - 1]
         tile = spectrum_tile("cosine", band, slenderness=ROWS, barred=bars, threads=1, **GRID)
-        write_dataset(tile, tmp_path / f"{band[0]}.nc", chunks={"restitution": 1})
-        tiles.append(open_dataset(tmp_path / f"{band[0]}.nc"))
+        tiles.append(tmp_path / f"{band[0]}.nc")
+        write_dataset(tile, tiles[-1], chunks={"restitution": 1})
     for k, (joined, expected) in enumerate(zip(join_tiles("cosine", tiles), whole, strict=True)):
         write_dataset(joined, tmp_path / f"joined-{k}.nc")
         write_dataset(expected, tmp_path / f"whole-{k}.nc")
         xr.testing.assert_identical(joined, expected)
         assert (tmp_path / f"joined-{k}.nc").read_bytes() == (tmp_path / f"whole-{k}.nc").read_bytes()
-    for tile in tiles:
-        tile.close()
+    tiles[-1].write_bytes(tiles[-1].read_bytes()[:-1])
+    with pytest.raises(DatasetError, match=f"{band[0]}.nc: damaged"):
+        next(join_tiles("cosine", tiles))
 
 
 def test_grid_of_the_test_has_all_kinds_of_cells(whole: list[xr.Dataset]) -> None:

@@ -13,7 +13,7 @@ wildcard_constraints:
     band="|".join(BANDS),
 
 
-TILE_MB, CUBE_MB = (200 + BYTES * nodes / 1e6 for nodes in (nodes_of_tile(config), nodes_of_cube(config)))
+TILE_MB, CUBE_MB = (300 + BYTES * nodes / 1e6 for nodes in (nodes_of_tile(config), nodes_of_cube(config)))
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
     "spectra",

@@ -1,10 +1,9 @@
 """Joins the tiles of the spectrum cubes of one pulse: one file for each coefficient of restitution."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
 from pathlib import Path
 
-from rocking.datasets.cube import describe, open_dataset, write_dataset
+from rocking.datasets.cube import describe, write_dataset
 from rocking.spectra.tiles import join_tiles
 from workflow.parts import delete_former_parts
 from workflow.scripts.job import run
@@ -18,11 +17,9 @@ def main(
     provenance: Mapping[str, str],
 ) -> None:
     """Write the cube of each restitution to the corresponding path of `cubes`; tiles are in the order of their rows."""
-    with ExitStack() as opened:
-        parts = [opened.enter_context(open_dataset(path)) for path in tiles]
-        for cube, path in zip(join_tiles(pulse, parts), cubes, strict=True):
-            write_dataset(describe(cube, **provenance), path)
-            print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
+    for cube, path in zip(join_tiles(pulse, tiles), cubes, strict=True):
+        write_dataset(describe(cube, **provenance), path)
+        print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
     delete_former_parts(tiles, pulse)
 
 
