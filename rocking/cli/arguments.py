@@ -68,6 +68,8 @@ def option_errors() -> Iterator[None]:
         option = "--" + error.parameter.split("[")[0].split(",")[0].replace("_", "-")
         place = error.parameter.partition(",")[2]
         text = f"{error.value!r} is not allowed; allowed: {error.allowed}"
+        if error.value is None:
+            text = f"missing; {error.allowed}"
         if error.allowed.startswith("missing unit"):
             text = f"{error.value!r}: {error.allowed}"
         raise typer.BadParameter(f"{place.strip()}: {text}" if place else text, param_hint=option) from None

@@ -83,6 +83,19 @@ class OutputOptions:
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False
 
 
+@dataclass(frozen=True)
+class PictureOptions:
+    """Where a picture goes."""
+
+    output: Annotated[
+        str | None, typer.Option("--output", "-o", help="File to write, .png or .svg; by default a window opens.")
+    ] = None
+
+
+FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
+FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
+
+
 def with_options(command: Callable[..., None]) -> Callable[..., None]:
     """A command whose arguments of the above types are options of the command line, one for each field."""
     hints = get_type_hints(command, include_extras=True)
@@ -90,7 +103,7 @@ def with_options(command: Callable[..., None]) -> Callable[..., None]:
     groups: dict[str, type[Any]] = {}
     for parameter in inspect.signature(command).parameters.values():
         hint = hints[parameter.name]
-        if not (isinstance(hint, type) and issubclass(hint, ShapeOptions | OutputOptions)):
+        if not (isinstance(hint, type) and issubclass(hint, ShapeOptions | OutputOptions | PictureOptions)):
             parameters.append(parameter.replace(annotation=hint, kind=parameter.KEYWORD_ONLY))
             continue
         groups[parameter.name] = hint
