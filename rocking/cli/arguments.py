@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from rocking.cli.options import ProblemOptions, ShapeOptions, SpectrumOptions, WindowOptions
+from rocking.cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.block import Block
 from rocking.model.checks import check_window
@@ -141,7 +141,7 @@ def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Para
     return _of_problem(options, block, block.uplift_acceleration, _period(block, window[0])), window
 
 
-def read_block(options: ShapeOptions) -> Block:
+def read_block(options: SizeOptions) -> Block:
     """The block of the sizes.
 
     Raises
@@ -235,7 +235,7 @@ def _period(block: Block, ratio: float) -> float:
     return 2.0 * math.pi / (ratio * block.frequency_parameter)
 
 
-def _positive(options: ShapeOptions, name: str) -> float:
+def _positive(options: SizeOptions, name: str) -> float:
     text = getattr(options, name)
     if text is None:
         raise InvalidArgumentError(name, None, "required with the other options that have units")

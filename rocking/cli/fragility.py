@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli.options import OutputOptions, with_options
+from rocking.cli.progress import progress
 from rocking.cli.record import file_errors
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def suite_fragility(configuration: str) -> tuple[xr.Dataset, SuiteConfiguration]
     from rocking.suites.fragility import fragility as fragility_of
 
     path = Path(configuration)
-    with configuration_errors(), file_errors():
+    with configuration_errors(), file_errors(), progress("solving the blocks under the records"):
         given = _read(path)
         suite = suite_configuration(given.get("suite", given), path.parent)
         found = fragility_of(

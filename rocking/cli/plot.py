@@ -20,6 +20,7 @@ from rocking.cli.options import (
     WindowOptions,
     with_options,
 )
+from rocking.cli.progress import progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -200,12 +201,13 @@ def _picture(options: PictureOptions) -> Iterator[Callable[[Callable[[Any, Any],
     def draw(panels: Callable[[Any, Any], Any]) -> None:
         pictures, output = _pictures()
         with output.style():
-            figure = output.new_figure(options.output, SIZE)
-            panels(pictures, figure)
+            with progress("drawing"):
+                figure = output.new_figure(options.output, SIZE)
+                panels(pictures, figure)
+                if options.output is not None:
+                    output.save_figure(figure, options.output)
             if options.output is None:
                 output.show_figure(figure)
-            else:
-                output.save_figure(figure, options.output)
 
     with option_errors():
         yield draw
