@@ -18,7 +18,6 @@ from rocking.history.record_history import record_history
 from rocking.history.record_motion import build_record_motion
 from rocking.model.block import Block
 from rocking.suites.pulse_fit import fit_pulse
-from rocking_api.http.batch import limited_body
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.memory_budget import reservation_of
@@ -87,8 +86,7 @@ async def post_history(
 async def _read(params: RecordParams, request: Request, service: Service) -> Record:
     """The record in the body, parsed in a thread, one body at a time."""
     params.check()
-    settings, reservation = service.settings, reservation_of(request)
-    body = await limited_body(request, settings.max_record_bytes, settings.arrival_seconds, reservation)
+    body = await service.read_body(request, service.settings.max_record_bytes)
 
     def read(stop: StopFlag) -> Record:
         del stop  # the largest body takes two seconds
@@ -98,7 +96,7 @@ async def _read(params: RecordParams, request: Request, service: Service) -> Rec
         return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)
 
     record = await service.run_parser(read, request, large=True)
-    reservation.replace(record.acceleration.nbytes)  # the body is released
+    reservation_of(request).replace(record.acceleration.nbytes)  # the body is released
     return record
 
 
