@@ -112,7 +112,7 @@ def _solved(
         motion = motion.baseline_corrected(order=order)
     block = Block(*sizes)
     found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
-    response, refined = found.response, found.resampled
+    response, refined = found.dimensionless, found.resampled
     about: dict[str, Any] = {
         "record": motion.name,
         "source": motion.source,
