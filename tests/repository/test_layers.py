@@ -17,6 +17,7 @@ LAYERS = (
     ("stress",),
     ("benchmarks",),
     ("api/rocking_api", "rocking/cli", "workflow"),
+    ("rocking/plot",),
     ("rocking/precompile",),
     ("rocking/lookup", "rocking/suites"),
     ("rocking/dimensional",),

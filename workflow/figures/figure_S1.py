@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.closed_form import EXPANSION_TIME, ad_hoc_sine, pulse_end, uplift_phase
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
+from workflow.figures.style import panel_letters, plotted
 
 
 def data(*, slenderness: float, frequency_ratio: Sequence[float]) -> xr.Dataset:
