@@ -112,7 +112,7 @@ def _solved(
     if order is not None:
         motion = motion.baseline_corrected(order=order)
     found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
-    response, refined = found.response, found.resampled
+    response, refined = found.dimensionless, found.resampled
     about: dict[str, Any] = {
         "record": motion.name,
         "source": motion.source,

@@ -9,8 +9,9 @@ from pydantic_core import PydanticCustomError
 
 from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
+from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Method, Params, PulseName, Tolerance, check_value
-from rocking_api.models.responses import VERSION, PointResponse
+from rocking_api.models.responses import QUERY, VERSION_FIELD, PointResponse
 
 RANGES = {
     "half_width": (1e-4, 1e4, "m"),
@@ -108,7 +109,7 @@ class Margins(BaseModel):
 class BlockResponse(BaseModel):
     """What happens to the block."""
 
-    query: BlockParams
+    query: BlockParams = QUERY
     url: str = Field(description="path of the request, defaults included")
     response: PointResponse = Field(description="the same request and response in dimensionless groups")
     overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
@@ -153,4 +154,5 @@ class BlockResponse(BaseModel):
     warnings: list[str] = Field(description="where the answer, one about pure rocking, is in doubt")
     notes: list[str] = Field(description="what else is worth knowing")
     data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
-    version: str = VERSION
+    metadata: Metadata = METADATA_FIELD
+    version: str = VERSION_FIELD

@@ -36,6 +36,9 @@ _IMPACTS = Field(description=f"{IMPACTS.description()}; -1 if nodes of a data se
 _EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
 _BOUND = Field(description=ERROR_BOUND.description())
 _SOURCE = Field(description=SOURCE.description())
+QUERY = Field(description="parameters of the request, defaults included")
+VERSION_FIELD = Field(VERSION, description="version of the package")
+BY_SOLVER = Field("solver", description="what answered: always the solver")
 _DATA = Field(
     description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
     "solver did"
@@ -45,7 +48,7 @@ _DATA = Field(
 class PointResponse(BaseModel):
     """One block."""
 
-    query: ResponseParams
+    query: ResponseParams = QUERY
     peak_rotation: float | None = _PEAK
     overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
@@ -56,7 +59,7 @@ class PointResponse(BaseModel):
     note: str | None = Field(None, description="why peak_rotation or error_bound is null")
     source: str = _SOURCE
     data_version: str | None = _DATA
-    version: str = VERSION
+    version: str = VERSION_FIELD
 
 
 class Columns(BaseModel):
@@ -70,7 +73,7 @@ class Columns(BaseModel):
     error_bound: list[float | None] = _BOUND
     source: list[str] = _SOURCE
     data_versions: list[str] = Field(description="sha256 of each data set used")
-    version: str = VERSION
+    version: str = VERSION_FIELD
 
 
 class BatchResponse(Columns):
@@ -82,7 +85,7 @@ class BatchResponse(Columns):
 class SpectrumResponse(Columns):
     """A spectrum."""
 
-    query: dict[str, Any]
+    query: dict[str, Any] = QUERY
     frequency_ratio: list[float] = Field(description="omega_g/p [-]")
 
 
@@ -98,11 +101,11 @@ class Curve(BaseModel):
 class OverturningResponse(BaseModel):
     """The boundary curves of a pulse and a restitution."""
 
-    query: OverturningParams
-    curves: list[Curve]
+    query: OverturningParams = QUERY
+    curves: list[Curve] = Field(description="boundary curves")
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
-    version: str = VERSION
+    version: str = VERSION_FIELD
 
 
 class ContactResponse(BaseModel):
@@ -113,31 +116,36 @@ class ContactResponse(BaseModel):
     friction_demand: list[float | None] = Field(description="|H|/N [-]; null where N <= 0; 0 in the slender limit")
     friction_demand_over_slope: list[float | None] = Field(description="|H|/(N tan alpha) [-]; null where N <= 0")
     largest_friction_demand: float | None = Field(description="also between the samples [-]; null if it lifts off")
-    largest_friction_demand_over_slope: float | None
-    smallest_normal_reaction: float
+    largest_friction_demand_over_slope: float | None = Field(description="the same over tan alpha [-]")
+    smallest_normal_reaction: float = Field(description="over the weight [-]; 0 and below: it lifts off")
     impulse_ratio: float | None = Field(
         description="horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
     )
-    lifts_off: bool
+    lifts_off: bool = Field(description="whether the block leaves the ground")
     warnings: str = Field(description="where the assumption of pure rocking is doubtful, in words")
 
 
-class HistoryResponse(BaseModel):
-    """A motion."""
+class Motion(BaseModel):
+    """A motion: outcome and samples, whatever its variable of time is."""
 
-    query: HistoryParams
     overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     peak_rotation: float | None = _PEAK
     impacts: int = _IMPACTS
-    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
     rotation: list[float] = Field(description="theta/alpha [-]")
-    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
-    ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
-    impact_time: list[float] = Field(description="tau of the impacts [-]")
+    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau, tau = p t [-]")
+    ground_acceleration: list[float] = Field(description="u_g/(g tan alpha) [-]; under a pulse a f")
+    impact_time: list[float] = Field(description="times of the impacts, of the variable of time")
     contact: ContactResponse | None = Field(None, description="null unless requested")
-    source: str = "solver"
-    version: str = VERSION
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
+
+
+class HistoryResponse(Motion):
+    """A motion under a pulse."""
+
+    query: HistoryParams = QUERY
+    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
 
 
 class DatasetSummary(BaseModel):
@@ -180,7 +188,7 @@ class Health(BaseModel):
     """State of the service."""
 
     status: str = Field(description="ok, or degraded: data sets are missing or damaged, and the solver replaces them")
-    version: str = VERSION
+    version: str = VERSION_FIELD
     datasets: int = Field(description="data sets found")
     unchecked: int = Field(0, description="of these, not yet checked; retry in a moment")
     problems: dict[str, str] = Field(description="what is missing or damaged, by name")

@@ -1,4 +1,4 @@
-"""The pages `/` and `/docs`, which load nothing from other hosts."""
+"""The pages `/`, `/records` and `/docs`, which load nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -27,6 +27,12 @@ router = APIRouter(include_in_schema=False, route_class=ParamsRoute)
 async def get_explorer() -> FileResponse:
     """The explorer: a block in metres, the map of the control space, time histories."""
     return _page("index.html", _EXPLORER_POLICY)
+
+
+@router.get("/records")
+async def get_records() -> FileResponse:
+    """A block under the record of a file."""
+    return _page("records.html", _EXPLORER_POLICY)
 
 
 @router.get("/docs")
