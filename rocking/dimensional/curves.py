@@ -214,6 +214,7 @@ def _description(problem: BlockProblem) -> dict[str, float]:
     return {
         "half_width": block.half_width,
         "half_height": block.half_height,
+        "alpha": block.alpha,
         "gravity": block.gravity,
         "peak_acceleration": problem.peak_acceleration,
         "period": problem.period,

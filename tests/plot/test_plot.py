@@ -44,6 +44,15 @@ def test_history_of_a_block_in_degrees(ax):
     assert ax.get_title("right") == "rocks and comes to rest"
 
 
+def test_an_equivalent_block_has_its_own_angle(ax):
+    arch = rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=np.radians(157.5), voussoirs=7)
+    plot.history(arch.history("sine", peak_acceleration=4.0, period=0.3), ax)
+    assert ax.lines[1].get_ydata()[0] == pytest.approx(np.degrees(arch.alpha))
+    found = arch.response("sine", peak_acceleration=4.0, period=0.3)
+    point = plot.response(found).lines[-1]
+    assert point.get_ydata()[0] == pytest.approx(np.degrees(found.rotation))
+
+
 def test_ground_acceleration_with_the_smallest_one_that_starts_rocking(ax):
     data = BLOCK.history("sine", **PULSE)
     plot.ground_acceleration(data, ax)
