@@ -18,6 +18,7 @@ from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
 from rocking_api.http.batch import limited_body
+from rocking_api.http.dataset_summaries import DatasetSummaries
 from rocking_api.http.memory_budget import MemoryBudget, reservation_of
 from rocking_api.http.metrics import Metrics
 from rocking_api.http.zarr_store import ZarrStores
@@ -42,6 +43,7 @@ class Service:
     io_limiter: CapacityLimiter = field(init=False)
     parser: BoundedExecutor = field(init=False)
     memory_budget: MemoryBudget = field(init=False)
+    summaries: DatasetSummaries = field(init=False)
     turns: anyio.Lock = field(default_factory=anyio.Lock)
 
     def __post_init__(self) -> None:
@@ -53,6 +55,7 @@ class Service:
         self.executor = BoundedExecutor(settings.max_workers, settings.max_queue, settings.max_seconds)
         self.metrics = Metrics(self.executor)
         self.dataset_checker = DatasetChecker(self.cubes)
+        self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)
         self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)

@@ -128,9 +128,10 @@ def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_point
         If `stop` was set.
     """
     if form == "json":
-        for name, value in parameters.items():
-            raise InvalidArgumentError(name, value, "no parameters in the URL; a JSON body holds them all")
         columns, options = _read_json(body, max_points, stop)
+        for name, value in parameters.items():
+            if name not in ("pulse", "method") or getattr(options, name) != value:
+                raise InvalidArgumentError(name, value, "nothing in the URL that the JSON body does not hold as well")
     else:
         columns = parse_csv(body, max_points, stop) if form == "csv" else _read_netcdf(body, max_points)
         given = {name: value for name, value in parameters.items() if name != "format"}

@@ -148,40 +148,55 @@ class HistoryResponse(Motion):
     tau: list[float] = Field(description="time p t from the start of the pulse [-]")
 
 
+class Link(BaseModel):
+    """A link, as in a STAC item."""
+
+    rel: str = Field(description="self: the description; data: the file; version: this version of it; subset; zarr")
+    href: str = Field(description="path on this service")
+    type: str = Field(description="media type")
+
+
 class DatasetSummary(BaseModel):
     """An entry of the catalogue."""
 
-    name: str
+    name: str = Field(description="name: the path below the results folder, without suffix")
+    title: str = Field(description="title")
+    pulse: str | None = Field(description="pulse, see /v1/pulses; null: several or none")
+    restitution: float | None = Field(description="coefficient of restitution eta [-]; null: several or none")
+    extent: dict[str, tuple[float, float]] = Field(
+        description="smallest and largest alpha [rad], slenderness [-] and frequency_ratio [-]"
+    )
     size: int = Field(description="bytes of the netCDF file")
-    sha256: str
+    sha256: str = Field(description="sha256 of the netCDF file")
     metadata: str = Field(description="path of its description")
     netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
     version: str = Field(description="path of this version of the file; immutable")
     zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
+    links: list[Link] = Field(description="the same paths with relation and media type")
 
 
 class DatasetCatalogue(BaseModel):
     """All data sets."""
 
-    datasets: list[DatasetSummary]
+    datasets: list[DatasetSummary] = Field(description="in the order of their names")
 
 
 class VariableDescription(BaseModel):
     """A variable of a data set."""
 
-    dimensions: list[str]
-    shape: list[int]
-    dtype: str
-    attributes: dict[str, Any]
+    dimensions: list[str] = Field(description="names of its dimensions, in order")
+    shape: list[int] = Field(description="its size along each of them")
+    dtype: str = Field(description="type of its values")
+    attributes: dict[str, Any] = Field(description="CF attributes: units, long_name, equation and others")
 
 
 class DatasetDescription(DatasetSummary):
     """Contents of a data set."""
 
-    dimensions: dict[str, int]
-    coordinates: dict[str, VariableDescription]
-    variables: dict[str, VariableDescription]
-    attributes: dict[str, Any]
+    dimensions: dict[str, int] = Field(description="size of each dimension")
+    coordinates: dict[str, VariableDescription] = Field(description="coordinates by name")
+    variables: dict[str, VariableDescription] = Field(description="variables by name")
+    attributes: dict[str, Any] = Field(description="CF and ACDD attributes, digests of code and settings")
 
 
 class Health(BaseModel):

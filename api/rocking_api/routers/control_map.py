@@ -51,10 +51,10 @@ class MapParams(Params):
     pulse: PulseName
     restitution: Restitution
     alpha_deg: AlphaDeg = None
-    frequency_ratio_min: FrequencyRatio = 0.5
-    frequency_ratio_max: FrequencyRatio = 12.0
-    slenderness_min: Slenderness = 0.01
-    slenderness_max: Slenderness = 1.05
+    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
+    slenderness_min: Slenderness = Field(0.01, examples=[0.01])
+    slenderness_max: Slenderness = Field(1.05, examples=[1.05])
     columns: int = Field(120, description="frequency ratios [-]", json_schema_extra={"minimum": 2})
     rows: int = Field(90, description="slendernesses [-]", json_schema_extra={"minimum": 2})
     format: Format = None

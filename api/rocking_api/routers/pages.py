@@ -1,4 +1,4 @@
-"""The pages `/`, `/records` and `/docs`, which load nothing from other hosts."""
+"""The pages `/`, `/records`, `/datasets`, `/state` and `/docs`, which load nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -33,6 +33,18 @@ async def get_explorer() -> FileResponse:
 async def get_records() -> FileResponse:
     """A block under the record of a file."""
     return _page("records.html", _EXPLORER_POLICY)
+
+
+@router.get("/datasets")
+async def get_datasets_page() -> FileResponse:
+    """The catalogue of the data sets."""
+    return _page("datasets.html", _EXPLORER_POLICY)
+
+
+@router.get("/state")
+async def get_state_page() -> FileResponse:
+    """The state of the service."""
+    return _page("state.html", _EXPLORER_POLICY)
 
 
 @router.get("/docs")

@@ -47,6 +47,11 @@ from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1/records", tags=["response"], route_class=ParamsRoute)
 
+_EXAMPLE = "time [s],acceleration [g]\n" + "".join(
+    f"{0.05 * k:.2f},{0.6 * math.sin(math.pi * k / 10.0):.4f}\n" for k in range(21)
+)
+"""One full sine of 1 s and 0.6 g."""
+
 _BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -54,7 +59,7 @@ _BODY: dict[str, Any] = {
         "content": {
             media_type: {
                 "schema": {"type": "string"},
-                "example": "time [s],acceleration [g]\n0,0\n0.01,0.4\n0.02,0.5\n0.03,0\n",
+                "example": _EXAMPLE,
             }
             for media_type in ("text/plain", "text/csv", "application/octet-stream")
         },

@@ -37,14 +37,33 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     response_model=BatchResponse,
     responses=CONTENT,
     openapi_extra={
+        "parameters": [
+            {
+                "name": "pulse",
+                "in": "query",
+                "description": "pulse, required for CSV and netCDF-3; a JSON body holds it",
+                "schema": {"type": "string", "examples": ["sine"]},
+            }
+        ],
         "requestBody": {
             "required": True,
             "content": {
-                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/BatchParams"}},
-                MEDIA_TYPES["csv"]: {"schema": {"type": "string"}, "example": "slenderness,frequency_ratio\n0.4,5\n"},
+                MEDIA_TYPES["json"]: {
+                    "schema": {"$ref": "#/components/schemas/BatchParams"},
+                    "example": {
+                        "pulse": "sine",
+                        "slenderness": [0.4, 0.2, 1.2],
+                        "frequency_ratio": 5,
+                        "restitution": 0.85,
+                    },
+                },
+                MEDIA_TYPES["csv"]: {
+                    "schema": {"type": "string"},
+                    "example": "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n",
+                },
                 MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
             },
-        }
+        },
     },
 )
 async def post_response(request: Request, service: ServiceDep) -> Response:
