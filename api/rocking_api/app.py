@@ -21,6 +21,7 @@ from rocking_api.http.memory_budget import MemoryBudgetMiddleware
 from rocking_api.http.params_route import FastPath, ParamsRoute
 from rocking_api.http.request_log import RequestLog
 from rocking_api.http.zarr_store import ZarrStores
+from rocking_api.models.blocks import BlockRows
 from rocking_api.models.params import BatchParams
 from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
@@ -28,14 +29,17 @@ from rocking_api.routers import (
     control_map,
     critical_amplitude,
     datasets,
+    guide,
     health,
     history,
     metrics,
     overturning,
     pages,
+    pulses,
     records,
     response,
     spectrum,
+    subset,
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
@@ -44,7 +48,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
-    *(datasets, health, metrics, pages),
+    *(pulses, subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 
 
@@ -80,6 +84,9 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         summary="Does the block overturn, and how far does it rock?",
         description="Response of the free-standing rigid block to pulse ground motion, each number with its error "
         "bound and its source. Errors are problem+json (RFC 9457).",
+        contact={"name": "The rocking developers"},
+        license_info={"name": "BSD-3-Clause", "identifier": "BSD-3-Clause"},
+        servers=[{"url": "/", "description": "this service"}],
         docs_url=None,
         redoc_url=None,
         lifespan=_lifespan,
@@ -109,6 +116,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     for module in ROUTES:
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
+    app.mount("/guide", guide.GuideFiles(settings.guide))
     _describe_bodies(app)
     return app
 
@@ -144,8 +152,10 @@ def _describe_bodies(app: FastAPI) -> None:
     def described() -> dict[str, object]:
         if app.openapi_schema is None:
             schemas = generate()["components"]["schemas"]
-            for model in (Problem, BatchParams):
-                schemas[model.__name__] = model.model_json_schema()
+            for model in (Problem, BatchParams, BlockRows):
+                schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
+                schemas.update(schema.pop("$defs", {}))
+                schemas[model.__name__] = schema
         return generate()
 
     app.openapi = described  # type: ignore[method-assign]  # FastAPI's documented way to extend the description

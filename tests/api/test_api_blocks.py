@@ -282,3 +282,50 @@ def test_an_elastic_block_with_many_impacts_has_a_response(results):
     assert response["response"]["outcome"] == "NO_UPLIFT"
     assert response["thresholds"] is None
     assert "the peak accelerations at which the outcome changes were not found in time" in response["warnings"][-1]
+
+
+ROWS = [
+    {"name": "vase", "half_width": 0.1, "half_height": 0.4, "peak_acceleration": 4.0, "pulse_period": 0.5},
+    {"half_width": 0.2, "half_height": 0.8, "peak_acceleration": 4.0, "pulse_period": 0.5, "restitution": 0.9},
+    {"half_width": 0.2, "half_height": 0.8, "peak_acceleration": 8.0, "pulse_period": 0.5},
+]
+TABLE = """name,width [m],height [cm],peak_acceleration [m/s2],period [ms],restitution
+vase,0.2,80,4,500,
+,0.4,160,4,500,0.9
+,0.4,160,8,500,housner
+"""
+
+
+def test_many_blocks_as_json_and_csv(client):
+    found = client.post("/v1/blocks/response?pulse=sine", json={"blocks": ROWS}).json()
+    for k, row in enumerate(ROWS):
+        query = {name: value for name, value in row.items() if name != "name"} | {"pulse": "sine", "method": "solver"}
+        single = client.get("/v1/blocks/response", params=query).json()
+        for name in ("peak_rotation_deg", "top_displacement", "overturned", "restitution", "alpha_deg"):
+            assert found[name][k] == (None if single[name] is None else pytest.approx(single[name], rel=1e-9)), name
+    assert found["name"] == ["vase", "", ""]
+    assert found["overturned"] == [True, False, True]
+    assert found["metadata"]["assumptions"]
+    url = "/v1/blocks/response?pulse=sine"
+    text = client.post(url, content=TABLE, headers={"content-type": "text/csv"}).text.splitlines()
+    columns = dict(zip(text[0].split(","), zip(*(line.split(",") for line in text[1:]), strict=True), strict=True))
+    assert columns["overturned"] == ("true", "false", "true")
+    assert float(columns["peak_rotation"][1]) == pytest.approx(found["peak_rotation"][1], rel=1e-9)
+    both = client.post(url + "&format=json", content=TABLE, headers={"content-type": "text/csv"}).json()
+    assert both["outcome"] == found["outcome"]
+
+
+@pytest.mark.parametrize(
+    ("body", "kind", "name"),
+    [
+        ('{"blocks": []}', "application/json", "blocks"),
+        ('{"blocks": [{"half_width": 1}]}', "application/json", "blocks"),
+        (TABLE.replace("[cm]", ""), "text/csv", "blocks, header"),
+        (TABLE.replace("80", "tall"), "text/csv", "blocks, line 2, height"),
+        (TABLE.replace("0.2,", "1e9,"), "text/csv", "half_width"),
+        ("CDF", "application/x-netcdf", "Content-Type"),
+    ],
+)
+def test_bodies_with_invalid_blocks_are_explained(client, body, kind, name):
+    response = client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": kind})
+    assert_problem(response, 415 if name == "Content-Type" else 422, name)

@@ -10,6 +10,7 @@ import xarray as xr
 
 import rocking
 from rocking.dimensional.record_response import respond_to_record
+from rocking.dimensional.record_scales import scale_thresholds
 from tests.api.conftest import assert_problem, client_of
 
 ROOT = Path(__file__).parents[2]
@@ -31,10 +32,10 @@ def test_the_response_is_that_of_the_library(client, motion):
     block = rocking.Block(0.25, 1.0)
     expected = respond_to_record(block, motion, scale=1.1)
     found = post(client, scale=1.1, name="napa_HNE.csv").json()
-    assert found["peak_rotation"] == float(expected.response.peak_rotation)
+    assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
     assert found["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
-    assert found["impacts"] == int(expected.response.impacts)
+    assert found["impacts"] == int(expected.dimensionless.impacts)
     assert found["outcome"] == "SAFE"
     assert not found["overturned"]
     assert found["meaning"] == "rocks and comes to rest"
@@ -91,6 +92,48 @@ def test_history_in_three_formats(client, motion):
         np.testing.assert_array_equal(dataset.rotation, expected.rotation)
     whole = post(client, route="history").json()
     assert len(whole["time"]) > motion.samples
+
+
+def test_scales_are_those_of_the_library(client, motion):
+    block = rocking.Block(0.25, 1.0)
+    uplift = block.uplift_acceleration / motion.peak_acceleration
+    found = post(client, route="scales", points=30, scale_max=2.0).json()
+    scale = np.array(found["scale"])
+    np.testing.assert_allclose(scale, np.geomspace(uplift, 2.0, 30), rtol=1e-14)
+    expected = rocking.record_response(
+        motion,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=uplift / scale,
+        restitution=block.inelastic_restitution,
+        alpha=block.alpha,
+    )
+    assert found["overturned"] == expected.overturned.tolist()
+    assert [math.nan if peak is None else peak for peak in found["peak_rotation"]] == pytest.approx(
+        expected.peak_rotation.tolist(), nan_ok=True
+    )
+    thresholds = scale_thresholds(motion, block, highest=2.0)
+    assert [one["scale"] for one in found["thresholds"]] == thresholds.scale.tolist()
+    table = post(client, route="scales", points=30, scale_max=2.0, format="csv").text.splitlines()
+    assert table[0].startswith("scale,peak_acceleration,peak_rotation,overturned")
+    file = post(client, route="scales", points=30, scale_max=2.0, format="nc").content
+    with xr.open_dataset(io.BytesIO(file)) as dataset:
+        np.testing.assert_array_equal(dataset.peak_rotation, expected.peak_rotation)
+    assert_problem(post(client, route="scales", scale_min=2.0, scale_max=1.0), 422, "scale_max")
+    assert_problem(post(client, route="scales", points=1), 422, "points")
+
+
+def test_the_pulse_is_drawn_beside_the_record(client, motion):
+    part = rocking.Record(motion.acceleration[800:2400], motion.time_step, "m/s2")
+    plain = "\n".join(map(repr, part.acceleration.tolist())).encode()
+    found = post(client, plain, route="pulse", unit="m/s2", time_step=0.005, scale=2.0, samples=400).json()
+    fit = rocking.fit_pulse(part, blocks=rocking.Block(0.25, 1.0))
+    assert found["pulse"]["period"] == pytest.approx(fit.period, rel=1e-6)
+    assert len(found["time"]) == 400
+    np.testing.assert_allclose(found["record_velocity"], 2.0 * part.velocity[::4])
+    np.testing.assert_allclose(found["pulse_acceleration"], 2.0 * fit.acceleration(part.times[::4]), atol=1e-5)
+    rates = np.gradient(found["pulse_velocity"], found["time"])
+    assert np.abs(rates - found["pulse_acceleration"]).max() < 0.02 * np.abs(found["pulse_acceleration"]).max()
+    assert "unconservative" in found["caution"]
 
 
 def test_what_the_file_does_not_state_is_in_the_query(client, motion):

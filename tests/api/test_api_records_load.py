@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import os
 import subprocess
 import sys
 import time
@@ -48,7 +49,16 @@ def megabytes(process, kind):
     return int(line.split()[1]) / 1024
 
 
+def kept_waiting(*processes):
+    """Time that the main threads of processes were ready to run while the processors did other work [s].
+
+    That of the other threads of the service must count: the event loop waits for those that parse bodies.
+    """
+    return 1e-9 * sum(int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[1]) for pid in processes)
+
+
 @pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path):
     body, delays = column_file(5_000_000), []
     (tmp_path / "record.csv").write_bytes(body)
@@ -66,13 +76,13 @@ def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path):
         arguments = [sys.executable, "-c", CLIENTS, str(server.port), str(tmp_path / "record.csv")]
         with subprocess.Popen(arguments, stdout=subprocess.PIPE) as clients:
             while clients.poll() is None:
-                began = time.perf_counter()
+                waited, began = kept_waiting(os.getpid(), server.process.pid), time.perf_counter()
                 assert status_of("GET", "/health") == 200
-                delays.append(time.perf_counter() - began)
+                took = time.perf_counter() - began
+                delays.append(took - (kept_waiting(os.getpid(), server.process.pid) - waited))
                 time.sleep(0.02)
             statuses = json.loads(clients.stdout.read())
         added = megabytes(server.process, "VmHWM") - before
     assert set(statuses) == {200, 503}  # beyond the queue and the limit of memory clients have to repeat
     assert added < 300.0
-    # of nearly all requests: the machine of the tests has other work, and the clients are on it as well
-    assert np.quantile(delays, 0.95) < 0.2, sorted(delays)[-10:]
+    assert max(delays) < 0.2, sorted(delays)[-10:]

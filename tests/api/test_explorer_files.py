@@ -8,6 +8,8 @@ import pytest
 import rocking_api
 
 STATIC = Path(rocking_api.__file__).parent / "static"
+PAGES = [STATIC / f"{name}.html" for name in ("index", "records", "datasets", "state")]
+SHARED = {"page.js"}  # looks for a form that only one page has
 SCRIPTS = sorted((STATIC / "explorer").glob("*.js"))
 
 
@@ -40,15 +42,29 @@ def test_scripts_have_a_first_comment_and_valid_imports(path):
 
 
 def test_every_script_is_part_of_the_page():
-    imported = set(re.findall(r"from \"\./([\w.]+)\"", "".join(path.read_text() for path in SCRIPTS)))
-    assert {path.name for path in SCRIPTS} == imported | {"main.js"}
+    texts = "".join(path.read_text() for path in SCRIPTS)
+    imported = set(re.findall(r"(?:from |import\()\"\./([\w.]+)\"", texts))
+    entries = set(re.findall(r"/static/explorer/([\w.]+\.js)", "".join(path.read_text() for path in PAGES)))
+    assert {path.name for path in SCRIPTS} == imported | entries
 
 
-def test_ids_are_there_and_unique():
-    page = (STATIC / "index.html").read_text()
+def scripts_of(page):
+    """The scripts that a page loads, also those that it loads later."""
+    found, open_ = set(), set(re.findall(r"/static/explorer/([\w.]+\.js)", page))
+    while open_:
+        found |= open_
+        texts = "".join((STATIC / "explorer" / name).read_text() for name in open_)
+        open_ = set(re.findall(r"(?:from |import\()\"\./([\w.]+)\"", texts)) - found
+    return found
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
+def test_ids_are_there_and_unique(path):
+    page = path.read_text()
     ids = re.findall(r'\bid="([^"]+)"', page)
     assert len(ids) == len(set(ids))
-    params = {name for path in SCRIPTS for name in re.findall(r'getElementById\("([^"]+)"\)', path.read_text())}
+    texts = [(STATIC / "explorer" / name).read_text() for name in scripts_of(page) if name not in SHARED]
+    params = {name for text in texts for name in re.findall(r'getElementById\("([^"]+)"\)', text)}
     named = {
         name
         for names in re.findall(r'\b(?:for|data-field|aria-labelledby|aria-describedby)="([^"]+)"', page)

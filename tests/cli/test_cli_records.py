@@ -48,7 +48,7 @@ def test_record_in_three_formats():
     block, motion = rocking.Block(0.25, 1.0), rocking.read_record(NAPA)
     expected = respond_to_record(block, motion, scale=1.1)
     result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
-    assert result["peak_rotation"] == float(expected.response.peak_rotation)
+    assert result["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
     assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
     assert result["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
@@ -166,3 +166,10 @@ def test_unreadable_configuration_is_refused(name, text, tmp_path):
     (tmp_path / name).write_text(text)
     assert name in refused("fragility", str(tmp_path / name)).replace(" ", "")
     assert "missing.yaml" in refused("fragility", "missing.yaml")
+
+
+def test_width_and_height_are_twice_the_half_sizes():
+    whole = json.loads(run("record", NAPA, "--width", "50 cm", "--height", "2m", "--json"))
+    assert whole == json.loads(run("record", NAPA, *SIZES, "--json"))
+    assert "one of --width and --half-width" in refused("record", NAPA, *SIZES, "--width", "0.5m")
+    assert "--width" in refused("record", NAPA, "--height", "2m")

@@ -72,10 +72,10 @@ MAX_NUMBER = sys.float_info.max
 class Problem(BaseModel):
     """RFC 9457, with the three parts of every error message."""
 
-    type: str = "about:blank"
+    type: str = Field("about:blank", description="always about:blank: the title says what the status means")
     title: str = Field(description="what the status code means")
-    status: int
-    detail: str
+    status: int = Field(description="HTTP status code")
+    detail: str = Field(description="what is wrong, in one sentence")
     parameter: str | None = Field(None, description="which parameter")
     value: float | str | None = Field(None, description="what it was")
     allowed: str | None = Field(None, description="what is allowed")

@@ -9,8 +9,9 @@ from pydantic_core import PydanticCustomError
 
 from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
-from rocking_api.models.params import Method, Params, PulseName, Tolerance, check_value
-from rocking_api.models.responses import VERSION, PointResponse
+from rocking_api.models.metadata import METADATA_FIELD, Metadata
+from rocking_api.models.params import Format, Method, Params, PulseName, Tolerance, check_value
+from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, PointResponse
 
 RANGES = {
     "half_width": (1e-4, 1e4, "m"),
@@ -61,6 +62,65 @@ class BlockParams(Params):
                 check_value(name, value)
 
 
+class BlocksParams(Params):
+    """What many blocks in a body have in common."""
+
+    pulse: PulseName
+    restitution: HousnerOrNumber = Field(
+        "housner", description="eta [-] of the blocks that state none, or housner: (2.4), 0 where that is negative"
+    )
+    format: Format = None
+
+    def check(self) -> None:
+        check_value("pulse", self.pulse)
+        if self.restitution != "housner":
+            check_value("restitution", self.restitution)
+
+
+class BlockRow(Params):
+    """One of many blocks in a JSON body, in SI units."""
+
+    name: str = Field("", description="label", max_length=200)
+    half_width: float = quantity("half_width", "b; the base is 2b wide")
+    half_height: float = quantity("half_height", "h")
+    peak_acceleration: float = quantity("peak_acceleration", "a_g")
+    pulse_period: float = quantity("pulse_period", "T_p = 2 pi/omega_g")
+    restitution: HousnerOrNumber | None = Field(None, description="eta [-], or housner; absent: that of the query")
+
+
+class BlockRows(Params):
+    """Many blocks in a JSON body."""
+
+    blocks: list[BlockRow] = Field(description="blocks, in the order of the response")
+
+
+class BlocksResponse(BaseModel):
+    """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
+
+    query: BlocksParams = QUERY
+    name: list[str] | None = Field(None, description="labels; null without any")
+    half_width: list[float] = Field(description="b [m]")
+    half_height: list[float] = Field(description="h [m]")
+    peak_acceleration: list[float] = Field(description="a_g [m/s2]")
+    period: list[float] = Field(description="T_p [s]")
+    uplift_acceleration: list[float] = Field(description="smallest ground acceleration that starts rocking [m/s2]")
+    alpha_deg: list[float] = Field(description="slenderness angle [deg]")
+    slenderness: list[float] = Field(description="g tan(alpha)/a_g [-]")
+    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+    restitution: list[float] = Field(description="eta [-]")
+    peak_rotation_deg: list[float | None] = Field(description="max |theta| [deg]; null if overturned")
+    top_displacement: list[float | None] = Field(description="displacement of the top corner [m]; null likewise")
+    peak_rotation: list[float | None] = Field(description="max |theta|/alpha [-]; null if overturned")
+    overturned: list[bool] = Field(description="final outcome")
+    outcome: list[str] = Field(description="final outcome by name")
+    impacts: list[int] = Field(description="number of impacts before the pulse ends [-]")
+    exceeded_alpha: list[bool] = Field(description="whether the rotation passes alpha")
+    error_bound: list[float | None] = Field(description="bound of the error of peak_rotation [-]; null if overturned")
+    metadata: Metadata = METADATA_FIELD
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
+
+
 class Threshold(BaseModel):
     """An amplitude at which the outcome changes."""
 
@@ -108,7 +168,7 @@ class Margins(BaseModel):
 class BlockResponse(BaseModel):
     """What happens to the block."""
 
-    query: BlockParams
+    query: BlockParams = QUERY
     url: str = Field(description="path of the request, defaults included")
     response: PointResponse = Field(description="the same request and response in dimensionless groups")
     overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
@@ -153,4 +213,5 @@ class BlockResponse(BaseModel):
     warnings: list[str] = Field(description="where the answer, one about pure rocking, is in doubt")
     notes: list[str] = Field(description="what else is worth knowing")
     data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
-    version: str = VERSION
+    metadata: Metadata = METADATA_FIELD
+    version: str = VERSION_FIELD

@@ -117,9 +117,9 @@ class ResponseParams(LookupOptions):
 class BatchParams(LookupOptions):
     """Many blocks: numbers, or arrays of one length."""
 
-    slenderness: Slenderness | list[Slenderness]
-    frequency_ratio: FrequencyRatio | list[FrequencyRatio]
-    restitution: Restitution | list[Restitution]
+    slenderness: Slenderness | list[Slenderness] = Field(description=SLENDERNESS.help)
+    frequency_ratio: FrequencyRatio | list[FrequencyRatio] = Field(description=FREQUENCY_RATIO.help)
+    restitution: Restitution | list[Restitution] = Field(description=RESTITUTION.help)
 
 
 class SpectrumParams(LookupOptions):
@@ -127,8 +127,8 @@ class SpectrumParams(LookupOptions):
 
     slenderness: Slenderness
     restitution: Restitution
-    frequency_ratio_min: FrequencyRatio = 0.5
-    frequency_ratio_max: FrequencyRatio = 12.0
+    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
     points: int = Field(200, description="points of the curve [-]", json_schema_extra={"minimum": 2})
     format: Format = None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
 
@@ -12,11 +12,25 @@ from rocking.errors import in_range, one_of
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
 from rocking.excitation.records.record import UNITS
 from rocking_api.models.blocks import RANGES, HousnerOrNumber, quantity
+from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params, check_value
-from rocking_api.models.responses import VERSION, ContactResponse
+from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, Motion
 
 SMALLEST_SCALE = 1e-6
 """Smallest factor of a record [-]."""
+
+MAX_SCALES = 2000
+"""Most factors of a curve over the scale [-]."""
+
+MAX_DRAWN = 100_000
+"""Most samples of a drawing [-]."""
+
+CAUTION = (
+    "A fitted pulse describes a record and does not replace it: what it leaves out moves blocks as well, so that the "
+    "amplitude at which it overturns a block is usually larger than that of the record, which is unconservative."
+)
+
+_SCALE: dict[str, Any] = {"minimum": SMALLEST_SCALE, "maximum": HIGHEST_SCALE}
 
 Unit = Annotated[
     str | None,
@@ -24,16 +38,11 @@ Unit = Annotated[
 ]
 
 
-class RecordParams(Params):
+class RecordFileParams(Params):
     """A block in SI units, and what the file of the record does not state."""
 
     half_width: float = quantity("half_width", "b; the base is 2b wide", examples=[0.2])
     half_height: float = quantity("half_height", "h", examples=[0.8])
-    scale: float = Field(
-        1.0,
-        description="factor of the record [-]",
-        json_schema_extra={"minimum": SMALLEST_SCALE, "maximum": HIGHEST_SCALE},
-    )
     restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     name: str = Field("record", description="name of the file, for messages", max_length=200)
@@ -53,11 +62,20 @@ class RecordParams(Params):
                 in_range(name, value, low, high, unit=unit)
             elif name == "restitution" and value != "housner":
                 check_value(name, value)
-        in_range("scale", self.scale, SMALLEST_SCALE, HIGHEST_SCALE)
         if self.unit is not None:
             one_of("unit", self.unit, UNITS)
         if self.baseline_order is not None:
             in_range("baseline_order", self.baseline_order, 0, MAX_BASELINE_ORDER)
+
+
+class RecordParams(RecordFileParams):
+    """The same, and a factor of the record."""
+
+    scale: float = Field(1.0, description="factor of the record [-]", json_schema_extra=_SCALE)
+
+    def check(self) -> None:
+        super().check()
+        in_range("scale", self.scale, SMALLEST_SCALE, HIGHEST_SCALE)
 
 
 class RecordResponseParams(RecordParams):
@@ -79,21 +97,58 @@ class RecordHistoryParams(RecordParams):
     format: Format = None
 
 
+class RecordScalesParams(RecordFileParams):
+    """The same, and the window of the factor."""
+
+    scale_min: float | None = Field(
+        None, description="smallest factor [-]; absent: that of uplift", json_schema_extra=_SCALE
+    )
+    scale_max: float | None = Field(
+        None, description="largest factor [-]; absent: ten times that of uplift", json_schema_extra=_SCALE
+    )
+    points: int = Field(
+        200,
+        description="factors, evenly spaced in their logarithm [-]",
+        json_schema_extra={"minimum": 2, "maximum": MAX_SCALES},
+    )
+    format: Format = None
+
+    def check(self) -> None:
+        super().check()
+        for name in ("scale_min", "scale_max"):
+            if (value := getattr(self, name)) is not None:
+                in_range(name, value, SMALLEST_SCALE, HIGHEST_SCALE)
+        in_range("points", self.points, 2, MAX_SCALES)
+
+
+class RecordPulseParams(RecordParams):
+    """The same, and the samples for a drawing."""
+
+    samples: int = Field(2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2})
+
+    def check(self) -> None:
+        super().check()
+        in_range("samples", self.samples, 2, MAX_DRAWN)
+
+
 class RecordDescription(BaseModel):
     """The record, as read; SI units."""
 
-    name: str
+    name: str = Field(description="name of the file, without its ending, and the component")
     source: str = Field(description="file, format, and remarks of the reader")
-    samples: int
-    time_step: float = Field(description="[s]")
+    samples: int = Field(description="number of samples [-]")
+    time_step: float = Field(description="time step [s]")
     peak_acceleration: float = Field(description="PGA [m/s2]")
     peak_velocity: float = Field(description="PGV [m/s]")
     peak_displacement: float = Field(description="PGD [m]")
-    arias_intensity: float = Field(description="[m/s]")
+    arias_intensity: float = Field(description="Arias intensity [m/s]")
     significant_duration: float = Field(description="between 5 % and 95 % of the Arias intensity [s]")
-    mean_period: float | None = Field(description="[s]; null if no frequency lies between 0.25 and 20 Hz")
+    mean_period: float | None = Field(description="mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
     final_velocity: float = Field(description="velocity at the last sample, which an offset leaves [m/s]")
     digest: str = Field(description="sha256 of the time step and the samples")
+
+
+_RECORD = Field(description="the record, as read")
 
 
 class ScaleThreshold(BaseModel):
@@ -123,16 +178,16 @@ class FittedPulse(BaseModel):
 class RecordResponse(BaseModel):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
-    query: RecordResponseParams
-    record: RecordDescription
+    query: RecordResponseParams = QUERY
+    record: RecordDescription = _RECORD
     overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
     exceeded_alpha: bool = Field(description="whether the rotation passes alpha; the ground can bring a block back")
-    outcome: str
+    outcome: str = Field(description="final outcome by name")
     rocking_model_applies: bool = Field(
         description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off"
     )
     meaning: str = Field(description="the outcome in words; where the rocking model does not apply, that and why")
-    impacts: int
+    impacts: int = Field(description="number of impacts while the ground moves [-]")
     peak_rotation: float | None = Field(description="max |theta|/alpha [-]; null if overturned")
     peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
     top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
@@ -155,24 +210,50 @@ class RecordResponse(BaseModel):
     smallest_normal_reaction: float = Field(description="over its weight [-]; 0 and below: it lifts off")
     pulse: FittedPulse | None = Field(None, description="null unless requested")
     warnings: list[str] = Field(description="where the answer is in doubt")
-    source: str = "solver"
-    version: str = VERSION
+    metadata: Metadata = METADATA_FIELD
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
 
 
-class RecordHistoryResponse(BaseModel):
-    """A motion under a record."""
+class RecordHistoryResponse(Motion):
+    """A motion under a record; `impact_time` in seconds."""
 
-    query: RecordHistoryParams
-    record: RecordDescription
-    overturned: bool
-    outcome: str
-    peak_rotation: float | None = Field(description="max |theta|/alpha [-]; null if overturned")
-    impacts: int
+    query: RecordHistoryParams = QUERY
+    record: RecordDescription = _RECORD
     time: list[float] = Field(description="from the first sample [s]")
-    rotation: list[float] = Field(description="theta/alpha [-]")
-    angular_velocity: list[float] = Field(description="theta'/(p alpha) [-]")
-    ground_acceleration: list[float] = Field(description="u_g/(g tan alpha) [-]")
-    impact_time: list[float] = Field(description="times of the impacts [s]")
-    contact: ContactResponse | None = Field(None, description="null unless requested")
-    source: str = "solver"
-    version: str = VERSION
+
+
+class RecordScalesResponse(BaseModel):
+    """The response over the scale of a record, and every scale at which the outcome changes."""
+
+    query: RecordScalesParams = QUERY
+    record: RecordDescription = _RECORD
+    scale: list[float] = Field(description="factors of the record [-]")
+    peak_acceleration: list[float] = Field(description="PGA of the scaled record [m/s2]")
+    peak_rotation: list[float | None] = Field(description="max |theta|/alpha [-]; null where the block overturns")
+    overturned: list[bool] = Field(description="final outcome")
+    outcome: list[str] = Field(description="final outcome by name")
+    impacts: list[int] = Field(description="number of impacts while the ground moves [-]")
+    exceeded_alpha: list[bool] = Field(description="whether the rotation passes alpha")
+    thresholds: list[ScaleThreshold] = Field(
+        description="all scales at which the outcome changes, ascending, from that of uplift to the largest; narrower "
+        "ranges of one outcome than 0.2 % can be missed"
+    )
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
+
+
+class RecordPulseResponse(BaseModel):
+    """The pulse fitted to the velocity of a record, and both motions for a drawing."""
+
+    query: RecordPulseParams = QUERY
+    record: RecordDescription = _RECORD
+    pulse: FittedPulse = Field(description="parameters of the pulse")
+    time: list[float] = Field(description="from the first sample [s]; every few samples of a long record")
+    record_acceleration: list[float] = Field(description="of the record, factor included [m/s2]")
+    pulse_acceleration: list[float] = Field(description="of the pulse, factor included [m/s2]")
+    record_velocity: list[float] = Field(description="of the record, factor included [m/s]")
+    pulse_velocity: list[float] = Field(description="of the pulse, factor included [m/s]")
+    caution: str = Field(CAUTION, description="why the pulse does not replace the record")
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD

@@ -36,6 +36,9 @@ _IMPACTS = Field(description=f"{IMPACTS.description()}; -1 if nodes of a data se
 _EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
 _BOUND = Field(description=ERROR_BOUND.description())
 _SOURCE = Field(description=SOURCE.description())
+QUERY = Field(description="parameters of the request, defaults included")
+VERSION_FIELD = Field(VERSION, description="version of the package")
+BY_SOLVER = Field("solver", description="what answered: always the solver")
 _DATA = Field(
     description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
     "solver did"
@@ -45,7 +48,7 @@ _DATA = Field(
 class PointResponse(BaseModel):
     """One block."""
 
-    query: ResponseParams
+    query: ResponseParams = QUERY
     peak_rotation: float | None = _PEAK
     overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
@@ -56,7 +59,7 @@ class PointResponse(BaseModel):
     note: str | None = Field(None, description="why peak_rotation or error_bound is null")
     source: str = _SOURCE
     data_version: str | None = _DATA
-    version: str = VERSION
+    version: str = VERSION_FIELD
 
 
 class Columns(BaseModel):
@@ -70,7 +73,7 @@ class Columns(BaseModel):
     error_bound: list[float | None] = _BOUND
     source: list[str] = _SOURCE
     data_versions: list[str] = Field(description="sha256 of each data set used")
-    version: str = VERSION
+    version: str = VERSION_FIELD
 
 
 class BatchResponse(Columns):
@@ -82,7 +85,7 @@ class BatchResponse(Columns):
 class SpectrumResponse(Columns):
     """A spectrum."""
 
-    query: dict[str, Any]
+    query: dict[str, Any] = QUERY
     frequency_ratio: list[float] = Field(description="omega_g/p [-]")
 
 
@@ -98,11 +101,11 @@ class Curve(BaseModel):
 class OverturningResponse(BaseModel):
     """The boundary curves of a pulse and a restitution."""
 
-    query: OverturningParams
-    curves: list[Curve]
+    query: OverturningParams = QUERY
+    curves: list[Curve] = Field(description="boundary curves")
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
-    version: str = VERSION
+    version: str = VERSION_FIELD
 
 
 class ContactResponse(BaseModel):
@@ -113,74 +116,94 @@ class ContactResponse(BaseModel):
     friction_demand: list[float | None] = Field(description="|H|/N [-]; null where N <= 0; 0 in the slender limit")
     friction_demand_over_slope: list[float | None] = Field(description="|H|/(N tan alpha) [-]; null where N <= 0")
     largest_friction_demand: float | None = Field(description="also between the samples [-]; null if it lifts off")
-    largest_friction_demand_over_slope: float | None
-    smallest_normal_reaction: float
+    largest_friction_demand_over_slope: float | None = Field(description="the same over tan alpha [-]")
+    smallest_normal_reaction: float = Field(description="over the weight [-]; 0 and below: it lifts off")
     impulse_ratio: float | None = Field(
         description="horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
     )
-    lifts_off: bool
+    lifts_off: bool = Field(description="whether the block leaves the ground")
     warnings: str = Field(description="where the assumption of pure rocking is doubtful, in words")
 
 
-class HistoryResponse(BaseModel):
-    """A motion."""
+class Motion(BaseModel):
+    """A motion: outcome and samples, whatever its variable of time is."""
 
-    query: HistoryParams
     overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     peak_rotation: float | None = _PEAK
     impacts: int = _IMPACTS
-    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
     rotation: list[float] = Field(description="theta/alpha [-]")
-    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau [-]")
-    ground_acceleration: list[float] = Field(description="a f = u_g/(g tan alpha) [-]")
-    impact_time: list[float] = Field(description="tau of the impacts [-]")
+    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau, tau = p t [-]")
+    ground_acceleration: list[float] = Field(description="u_g/(g tan alpha) [-]; under a pulse a f")
+    impact_time: list[float] = Field(description="times of the impacts, of the variable of time")
     contact: ContactResponse | None = Field(None, description="null unless requested")
-    source: str = "solver"
-    version: str = VERSION
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
+
+
+class HistoryResponse(Motion):
+    """A motion under a pulse."""
+
+    query: HistoryParams = QUERY
+    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
+
+
+class Link(BaseModel):
+    """A link, as in a STAC item."""
+
+    rel: str = Field(description="self: the description; data: the file; version: this version of it; subset; zarr")
+    href: str = Field(description="path on this service")
+    type: str = Field(description="media type")
 
 
 class DatasetSummary(BaseModel):
     """An entry of the catalogue."""
 
-    name: str
+    name: str = Field(description="name: the path below the results folder, without suffix")
+    title: str = Field(description="title")
+    pulse: str | None = Field(description="pulse, see /v1/pulses; null: several or none")
+    restitution: float | None = Field(description="coefficient of restitution eta [-]; null: several or none")
+    extent: dict[str, tuple[float, float]] = Field(
+        description="smallest and largest alpha [rad], slenderness [-] and frequency_ratio [-]"
+    )
     size: int = Field(description="bytes of the netCDF file")
-    sha256: str
+    sha256: str = Field(description="sha256 of the netCDF file")
     metadata: str = Field(description="path of its description")
     netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
     version: str = Field(description="path of this version of the file; immutable")
     zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
+    links: list[Link] = Field(description="the same paths with relation and media type")
 
 
 class DatasetCatalogue(BaseModel):
     """All data sets."""
 
-    datasets: list[DatasetSummary]
+    datasets: list[DatasetSummary] = Field(description="in the order of their names")
 
 
 class VariableDescription(BaseModel):
     """A variable of a data set."""
 
-    dimensions: list[str]
-    shape: list[int]
-    dtype: str
-    attributes: dict[str, Any]
+    dimensions: list[str] = Field(description="names of its dimensions, in order")
+    shape: list[int] = Field(description="its size along each of them")
+    dtype: str = Field(description="type of its values")
+    attributes: dict[str, Any] = Field(description="CF attributes: units, long_name, equation and others")
 
 
 class DatasetDescription(DatasetSummary):
     """Contents of a data set."""
 
-    dimensions: dict[str, int]
-    coordinates: dict[str, VariableDescription]
-    variables: dict[str, VariableDescription]
-    attributes: dict[str, Any]
+    dimensions: dict[str, int] = Field(description="size of each dimension")
+    coordinates: dict[str, VariableDescription] = Field(description="coordinates by name")
+    variables: dict[str, VariableDescription] = Field(description="variables by name")
+    attributes: dict[str, Any] = Field(description="CF and ACDD attributes, digests of code and settings")
 
 
 class Health(BaseModel):
     """State of the service."""
 
     status: str = Field(description="ok, or degraded: data sets are missing or damaged, and the solver replaces them")
-    version: str = VERSION
+    version: str = VERSION_FIELD
     datasets: int = Field(description="data sets found")
     unchecked: int = Field(0, description="of these, not yet checked; retry in a moment")
     problems: dict[str, str] = Field(description="what is missing or damaged, by name")

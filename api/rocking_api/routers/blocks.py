@@ -6,16 +6,32 @@ import math
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.assessment import Assessment, assess
 from rocking.dimensional.margins import Margins as FoundMargins
 from rocking.dimensional.problem import BlockProblem
+from rocking.dimensional.table import BlockTable, read_table, respond_table
+from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.block import Block
 from rocking_api.execution.evaluation import evaluate, point_results
+from rocking_api.http.batch import body_form
+from rocking_api.http.encoding import CONTENT, MEDIA_TYPES, csv_response, json_response, negotiated_form
+from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
 from rocking_api.http.params_route import ParamsRoute
-from rocking_api.models.blocks import BlockParams, BlockResponse, Margins, PeriodThreshold, SizeThreshold, Threshold
+from rocking_api.models.blocks import (
+    RANGES,
+    BlockParams,
+    BlockResponse,
+    BlockRows,
+    BlocksParams,
+    BlocksResponse,
+    Margins,
+    PeriodThreshold,
+    SizeThreshold,
+    Threshold,
+)
 from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
 from rocking_api.models.responses import PointResponse, finite, point_response
 from rocking_api.service import Service, ServiceDep
@@ -25,6 +41,19 @@ router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRou
 SEARCH_SHARE = 0.2
 """Share of the time limit for the search along one line [-]."""
 
+MAX_BLOCKS = 10_000
+"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
+
+MAX_BODY = 4 * 1024 * 1024
+"""Largest body with blocks [bytes]."""
+
+_EXAMPLE = {
+    "blocks": [
+        {"name": "vase", "half_width": 0.1, "half_height": 0.4, "peak_acceleration": 4.0, "pulse_period": 0.5},
+        {"name": "column", "half_width": 0.5, "half_height": 3.0, "peak_acceleration": 4.0, "pulse_period": 0.5},
+    ]
+}
+
 BY_SOLVER = "no data set covers this block within the tolerance; the solver was used, with its own error bound"
 
 
@@ -32,6 +61,91 @@ BY_SOLVER = "no data set covers this block within the tolerance; the solver was 
 async def get_block(params: Annotated[BlockParams, Query()], request: Request, service: ServiceDep) -> BlockResponse:
     """Outcome, rotation in degrees, displacement in metres, distance to another outcome, friction, by (2.2)."""
     return await service.run_heavy(params, lambda stop: _block(service, params, stop), request)
+
+
+@router.post(
+    "/response",
+    summary="Many blocks in SI units",
+    response_model=BlocksResponse,
+    responses=CONTENT,
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {
+                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/BlockRows"}, "example": _EXAMPLE},
+                MEDIA_TYPES["csv"]: {
+                    "schema": {"type": "string"},
+                    "example": "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n",
+                },
+            },
+        }
+    },
+)
+async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
+
+    Columns of CSV: width or half_width, height or half_height, peak_acceleration, period, each with its unit in
+    brackets, and optionally name and restitution.
+    """
+    given = body_form(request)
+    if given == "nc":
+        raise UnsupportedBodyError("Content-Type", MEDIA_TYPES["nc"], "application/json or text/csv")
+    form = negotiated_form(request, params.format, default=given)
+    if form == "nc":
+        raise InvalidArgumentError("format", form, "json or csv")
+    params.check()
+    body = await service.read_body(request, MAX_BODY)
+    table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)
+    return await service.run_heavy(params, lambda stop: _blocks(service, params, table, form, stop), request)
+
+
+def _read_table(body: bytes, given: str, params: BlocksParams) -> BlockTable:
+    """The blocks of a body, each checked."""
+    if given == "csv":
+        text = body.decode("utf-8-sig", "replace")
+        _check_count(text.count("\n"))
+        table = read_table(text, params.pulse, params.restitution)
+    else:
+        rows = BlockRows.model_validate_json(body).blocks
+        _check_count(len(rows))
+        problems = [
+            BlockProblem(
+                Block(row.half_width, row.half_height),
+                params.pulse,
+                row.peak_acceleration,
+                row.pulse_period,
+                params.restitution if row.restitution is None else row.restitution,
+            )
+            for row in rows
+        ]
+        names = [row.name for row in rows]
+        table = BlockTable(problems, names if any(names) else [])
+    if not table.problems:
+        raise InvalidArgumentError("blocks", "none", "at least one block")
+    for problem in table.problems:
+        block = problem.block
+        for name, value in (
+            ("half_width", block.half_width),
+            ("half_height", block.half_height),
+            ("peak_acceleration", problem.peak_acceleration),
+            ("pulse_period", problem.period),
+        ):
+            low, high, unit = RANGES[name]
+            in_range(name, value, low, high, unit=unit)
+    return table
+
+
+def _check_count(count: int) -> None:
+    if count > MAX_BLOCKS + 1:
+        raise TooLargeError("blocks", count, f"at most {MAX_BLOCKS}")
+
+
+def _blocks(service: Service, params: BlocksParams, table: BlockTable, form: str, stop: StopFlag) -> Response:
+    columns: dict[str, Any] = {**respond_table(table, stop)}
+    service.metrics.points("solver", len(table.problems))
+    if form == "csv":
+        return csv_response(columns, "blocks")
+    return json_response(BlocksResponse.model_construct(query=params, **columns))
 
 
 def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse:

@@ -33,7 +33,7 @@ from rocking_api.models.params import (
     Slenderness,
     alpha_of,
 )
-from rocking_api.models.responses import OUTCOMES, VERSION
+from rocking_api.models.responses import BY_SOLVER, OUTCOMES, QUERY, VERSION_FIELD
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -51,10 +51,10 @@ class MapParams(Params):
     pulse: PulseName
     restitution: Restitution
     alpha_deg: AlphaDeg = None
-    frequency_ratio_min: FrequencyRatio = 0.5
-    frequency_ratio_max: FrequencyRatio = 12.0
-    slenderness_min: Slenderness = 0.01
-    slenderness_max: Slenderness = 1.05
+    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
+    slenderness_min: Slenderness = Field(0.01, examples=[0.01])
+    slenderness_max: Slenderness = Field(1.05, examples=[1.05])
     columns: int = Field(120, description="frequency ratios [-]", json_schema_extra={"minimum": 2})
     rows: int = Field(90, description="slendernesses [-]", json_schema_extra={"minimum": 2})
     format: Format = None
@@ -63,7 +63,7 @@ class MapParams(Params):
 class MapResponse(BaseModel):
     """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
-    query: dict[str, Any]
+    query: dict[str, Any] = QUERY
     frequency_ratio: list[float] = Field(description="omega_g/p of the columns [-]")
     slenderness: list[float] = Field(description="1/a of the rows [-]")
     peak_rotation: list[float | None] = Field(
@@ -71,8 +71,8 @@ class MapResponse(BaseModel):
     )
     outcome: list[int] = Field(description="final outcome as an index into `outcomes`")
     outcomes: list[str] = Field(description="names of the outcomes")
-    source: str = "solver"
-    version: str = VERSION
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
 
 
 @router.get(

@@ -12,7 +12,7 @@ from rocking.boundary.amplitude import Thresholds, critical_amplitude
 from rocking.model.response import Outcome
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
-from rocking_api.models.responses import VERSION
+from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -48,13 +48,13 @@ class AmplitudeThreshold(BaseModel):
 class AmplitudeResponse(BaseModel):
     """All amplitudes at which the outcome changes."""
 
-    query: AmplitudeParams
+    query: AmplitudeParams = QUERY
     thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
     largest_safe_amplitude: float | None = Field(
         description="amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
-    source: str = "solver"
-    version: str = VERSION
+    source: str = BY_SOLVER
+    version: str = VERSION_FIELD
 
 
 @router.get("/critical_amplitude", summary="Amplitudes at which the outcome of a block changes")

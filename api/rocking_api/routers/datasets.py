@@ -3,40 +3,46 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.exceptions import HTTPException
 
 from rocking.datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError
 from rocking.errors import DatasetError
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
+from rocking_api.http.dataset_summaries import Summary
 from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
 from rocking_api.http.params_route import ParamsRoute
-from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, VariableDescription
+from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, Link, VariableDescription
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1/datasets", tags=["datasets"], route_class=ParamsRoute)
+
+DatasetName = Annotated[
+    str, Path(description="name of a data set, see /v1/datasets", examples=["spectra/sine/eta-0.85"])
+]
+ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".zmetadata"])]
 
 
 @router.get("", summary="Catalogue", response_model=DatasetCatalogue)
 async def get_datasets(service: ServiceDep) -> Response:
     """All data sets in the results folder that can be read."""
 
-    def work() -> list[DatasetFile]:
-        catalogue = service.cubes.catalogue
+    def work() -> list[Summary]:
         found = []
-        for name in catalogue.names():
-            with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or unreadable: see /health
-                found.append(catalogue.product(name))
+        for name in service.cubes.catalogue.names():
+            with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or damaged: see /health
+                found.append(service.summaries.summary(name))
         return found
 
-    products = await service.run_io(work)
-    catalogue = DatasetCatalogue(datasets=[DatasetSummary(**_summary(product)) for product in products])
+    summaries = await service.run_io(work)
+    catalogue = DatasetCatalogue(datasets=[DatasetSummary(**_summary(summary)) for summary in summaries])
     return json_response(catalogue, {"Cache-Control": REVALIDATE})
 
 
@@ -52,7 +58,7 @@ async def get_datasets(service: ServiceDep) -> Response:
     },
 )
 async def get_netcdf(
-    name: str,
+    name: DatasetName,
     request: Request,
     service: ServiceDep,
     sha256: Annotated[str | None, Query(description="only this version: 404 once the file has changed")] = None,
@@ -77,7 +83,7 @@ async def get_netcdf(
     response_class=Response,
     responses={304: {"description": "not modified"}},
 )
-async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -> Response:
+async def get_zarr(name: DatasetName, key: ZarrKey, request: Request, service: ServiceDep) -> Response:
     """The keys of a zarr store (format 2, consolidated) with the same content.
 
     `xarray.open_dataset(".../{name}.zarr", engine="zarr")` reads it.
@@ -94,7 +100,7 @@ async def get_zarr(name: str, key: str, request: Request, service: ServiceDep) -
 
 
 @router.get("/{name:path}", summary="Description", response_model=DatasetDescription)
-async def get_dataset(name: str, service: ServiceDep) -> Response:
+async def get_dataset(name: DatasetName, service: ServiceDep) -> Response:
     """Dimensions, variables and attributes of a data set, its size and its sha256."""
     description = await service.run_io(partial(_description, service, name))
     return json_response(description, {"Cache-Control": REVALIDATE})
@@ -121,9 +127,10 @@ def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
 
 
 def _description(service: Service, name: str) -> DatasetDescription:
+    summary = service.summaries.summary(name)
     product, dataset = service.cubes.catalogue.dataset(name)
     return DatasetDescription(
-        **_summary(product),
+        **_summary(replace(summary, product=product)),
         dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},
         coordinates={str(key): _variable(dataset[key]) for key in dataset.coords},
         variables={str(key): _variable(dataset[key]) for key in dataset.data_vars},
@@ -131,11 +138,21 @@ def _description(service: Service, name: str) -> DatasetDescription:
     )
 
 
-def _summary(product: DatasetFile) -> dict[str, Any]:
+def _summary(found: Summary) -> dict[str, Any]:
+    product = found.product
     path = f"/v1/datasets/{product.name}"
-    links = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
-    links["version"] = f"{path}.nc?sha256={product.sha256}"
-    return {"name": product.name, "size": product.size, "sha256": product.sha256, **links}
+    paths = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
+    paths["version"] = f"{path}.nc?sha256={product.sha256}"
+    links = [
+        Link(rel="self", href=path, type="application/json"),
+        Link(rel="data", href=paths["netcdf"], type="application/x-netcdf"),
+        Link(rel="version", href=paths["version"], type="application/x-netcdf"),
+        Link(rel="zarr", href=paths["zarr"], type="application/vnd+zarr"),
+    ]
+    if product.name.startswith("spectra/"):
+        links.append(Link(rel="subset", href=f"{path}/subset", type="application/x-netcdf"))
+    told = {"title": found.title, "pulse": found.pulse, "restitution": found.restitution, "extent": found.extent}
+    return {"name": product.name, "size": product.size, "sha256": product.sha256, **told, **paths, "links": links}
 
 
 def _variable(variable: xr.DataArray) -> VariableDescription:

@@ -46,34 +46,35 @@ def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:
     )
     if form == "nc":
         return netcdf_response(motion, "history")
-    sampled = ("tau", "rotation", "angular_velocity", "ground_acceleration")
-    columns: dict[str, Any] = {name: motion[name].values.tolist() for name in sampled}
-    reactions: dict[str, Any] = {name: motion[name].values.tolist() for name in COLUMNS if params.contact}
+    columns, reactions = motion_columns(motion, "tau")
     if form == "csv":
         return csv_response(columns | reactions, "history")
-    contact = contact_response(motion, reactions) if params.contact else None
-    return json_response(_answer(params, motion, columns, contact))
+    return json_response(HistoryResponse.model_construct(query=params, **motion_fields(motion, reactions), **columns))
 
 
-def contact_response(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
+def motion_columns(motion: xr.Dataset, time: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The samples of a motion against its variable of time, and of the reactions, if it has any."""
+    sampled = (time, "rotation", "angular_velocity", "ground_acceleration")
+    columns = {name: motion[name].values.tolist() for name in sampled}
+    return columns, {name: motion[name].values.tolist() for name in COLUMNS if name in motion}
+
+
+def motion_fields(motion: xr.Dataset, reactions: dict[str, Any]) -> dict[str, Any]:
+    """The fields of `Motion` beside the samples."""
+    return {
+        "overturned": bool(motion.attrs["overturned"]),
+        "outcome": motion.attrs["outcome"],
+        "peak_rotation": finite(float(motion.attrs["peak_rotation"])),
+        "impacts": int(motion.attrs["impacts"]),
+        "impact_time": motion["impact_time"].values.tolist(),
+        "contact": _contact(motion, reactions) if reactions else None,
+    }
+
+
+def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
     """Reactions of a motion, by sample, and their extremes."""
     fields: dict[str, Any] = {name: [finite(value) for value in column] for name, column in reactions.items()}
     fields |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES}
     return ContactResponse.model_construct(
         **fields, lifts_off=bool(motion.attrs["lifts_off"]), warnings=motion.attrs["warnings"]
-    )
-
-
-def _answer(
-    params: HistoryParams, motion: xr.Dataset, columns: dict[str, Any], contact: ContactResponse | None
-) -> HistoryResponse:
-    return HistoryResponse.model_construct(
-        query=params,
-        overturned=bool(motion.attrs["overturned"]),
-        outcome=motion.attrs["outcome"],
-        peak_rotation=finite(float(motion.attrs["peak_rotation"])),
-        impacts=int(motion.attrs["impacts"]),
-        impact_time=motion["impact_time"].values.tolist(),
-        contact=contact,
-        **columns,
     )

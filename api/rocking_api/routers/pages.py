@@ -1,4 +1,4 @@
-"""The pages `/` and `/docs`, which load nothing from other hosts."""
+"""The pages `/`, `/records`, `/datasets`, `/state` and `/docs`, which load nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -27,6 +27,24 @@ router = APIRouter(include_in_schema=False, route_class=ParamsRoute)
 async def get_explorer() -> FileResponse:
     """The explorer: a block in metres, the map of the control space, time histories."""
     return _page("index.html", _EXPLORER_POLICY)
+
+
+@router.get("/records")
+async def get_records() -> FileResponse:
+    """A block under the record of a file."""
+    return _page("records.html", _EXPLORER_POLICY)
+
+
+@router.get("/datasets")
+async def get_datasets_page() -> FileResponse:
+    """The catalogue of the data sets."""
+    return _page("datasets.html", _EXPLORER_POLICY)
+
+
+@router.get("/state")
+async def get_state_page() -> FileResponse:
+    """The state of the service."""
+    return _page("state.html", _EXPLORER_POLICY)
 
 
 @router.get("/docs")

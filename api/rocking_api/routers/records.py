@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any
 
+import numpy as np
+import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
 from rocking.dimensional.record_response import respond_to_record
-from rocking.dimensional.record_scales import ScaleThresholds
+from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, scale_thresholds
+from rocking.errors import InvalidArgumentError
 from rocking.excitation.records.readers.read_record import parse_record
 from rocking.excitation.records.record import Record
-from rocking.history.contact import COLUMNS, contact_extremes
+from rocking.history.contact import contact_extremes
 from rocking.history.record_history import record_history
 from rocking.history.record_motion import build_record_motion
 from rocking.model.block import Block
-from rocking.suites.pulse_fit import fit_pulse
-from rocking_api.http.batch import limited_body
+from rocking.model.outcome import Outcome
+from rocking.solver.records.record_response import record_response
+from rocking.suites.pulse_fit import PulseFit, fit_pulse
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.memory_budget import reservation_of
@@ -26,18 +30,27 @@ from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.records import (
     FittedPulse,
     RecordDescription,
+    RecordFileParams,
     RecordHistoryParams,
     RecordHistoryResponse,
-    RecordParams,
+    RecordPulseParams,
+    RecordPulseResponse,
     RecordResponse,
     RecordResponseParams,
+    RecordScalesParams,
+    RecordScalesResponse,
     ScaleThreshold,
 )
-from rocking_api.models.responses import finite
-from rocking_api.routers.history import contact_response
+from rocking_api.models.responses import OUTCOMES, finite
+from rocking_api.routers.history import motion_columns, motion_fields
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1/records", tags=["response"], route_class=ParamsRoute)
+
+_EXAMPLE = "time [s],acceleration [g]\n" + "".join(
+    f"{0.05 * k:.2f},{0.6 * math.sin(math.pi * k / 10.0):.4f}\n" for k in range(21)
+)
+"""One full sine of 1 s and 0.6 g."""
 
 _BODY: dict[str, Any] = {
     "requestBody": {
@@ -46,7 +59,7 @@ _BODY: dict[str, Any] = {
         "content": {
             media_type: {
                 "schema": {"type": "string"},
-                "example": "time [s],acceleration [g]\n0,0\n0.01,0.4\n0.02,0.5\n0.03,0\n",
+                "example": _EXAMPLE,
             }
             for media_type in ("text/plain", "text/csv", "application/octet-stream")
         },
@@ -84,11 +97,35 @@ async def post_history(
     return await service.run_heavy(params, lambda stop: _history(params, record, form, stop), request)
 
 
-async def _read(params: RecordParams, request: Request, service: Service) -> Record:
+@router.post(
+    "/scales",
+    summary="A block in SI units under a record times many factors",
+    response_model=RecordScalesResponse,
+    responses=CONTENT,
+    openapi_extra=_BODY,
+)
+async def post_scales(
+    params: Annotated[RecordScalesParams, Query()], request: Request, service: ServiceDep
+) -> Response:
+    """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
+    form = negotiated_form(request, params.format)
+    record = await _read(params, request, service)
+    return await service.run_heavy(params, lambda stop: _scales(params, record, form, stop), request)
+
+
+@router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_BODY)
+async def post_pulse(
+    params: Annotated[RecordPulseParams, Query()], request: Request, service: ServiceDep
+) -> RecordPulseResponse:
+    """Parameters of the pulse, how both motions overturn the block, and their accelerations and velocities."""
+    record = await _read(params, request, service)
+    return await service.run_heavy(params, lambda stop: _pulse(params, record, stop), request)
+
+
+async def _read(params: RecordFileParams, request: Request, service: Service) -> Record:
     """The record in the body, parsed in a thread, one body at a time."""
     params.check()
-    settings, reservation = service.settings, reservation_of(request)
-    body = await limited_body(request, settings.max_record_bytes, settings.arrival_seconds, reservation)
+    body = await service.read_body(request, service.settings.max_record_bytes)
 
     def read(stop: StopFlag) -> Record:
         del stop  # the largest body takes two seconds
@@ -98,7 +135,7 @@ async def _read(params: RecordParams, request: Request, service: Service) -> Rec
         return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)
 
     record = await service.run_parser(read, request, large=True)
-    reservation.replace(record.acceleration.nbytes)  # the body is released
+    reservation_of(request).replace(record.acceleration.nbytes)  # the body is released
     return record
 
 
@@ -120,13 +157,13 @@ def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> R
     return RecordResponse(
         query=params,
         record=_description(record),
-        overturned=bool(found.response.overturned),
-        exceeded_alpha=bool(found.response.exceeded_alpha),
+        overturned=found.overturned,
+        exceeded_alpha=found.exceeded_alpha,
         outcome=found.outcome.name,
         rocking_model_applies=contact.rocking_applies,
         meaning=contact.sentence,
-        impacts=int(found.response.impacts),
-        peak_rotation=finite(float(found.response.peak_rotation)),
+        impacts=found.impacts,
+        peak_rotation=finite(found.peak_rotation),
         peak_rotation_deg=finite(math.degrees(found.rotation)),
         top_displacement=finite(found.displacement),
         alpha_deg=math.degrees(block.alpha),
@@ -142,7 +179,7 @@ def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> R
         friction_demand=finite(contact.largest_friction_demand),
         friction_at_impact=contact.impulse_ratio,
         smallest_normal_reaction=contact.smallest_normal_reaction,
-        pulse=_fitted(record, block, stop) if params.fit else None,
+        pulse=_fitted(fit_pulse(record, blocks=block, stop=stop)) if params.fit else None,
         warnings=[*contact.warnings, *found.warnings],
     )
 
@@ -161,23 +198,79 @@ def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopF
     )
     if form == "nc":
         return netcdf_response(motion, "history")
-    sampled = ("time", "rotation", "angular_velocity", "ground_acceleration")
-    columns: dict[str, Any] = {name: motion[name].values.tolist() for name in sampled}
-    reactions: dict[str, Any] = {name: motion[name].values.tolist() for name in COLUMNS if params.contact}
+    columns, reactions = motion_columns(motion, "time")
     if form == "csv":
         return csv_response(columns | reactions, "history")
     return json_response(
         RecordHistoryResponse.model_construct(
             query=params,
             record=_description(record),
-            overturned=bool(motion.attrs["overturned"]),
-            outcome=motion.attrs["outcome"],
-            peak_rotation=finite(float(motion.attrs["peak_rotation"])),
-            impacts=int(motion.attrs["impacts"]),
-            impact_time=motion["impact_time"].values.tolist(),
-            contact=contact_response(motion, reactions) if params.contact else None,
+            **motion_fields(motion, reactions),
             **columns,
         )
+    )
+
+
+def _scales(params: RecordScalesParams, record: Record, form: str, stop: StopFlag) -> Response:
+    block = Block(params.half_width, params.half_height, params.gravity)
+    eta = restitution_of(block, params.restitution)
+    uplift = block.uplift_acceleration / record.peak_acceleration
+    low = uplift if params.scale_min is None else params.scale_min
+    high = min(10.0 * uplift, HIGHEST_SCALE) if params.scale_max is None else params.scale_max
+    if not low < high:
+        raise InvalidArgumentError("scale_max", high, f"above scale_min, {low:g} [-]")
+    scale = np.geomspace(low, high, params.points)
+    found = record_response(
+        record,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=uplift / scale,
+        restitution=eta,
+        alpha=block.alpha,
+        stop=stop,
+    )
+    columns: dict[str, Any] = {
+        "scale": scale.tolist(),
+        "peak_acceleration": (scale * record.peak_acceleration).tolist(),
+        "peak_rotation": [finite(value) for value in found.peak_rotation.tolist()],
+        "overturned": found.overturned.tolist(),
+        "outcome": [Outcome(code).name for code in found.outcome.tolist()],
+        "impacts": found.impacts.tolist(),
+        "exceeded_alpha": found.exceeded_alpha.tolist(),
+    }
+    if form == "csv":
+        return csv_response(columns, "scales")
+    if form == "nc":
+        numbers = {**columns, "peak_rotation": found.peak_rotation, "outcome": found.outcome}
+        units = {"peak_acceleration": "m s-2"}
+        variables = {
+            name: ("scale", np.asarray(values) + 0, {"units": units.get(name, "1")}) for name, values in numbers.items()
+        }
+        attributes = {"record": record.name, "record_digest": record.digest, "outcomes": " ".join(OUTCOMES)}
+        return netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
+    thresholds = scale_thresholds(record, block, restitution=eta, highest=high, stop=stop)
+    return json_response(
+        RecordScalesResponse.model_construct(
+            query=params, record=_description(record), thresholds=_thresholds(thresholds, record), **columns
+        )
+    )
+
+
+def _pulse(params: RecordPulseParams, record: Record, stop: StopFlag) -> RecordPulseResponse:
+    fit = fit_pulse(record, blocks=Block(params.half_width, params.half_height, params.gravity), stop=stop)
+    every = max(1, math.ceil(record.samples / params.samples))
+    time = record.times[::every]
+    drawn = {
+        "record_acceleration": record.acceleration[::every],
+        "pulse_acceleration": fit.acceleration(time),
+        "record_velocity": record.velocity[::every],
+        "pulse_velocity": fit.velocity.velocity(time),
+    }
+    return RecordPulseResponse(
+        query=params,
+        record=_description(record),
+        pulse=_fitted(fit),
+        time=time.tolist(),
+        **{name: (params.scale * values).tolist() for name, values in drawn.items()},
     )
 
 
@@ -207,8 +300,7 @@ def _thresholds(found: ScaleThresholds, record: Record) -> list[ScaleThreshold]:
     ]
 
 
-def _fitted(record: Record, block: Block, stop: StopFlag) -> FittedPulse:
-    fit = fit_pulse(record, blocks=block, stop=stop)
+def _fitted(fit: PulseFit) -> FittedPulse:
     return FittedPulse(
         pulse=fit.velocity.family,
         period=fit.period,

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate_many
-from rocking_api.http.batch import Batch, batch_response, body_form, limited_body, read_batch
+from rocking_api.http.batch import Batch, batch_response, body_form, read_batch
 from rocking_api.http.encoding import CONTENT, MEDIA_TYPES, Form, negotiated_form
-from rocking_api.http.memory_budget import Reservation, reservation_of
+from rocking_api.http.memory_budget import reservation_of
 from rocking_api.http.params_route import ParamsRoute, query_parameters
 from rocking_api.models.params import ResponseParams
 from rocking_api.models.responses import BatchResponse, PointResponse, point_response
@@ -37,14 +37,33 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     response_model=BatchResponse,
     responses=CONTENT,
     openapi_extra={
+        "parameters": [
+            {
+                "name": "pulse",
+                "in": "query",
+                "description": "pulse, required for CSV and netCDF-3; a JSON body holds it",
+                "schema": {"type": "string", "examples": ["sine"]},
+            }
+        ],
         "requestBody": {
             "required": True,
             "content": {
-                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/BatchParams"}},
-                MEDIA_TYPES["csv"]: {"schema": {"type": "string"}, "example": "slenderness,frequency_ratio\n0.4,5\n"},
+                MEDIA_TYPES["json"]: {
+                    "schema": {"$ref": "#/components/schemas/BatchParams"},
+                    "example": {
+                        "pulse": "sine",
+                        "slenderness": [0.4, 0.2, 1.2],
+                        "frequency_ratio": 5,
+                        "restitution": 0.85,
+                    },
+                },
+                MEDIA_TYPES["csv"]: {
+                    "schema": {"type": "string"},
+                    "example": "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n",
+                },
                 MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
             },
-        }
+        },
     },
 )
 async def post_response(request: Request, service: ServiceDep) -> Response:
@@ -55,16 +74,15 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     """
     given = body_form(request)
     form = negotiated_form(request, None, default=given)
-    reservation = reservation_of(request)
-    batch = await _read(request, service, given, reservation)
-    reservation.replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
+    batch = await _read(request, service, given)
+    reservation_of(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
     return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, form, stop), request)
 
 
-async def _read(request: Request, service: Service, given: Form, reservation: Reservation) -> Batch:
+async def _read(request: Request, service: Service, given: Form) -> Batch:
     parameters = query_parameters(request)
     settings = service.settings
-    body = await limited_body(request, settings.max_body_bytes, settings.arrival_seconds, reservation)
+    body = await service.read_body(request, settings.max_body_bytes)
 
     def read(stop: StopFlag) -> Batch:
         return read_batch(body, given, parameters, settings.max_points, stop)

@@ -23,8 +23,13 @@ export function urlOf(path, params) {
 /** The response. Throws Problem, or the reason with which the signal was aborted. */
 export async function ask(path, params, signal) {
   const url = urlOf(path, params);
-  if (!cache.has(url)) keep(url, await fetched(url, signal));
+  if (!cache.has(url)) keep(url, await fetched(url, { signal }));
   return cache.get(url);
+}
+
+/** The response to a file; it is not cached. Throws as `ask`. */
+export async function send(path, params, file, signal) {
+  return fetched(urlOf(path, params), { signal, method: "POST", body: file });
 }
 
 /** Wait some ms, or until the signal is aborted; throws its reason then. */
@@ -39,21 +44,21 @@ export function pause(milliseconds, signal) {
 }
 
 /** A busy service says when to try again (Retry-After). */
-async function fetched(url, signal) {
+async function fetched(url, options) {
   for (let attempt = 1; ; attempt += 1) {
-    const { ok, found, after } = await exchanged(url, signal);
+    const { ok, found, after } = await exchanged(url, options);
     if (ok) return found;
     if (!after || attempt === ATTEMPTS) throw new Problem(found);
-    await pause(1000 * after, signal);
+    await pause(1000 * after, options.signal);
   }
 }
 
-async function exchanged(url, signal) {
+async function exchanged(url, options) {
   try {
-    const response = await fetch(url, { signal });
+    const response = await fetch(url, options);
     return { ok: response.ok, found: await response.json(), after: Number(response.headers.get("Retry-After")) };
   } catch (error) {
-    if (signal.aborted) throw signal.reason;
+    if (options.signal.aborted) throw options.signal.reason;
     throw new Problem({ detail: `the service does not answer (${error.message})` });
   }
 }

@@ -1,8 +1,8 @@
 // The form for a block in metres, and its response in words.
 
-import { element } from "./page.js";
+import { element, facts } from "./page.js";
 import { MISSING, split, UNITS } from "./units.js";
-import { length, number } from "./labels.js";
+import { distinct, inG, length, number } from "./labels.js";
 
 const GRAVITY = 9.80665;
 const QUANTITIES = Object.keys(UNITS);
@@ -57,7 +57,7 @@ export function showAnswer(found) {
   answer.append(
     element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
     element("p", sentence(found)),
-    list(facts(found)),
+    facts(factsOf(found)),
   );
   if (found.warnings.length) {
     const lines = found.warnings.map((warning) => element("li", warning));
@@ -83,18 +83,18 @@ function sentence(found) {
   );
 }
 
-function facts(found) {
-  const pairs = [["Uplifts at", acceleration(found.uplift_acceleration)]];
+function factsOf(found) {
+  const pairs = [["Uplifts at", inG(found.uplift_acceleration)]];
   const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
-  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : acceleration(largest)]);
+  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : inG(largest)]);
   if (largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
   const margin = applies && marginOf(found);
   if (margin) pairs.push(margin);
-  const changes = (applies ? (found.thresholds ?? []) : []).map(
-    (one) => `${one.overturns_above ? "overturns" : "survives"} from ${number(one.peak_acceleration / GRAVITY)} g`,
-  );
+  const thresholds = applies ? (found.thresholds ?? []) : [];
+  const texts = distinct(thresholds.map((one) => one.peak_acceleration / GRAVITY));
+  const changes = thresholds.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} g`);
   if (changes.length > 1) pairs.push(["At this period it", changes.join(", ")]);
-  pairs.push(["Coefficient of friction that it needs, so as not to slide", friction === null ? "it lifts off" : number(friction, 2)]);
+  pairs.push(["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)]);
   return pairs;
 }
 
@@ -113,16 +113,6 @@ function marginOf(found) {
   const way = nearest.peak_acceleration > given ? "more" : "less";
   const share = `${number(100 * apart(nearest), 2)} %`;
   return ["Margin of acceleration", `${found.overturned ? "survives" : "overturns"} with ${share} ${way}`];
-}
-
-function acceleration(value) {
-  return `${number(value / GRAVITY)} g (${number(value)} m/s²)`;
-}
-
-function list(pairs) {
-  const made = element("dl");
-  for (const [term, value] of pairs) made.append(element("dt", term), element("dd", value));
-  return made;
 }
 
 function showHow() {

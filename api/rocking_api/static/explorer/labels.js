@@ -27,6 +27,15 @@ export function number(value, digits = 3) {
   return plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain;
 }
 
+/** Ascending numbers as text, with more digits where neighbours would coincide. */
+export function distinct(values, digits = 3) {
+  for (let more = digits; more < 12; more += 1) {
+    const texts = values.map((value) => number(value, more));
+    if (new Set(texts).size === new Set(values).size) return texts;
+  }
+  return values.map(String);
+}
+
 /** An error bound with one digit: 5e-11 is 5·10⁻¹¹. */
 export function bound(value) {
   if (value >= 1e-3 || value === 0) return number(value, 1);
@@ -38,6 +47,11 @@ export function bound(value) {
 export function length(metres) {
   if (Math.abs(metres) < 1e-3) return `${number(metres * 1e3, 2)} mm`;
   return Math.abs(metres) < 1 ? `${number(metres * 100, 3)} cm` : `${number(metres, 3)} m`;
+}
+
+/** An acceleration in g and in m/s2. */
+export function inG(value) {
+  return `${number(value / 9.80665)} g (${number(value)} m/s²)`;
 }
 
 /** "1 impact", "3 impacts". */

@@ -96,9 +96,15 @@ function link(found) {
   const spectrum = (format) => spectrumUrl(found, view, format);
   setLinks("map", found ? { csv: map("csv"), nc: map("nc"), curves: `${curvesUrl()}&format=csv` } : {});
   setLinks("block", found?.answer ? { json: urlOf("/v1/blocks/response", blockParams(state())) } : {});
+  document.getElementById("open-report").disabled = !found?.answer;
   setLinks("motion", found?.point ? { csv: motion("csv"), nc: motion("nc") } : {});
   setLinks("spectrum", found?.point ? { csv: spectrum("csv"), nc: spectrum("nc") } : {});
 }
+
+document.getElementById("open-report").addEventListener("click", async () => {
+  const [{ showReport }, { blockReport }] = await Promise.all([import("./report.js"), import("./block_report.js")]);
+  showReport(blockReport(scenario.answer));
+});
 
 function caption() {
   const { pulse, restitution, alpha_deg, point } = scenario;

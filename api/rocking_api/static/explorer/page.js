@@ -22,16 +22,32 @@ export function element(tag, content = "", attributes = {}) {
   return made;
 }
 
+/** A list of terms and their values. */
+export function facts(pairs) {
+  const made = element("dl");
+  for (const [term, value] of pairs) made.append(element("dt", term), element("dd", value));
+  return made;
+}
+
 /** Show an error beside the field of a form that it names; returns whether there is one. */
-function showFieldError({ parameter, value, allowed }, form) {
+function showFieldError({ parameter, value, allowed, message }, form) {
   const place = form.querySelector(`[data-problem="${CSS.escape(parameter ?? "")}"]`);
   if (!place) return false;
   const name = parameter.replaceAll("_", " ");
-  place.textContent = value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`;
+  if (parameter === "record") place.textContent = inTermsOf(form, message);
+  else place.textContent = value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`;
   const field = document.getElementById(place.dataset.field);
   field.setAttribute("aria-invalid", "true");
   field.setAttribute("aria-describedby", place.id);
   return true;
+}
+
+/** The message of a reader, which names arguments, with the labels of the fields of the form. */
+function inTermsOf(form, message) {
+  return message.replace(/the argument `(\w+)`/g, (words, name) => {
+    const label = form.elements[name]?.labels?.[0]?.textContent;
+    return label ? `the field “${label}”` : words;
+  });
 }
 
 /** Clear all field errors. */

@@ -1,0 +1,96 @@
+"""The excitations that the service knows: definition, parameters, duration, and samples for a drawing."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from typing import Annotated
+
+import numpy as np
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from rocking.errors import in_range
+from rocking.excitation import pulses
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.params import Params
+from rocking_api.models.responses import VERSION_FIELD
+
+router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+
+MAX_DRAWN = 2000
+"""Most samples of a pulse for a drawing [-]."""
+
+
+class PulsesParams(Params):
+    """How finely the pulses are sampled."""
+
+    samples: int = Field(
+        65, description="samples of each pulse [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
+    )
+
+    def check(self) -> None:
+        in_range("samples", self.samples, 2, MAX_DRAWN)
+
+
+class PulseParameter(BaseModel):
+    """A parameter of a pulse in Python; the service takes its default."""
+
+    name: str = Field(description="name of the parameter")
+    default: float = Field(description="value that the service takes")
+
+
+class PulseDescription(BaseModel):
+    """An excitation u_g(t) = a_g f(omega_g t + phase_start), omega_g = 2 pi/T_p."""
+
+    name: str = Field(description="name; with a leading minus it is mirrored")
+    definition: str = Field(description="f(phi) and its window of the phase phi, with its source")
+    parameters: list[PulseParameter] = Field(description="parameters, if it has any")
+    phase_start: float = Field(description="phase at the first instant [rad]")
+    phase_end: float = Field(description="phase at the last instant [rad]")
+    duration: float = Field(description="duration over the period T_p [-]")
+    time: list[float] = Field(description="times from the first instant over T_p, for a drawing [-]")
+    acceleration: list[float] = Field(description="f at these times [-]; the largest absolute value of f is 1")
+
+
+class PulsesResponse(BaseModel):
+    """All excitations."""
+
+    pulses: list[PulseDescription] = Field(description="those of the package, then those registered in this process")
+    version: str = VERSION_FIELD
+
+
+@router.get("/pulses", summary="The excitations")
+async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse:
+    """Name, definition, parameters and duration of each pulse; `period` of the other routes is T_p."""
+    params.check()
+    return PulsesResponse.model_construct(pulses=[_described(name, params.samples) for name in pulses.pulse_names()])
+
+
+def _described(name: str, samples: int) -> PulseDescription:
+    pulse = pulses.get_pulse(name)
+    phase = np.linspace(pulse.start, pulse.end, samples)
+    return PulseDescription(
+        name=name,
+        definition=_definition(name),
+        parameters=_parameters(name),
+        phase_start=pulse.start,
+        phase_end=pulse.end,
+        duration=(pulse.end - pulse.start) / (2.0 * math.pi),
+        time=((phase - pulse.start) / (2.0 * math.pi)).tolist(),
+        acceleration=pulse.shape(phase).tolist(),
+    )
+
+
+def _definition(name: str) -> str:
+    """The first line of the documentation of a pulse of the package."""
+    if name not in pulses.PULSE_NAMES:
+        return "registered in this process"
+    return inspect.getdoc(getattr(pulses, name)).partition("\n")[0]  # type: ignore[union-attr]  # each has one
+
+
+def _parameters(name: str) -> list[PulseParameter]:
+    if name not in pulses.PULSE_NAMES:
+        return []
+    declared = inspect.signature(getattr(pulses, name)).parameters.values()
+    return [PulseParameter(name=one.name, default=one.default) for one in declared]

@@ -1,0 +1,112 @@
+"""A part of a spectrum cube, chosen by its axes, as netCDF-3, CSV or JSON."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+from fastapi import APIRouter, Query, Request, Response
+from numpy.typing import NDArray
+from pydantic import Field
+
+from rocking.datasets.cube import DIMENSIONS
+from rocking.errors import InvalidArgumentError
+from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.params import Format, Params
+from rocking_api.routers.datasets import DatasetName
+from rocking_api.service import Service, ServiceDep
+
+router = APIRouter(prefix="/v1/datasets", tags=["datasets"], route_class=ParamsRoute)
+
+VARIABLES = "peak_rotation,outcome,impacts,exceeded_alpha"
+"""Variables that are sent unless others are named."""
+
+FOUND: dict[int | str, dict[str, Any]] = {
+    200: {"content": {MEDIA_TYPES["nc"]: {}, MEDIA_TYPES["csv"]: {}}, "description": "the part of the cube"}
+}
+
+
+class SubsetParams(Params):
+    """Ranges of the axes, both ends included; an absent end is that of the cube."""
+
+    alpha_deg_min: float | None = Field(None, description="smallest slenderness angle [deg]; 0: the slender limit")
+    alpha_deg_max: float | None = Field(None, description="largest slenderness angle [deg]")
+    slenderness_min: float | None = Field(None, description="smallest g tan(alpha)/a_g [-]", examples=[0.5])
+    slenderness_max: float | None = Field(None, description="largest g tan(alpha)/a_g [-]", examples=[0.6])
+    frequency_ratio_min: float | None = Field(None, description="smallest omega_g/p [-]", examples=[2.0])
+    frequency_ratio_max: float | None = Field(None, description="largest omega_g/p [-]", examples=[3.0])
+    variables: str = Field(VARIABLES, description="names of variables, separated by commas; see the description")
+    format: Format = None
+
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each axis in its own unit.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the smallest is above the largest, or not a number.
+        """
+        found = {}
+        for axis, name in zip(DIMENSIONS, ("alpha_deg", "slenderness", "frequency_ratio"), strict=True):
+            low, high = (getattr(self, f"{name}_{end}") for end in ("min", "max"))
+            factor = math.pi / 180.0 if axis == "alpha" else 1.0
+            low, high = -math.inf if low is None else low * factor, math.inf if high is None else high * factor
+            if not low <= high:
+                raise InvalidArgumentError(f"{name}_max", high / factor, f"at least {name}_min, {low / factor:g}")
+            found[axis] = low, high
+        return found
+
+
+@router.get("/{name:path}/subset", summary="A part of a cube", response_class=Response, responses=FOUND)
+async def get_subset(
+    name: DatasetName, params: Annotated[SubsetParams, Query()], request: Request, service: ServiceDep
+) -> Response:
+    """Nodes of a cube within ranges of its axes: a netCDF-3 file, or one row of CSV for each node."""
+    ranges = params.ranges()
+    form = negotiated_form(request, params.format, default="nc")
+    if form == "json":
+        raise InvalidArgumentError("format", form, "csv or nc")
+    return await service.run_io(partial(_subset, service, name, params, ranges, form))
+
+
+def _subset(
+    service: Service, name: str, params: SubsetParams, ranges: dict[str, tuple[float, float]], form: str
+) -> Response:
+    product, cube = service.cubes.catalogue.dataset(name)
+    if any(axis not in cube.dims for axis in DIMENSIONS):
+        raise InvalidArgumentError("name", name, f"a cube, with axes {', '.join(DIMENSIONS)}")
+    wanted = [variable.strip() for variable in params.variables.split(",")]
+    for variable in wanted:
+        if variable not in cube.data_vars:
+            raise InvalidArgumentError("variables", variable, f"one of {', '.join(map(str, cube.data_vars))}")
+    part = cube[wanted]
+    for axis, (low, high) in ranges.items():
+        # the ends of a range in degrees are rounded
+        inside = (part[axis] >= low - 1e-12 * abs(low)) & (part[axis] <= high + 1e-12 * abs(high))
+        part = part.isel({axis: np.flatnonzero(inside.values)})
+        if not part.sizes[axis]:
+            values = cube[axis].values
+            raise InvalidArgumentError(
+                axis, f"{low:g} to {high:g}", f"a range with nodes; they span {values[0]:g} to {values[-1]:g}"
+            )
+    points = math.prod(part.sizes.values())
+    if points > service.settings.max_points:
+        raise TooLargeError("points", points, f"at most {service.settings.max_points}")
+    if form == "nc":
+        part = part.drop_vars("pulse").drop_encoding()
+        part.attrs = {**part.attrs, "source_sha256": product.sha256}
+        return netcdf_response(part, "subset")
+    return csv_stream(_columns(part, wanted), "subset")
+
+
+def _columns(part: xr.Dataset, wanted: list[str]) -> dict[str, NDArray[Any]]:
+    """One value for each node, the last axis fastest."""
+    axes = np.meshgrid(*(part[axis].values for axis in DIMENSIONS), indexing="ij")
+    columns = dict(zip(DIMENSIONS, axes, strict=True))
+    columns |= {variable: part[variable].transpose(*DIMENSIONS).values for variable in wanted}
+    return {name: values.ravel() for name, values in columns.items()}

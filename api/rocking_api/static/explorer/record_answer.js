@@ -1,0 +1,60 @@
+// The response to a record in words.
+
+import { element, facts } from "./page.js";
+import { inG, length, number } from "./labels.js";
+
+const answer = document.getElementById("answer");
+
+/** Show the response of a block under a record; null clears it. */
+export function showRecordAnswer(found) {
+  answer.replaceChildren();
+  answer.hidden = found === null;
+  if (found === null) return;
+  const safe = found.rocking_model_applies && !found.overturned;
+  answer.append(
+    element("p", verdict(found), { class: `verdict ${safe ? "safe" : "unsafe"}` }),
+    element("p", sentence(found)),
+    facts([...ofBlock(found), ...ofRecord(found.record, found.query.scale)]),
+  );
+  if (found.warnings.length) {
+    const lines = found.warnings.map((warning) => element("li", warning));
+    answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
+  }
+}
+
+/** The outcome in a few words. */
+export function verdict(found) {
+  if (!found.rocking_model_applies) return "The rocking model does not apply.";
+  if (found.overturned) return "It overturns.";
+  return found.outcome === "NO_UPLIFT" ? "It does not uplift." : "It survives (comes to rest).";
+}
+
+function sentence(found) {
+  if (!found.rocking_model_applies) return `${found.meaning}.`;
+  if (found.overturned || found.outcome === "NO_UPLIFT") return `Under this record it ${found.meaning}.`;
+  const beyond = found.exceeded_alpha ? " It exceeds α but recovers." : "";
+  return `It turns at most ${number(found.peak_rotation_deg)}° (${number(found.peak_rotation)} α), and its top moves ${length(found.top_displacement)}.${beyond}`;
+}
+
+/** Facts about the block: pairs of term and value. */
+export function ofBlock(found) {
+  const friction = found.friction_demand;
+  return [
+    ["Uplifts at", inG(found.uplift_acceleration)],
+    ["Coefficient of restitution", number(found.restitution, 4)],
+    ["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)],
+  ];
+}
+
+/** Facts about the record, times a factor. */
+export function ofRecord(record, scale) {
+  return [
+    ["Peak ground acceleration", inG(scale * record.peak_acceleration)],
+    ["Peak ground velocity", `${number(scale * record.peak_velocity)} m/s`],
+    ["Peak ground displacement", length(scale * record.peak_displacement)],
+    ["Arias intensity", `${number(scale ** 2 * record.arias_intensity)} m/s`],
+    ["Significant duration, 5 to 95 %", `${number(record.significant_duration)} s`],
+    ["Mean period", record.mean_period === null ? "none" : `${number(record.mean_period)} s`],
+    ["Samples", `${record.samples}, ${number(record.time_step, 4)} s apart`],
+  ];
+}

@@ -1,0 +1,89 @@
+// The response over the scale of a record: peak rotation, and where the block overturns.
+
+import { axis, chart } from "./chart.js";
+import { hatch, themed } from "./colours.js";
+import { distinct, number } from "./labels.js";
+
+const LISTED = 8; // thresholds named in the caption
+
+const place = document.getElementById("scales-chart");
+const caption = document.getElementById("scales-caption");
+
+/** Draw the response of /v1/records/scales; `answer` is the response at the factor of the form. */
+export function drawScales(found, answer) {
+  const { scale } = answer.query;
+  chart(
+    place,
+    {
+      height: 260,
+      series: [{}, { stroke: () => themed("accent"), width: 2, spanGaps: false, pxAlign: 0 }],
+      axes: [
+        axis("factor of the record", { filter: (_, splits) => splits, values: (_, splits) => splits.map(label), size: 30 }),
+        axis("peak rotation θ/α"),
+      ],
+      scales: {
+        x: { time: false, distr: 3, range: (_, low, high) => [low, high] },
+        y: { range: (_, low, high) => [0, Math.max(1.1, (high ?? 0) * 1.1)] },
+      },
+      hooks: {
+        drawClear: [(u) => shade(u, found)],
+        draw: [(u) => mark(u, scale)],
+        setCursor: [({ cursor }) => (caption.textContent = readout(found, answer, cursor.idx))],
+      },
+    },
+    [found.scale, found.peak_rotation],
+  );
+  caption.textContent = readout(found, answer, null);
+}
+
+function readout(found, answer, at) {
+  if (at !== null && at !== undefined) {
+    const peak = found.overturned[at] ? "overturns" : `peak ${number(found.peak_rotation[at])} α`;
+    return `Factor ${number(found.scale[at])}, ${number(found.peak_acceleration[at] / 9.80665)} g: ${peak}`;
+  }
+  return `${changes(found)} Hatched: the block overturns; dashed: the factor ${number(answer.query.scale)}.`;
+}
+
+/** Every factor at which the outcome changes, in words. */
+export function changes({ thresholds, scale }) {
+  if (!thresholds.length) return `No factor up to ${number(scale.at(-1))} overturns it.`;
+  const first = thresholds.slice(0, LISTED);
+  const texts = distinct(first.map((one) => one.scale), 4);
+  const listed = first.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]}`);
+  const rest = thresholds.length - listed.length;
+  return `It ${listed.join(", ")}${rest ? `, and ${rest} more changes` : ""}.`;
+}
+
+/** Hatch the factors at which the block overturns. */
+function shade(u, { thresholds, scale }) {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.fillStyle = hatch(ctx, "OVERTURNED_AFTER_IMPACT", devicePixelRatio);
+  thresholds.forEach((one, at) => {
+    if (!one.overturns_above) return;
+    const left = u.valToPos(Math.max(one.scale, scale[0]), "x", true);
+    const right = u.valToPos(thresholds[at + 1]?.scale ?? scale.at(-1), "x", true);
+    ctx.fillRect(left, bbox.top, right - left, bbox.height);
+  });
+  ctx.restore();
+}
+
+function mark(u, scale) {
+  const { ctx, bbox } = u;
+  const x = u.valToPos(scale, "x", true);
+  ctx.save();
+  ctx.strokeStyle = themed("ink");
+  ctx.lineWidth = 1.5 * devicePixelRatio;
+  ctx.setLineDash([5 * devicePixelRatio, 4 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(x, bbox.top);
+  ctx.lineTo(x, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.restore();
+}
+
+function label(value) {
+  if (value === null) return "";
+  const digit = value.toExponential().split("e")[0];
+  return ["1", "2", "3", "5", "7"].includes(digit) ? number(value, 3) : "";
+}

@@ -1,0 +1,153 @@
+// The page of a record: file and block from the form, and from there to every view.
+
+import { send } from "./api.js";
+import { drawMotion } from "./motion_charts.js";
+import { clearErrors, element } from "./page.js";
+import { pane } from "./pane.js";
+import { unload } from "./player.js";
+import { showRecordAnswer } from "./record_answer.js";
+import { drawPulse } from "./record_pulse.js";
+import { changes, drawScales } from "./record_scales.js";
+import { onChange, refresh } from "./state.js";
+import { toSI, UNITS } from "./units.js";
+
+const GRAVITY = 9.80665;
+const SAMPLES = 4000;
+
+const form = document.getElementById("record");
+const input = document.getElementById("file");
+const report = document.getElementById("open-report");
+
+let file = null;
+let answer = null; // the response, from which the views take the size of the block
+let margins = "Not computed."; // factors at which the outcome changes, in words
+
+const result = view("answer", "record-status", "Computing …", (found) => {
+  answer = found;
+  showRecordAnswer(found);
+  report.disabled = found === null;
+});
+const motion = view("motion", "motion-status", "Computing the time history …", (history) => {
+  if (history) drawMotion(inGroups(history), { size: sizeOf(answer), alpha_deg: answer.alpha_deg, note: noteOf(answer) });
+  else unload();
+});
+const scales = view("scales", "scales-status", "Computing other factors …", (found) => {
+  margins = found ? changes(found) : "Not computed.";
+  if (found) drawScales(found, answer);
+});
+const pulse = view("pulse", "pulse-status", "Fitting a pulse …", (found) => found && drawPulse(found));
+
+function view(id, status, doing, draw) {
+  const section = document.getElementById(id);
+  const box = section.querySelector(".motion, .picture") ?? section;
+  return pane({ box, status: document.getElementById(status), doing, draw, clear: () => draw(null) });
+}
+
+/** Show what the form holds. */
+async function show() {
+  clearErrors();
+  if (!file) return;
+  for (const section of document.querySelectorAll("section.empty")) section.classList.remove("empty");
+  const params = paramsOf();
+  const key = (more) => JSON.stringify([params, more, file.name, file.size, file.lastModified]);
+  for (const one of [motion, scales, pulse]) one.wait();
+  const found = await result.show(key("response"), upload("response", params));
+  if (!found) {
+    openDetails();
+    for (const one of [motion, scales, pulse]) one.nothing();
+    return;
+  }
+  const { scale, ...unscaled } = params;
+  await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }));
+  await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }));
+  await pulse.show(key("pulse"), upload("pulse", params));
+}
+
+function upload(route, params) {
+  return async function* load(signal) {
+    yield await send(`/v1/records/${route}`, params, file, signal);
+  };
+}
+
+/** Parameters of the routes, in SI units. */
+function paramsOf() {
+  const text = (name) => form.elements[name].value.trim();
+  const quantity = (name) => toSI(name, `${text(name) || "?"} ${form.elements[`${name}_unit`].value}`, 0.5);
+  const [scale, restitution] = ["scale", "restitution"].map((name) => text(name).replace(",", "."));
+  return {
+    name: file.name.slice(0, 200),
+    ...Object.fromEntries(["unit", "time_step", "component", "baseline_order"].map((name) => [name, text(name)])),
+    half_width: quantity("width"),
+    half_height: quantity("height"),
+    scale: scale || "?",
+    restitution: restitution.toLowerCase() || "?",
+  };
+}
+
+/** Factors from uplift to ten times that, and to twice the factor of the form. */
+function windowOf({ uplift_acceleration, record, query }) {
+  const uplift = uplift_acceleration / record.peak_acceleration;
+  return { scale_min: Math.min(uplift, query.scale), scale_max: Math.max(10 * uplift, 2 * query.scale) };
+}
+
+function sizeOf(found) {
+  return {
+    R: found.half_diagonal,
+    p: found.frequency_parameter,
+    alpha: (found.alpha_deg * Math.PI) / 180,
+    uplift_in_g: found.uplift_acceleration / GRAVITY,
+  };
+}
+
+/** A history whose variable of time is tau = p t. */
+function inGroups(history) {
+  const p = answer.frequency_parameter;
+  const [tau, impact_time] = [history.time, history.impact_time].map((times) => times.map((time) => p * time));
+  return { ...history, tau, impact_time };
+}
+
+function noteOf(found) {
+  return found.rocking_model_applies ? "" : "The rocking model does not apply; held in place:";
+}
+
+/** A file that lacks its unit, step or component is explained there. */
+function openDetails() {
+  const problem = document.getElementById("file-problem").textContent;
+  if (/unit|step|component/.test(problem)) document.getElementById("more").open = true;
+}
+
+function take(chosen) {
+  if (!chosen) return;
+  file = chosen;
+  refresh();
+}
+
+for (const name of ["width", "height"]) {
+  for (const unit of Object.keys(UNITS[name])) form.elements[`${name}_unit`].append(element("option", unit));
+}
+for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2"]) form.elements.unit.append(element("option", unit));
+input.addEventListener("change", () => take(input.files[0]));
+form.addEventListener("submit", (event) => {
+  event.preventDefault();
+  if (file) refresh();
+  else document.getElementById("file-problem").textContent = "Choose the file of a record first.";
+});
+addEventListener("dragover", (event) => {
+  event.preventDefault();
+  document.body.classList.add("dropping");
+});
+addEventListener("dragleave", () => document.body.classList.remove("dropping"));
+addEventListener("drop", (event) => {
+  event.preventDefault();
+  document.body.classList.remove("dropping");
+  const [dropped] = event.dataTransfer.files;
+  if (!dropped) return;
+  input.files = event.dataTransfer.files;
+  take(dropped);
+});
+report.addEventListener("click", async () => {
+  const { showReport } = await import("./report.js");
+  const { recordReport } = await import("./record_report.js");
+  showReport(recordReport(answer, margins));
+});
+onChange(show);

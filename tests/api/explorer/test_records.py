@@ -1,0 +1,136 @@
+"""The page of a record: upload, motion, thresholds over the scale, fitted pulse, report, files that cannot be read."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import rocking
+from rocking.dimensional.record_scales import scale_thresholds
+from rocking.excitation.records.readers.read_record import parse_record
+
+NAPA = Path(__file__).parents[3] / "workflow/motions/napa_HNE.csv"
+BLOCK = rocking.Block(0.25, 1.0)  # that of the form
+HEADER = "time_s,acceleration_g\n"
+
+
+def short_record():
+    """The strong part of a record: fast to upload, to solve and to fit."""
+    motion = rocking.read_record(NAPA)
+    part = motion.acceleration[800:2400] / 9.80665
+    rows = (f"{k * motion.time_step:.3f},{value!r}" for k, value in enumerate(part.tolist()))
+    return (HEADER + "\n".join(rows)).encode()
+
+
+def choose(page, name, content):
+    page.locator("#file").set_input_files({"name": name, "mimeType": "text/csv", "buffer": content})
+
+
+@pytest.fixture(scope="module")
+def content():
+    return short_record()
+
+
+@pytest.fixture(scope="module")
+def motion(content):
+    return parse_record(content, "short.csv")
+
+
+def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, motion):
+    page = open_page("/records", reduced_motion="reduce")
+    choose(page, "short.csv", content)
+    expected = BLOCK.response(motion)
+    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    said = float(re.search(r"at most ([\d.]+)°", page.locator("#answer").inner_text())[1])
+    assert said == pytest.approx(math.degrees(expected.rotation), rel=0.006)
+
+    expect(page.locator("#rotation canvas")).to_be_visible()
+    history = rocking.record_history(
+        motion,
+        frequency_parameter=BLOCK.frequency_parameter,
+        slenderness=BLOCK.uplift_acceleration / motion.peak_acceleration,
+        restitution=BLOCK.inelastic_restitution,
+        alpha=BLOCK.alpha,
+        samples=4000,
+    )
+    peak = int(np.abs(history.rotation.values).argmax())
+    page.evaluate(
+        "t => { const s = document.getElementById('time'); s.step = 'any'; s.value = t; "
+        "s.dispatchEvent(new Event('input')) }",
+        float(history.tau[peak]),
+    )
+    angle = float(page.locator("#stage").get_attribute("data-angle"))
+    assert angle == pytest.approx(BLOCK.alpha * float(history.rotation[peak]), rel=1e-3)
+
+    caption = page.locator("#scales-caption")
+    expect(caption).to_contain_text("overturns from")
+    first = float(re.search(r"overturns from ([\d.]+)", caption.inner_text())[1])
+    assert first == pytest.approx(float(scale_thresholds(motion, BLOCK).scale[0]), rel=1e-3)
+
+    expect(page.locator("#pulse-caption")).to_contain_text("of the energy of the velocity")
+    expect(page.locator("#pulse-caution")).to_contain_text("does not replace it")
+
+    page.locator("#open-report").click()
+    report = page.locator("#report")
+    for heading in ("Block", "Ground motion", "Result", "Margins", "Warnings", "Equations", "Assumptions", "Program"):
+        expect(report.get_by_role("heading", name=heading, exact=True)).to_be_visible()
+    expect(report).to_contain_text(motion.digest)
+    expect(report).to_contain_text(f"overturns from {first}")
+    assert report.locator("canvas").count() == 3
+    report.get_by_role("button", name="Back").click()
+    expect(page.locator("#your-block")).to_be_visible()
+
+
+def test_another_factor_overturns_the_block(open_page, content, motion):
+    page = open_page("/records")
+    page.locator("#scale").fill("4")
+    assert BLOCK.response(motion, scale=4.0).overturned
+    choose(page, "short.csv", content)
+    expect(page.locator(".verdict")).to_have_text("It overturns.")
+    expect(page.locator("#motion-caption")).to_contain_text("It overturns")
+
+
+def test_a_file_can_be_dropped(open_page, content):
+    page = open_page("/records")
+    page.evaluate(
+        """text => {
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([text], "short.csv"));
+            document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true }));
+        }""",
+        content.decode(),
+    )
+    expect(page.locator(".verdict")).to_be_visible()
+    assert page.locator("#file").evaluate("field => field.files[0].name") == "short.csv"
+
+
+def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, motion):
+    page = open_page("/records")
+    page.locator("#ask").click()
+    expect(page.locator("#file-problem")).to_have_text("Choose the file of a record first.")
+    choose(page, "damaged.csv", (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode())
+    expect(page.locator("#file-problem")).to_have_text("damaged.csv, line 4: found what; expected a number")
+    expect(page.locator("#answer")).to_be_hidden()
+    choose(page, "plain.txt", "\n".join(map(repr, (motion.acceleration / 9.80665).tolist())).encode())
+    expect(page.locator("#file-problem")).to_contain_text("the field “Time step [s]”")
+    page.locator("#step").fill(repr(motion.time_step))
+    page.locator("#ask").click()
+    expect(page.locator("#file-problem")).to_contain_text("the field “Unit of the samples”")
+    page.locator("#unit").select_option("g")
+    page.locator("#ask").click()
+    expect(page.locator(".verdict")).to_be_visible()
+    expect(page.locator("#file-problem")).to_be_hidden()
+
+
+def test_the_report_of_a_block_under_a_pulse_repeats_its_numbers(open_page):
+    page = open_page("/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=housner")
+    expect(page.locator("#rotation canvas")).to_be_visible()
+    page.locator("#open-report").click()
+    report = page.locator("#report")
+    for words in ("Peak rotation", "It overturns from", "width=0.4+m", "/v1/blocks/response?", "theta''", "rocking 0."):
+        expect(report).to_contain_text(words)
+    assert report.locator("canvas").count() == 2
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")

@@ -1,0 +1,26 @@
+"""GET /v1/pulses: the catalogue of excitations."""
+
+import numpy as np
+import pytest
+
+from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from tests.api.conftest import assert_problem
+
+
+def test_pulses_are_those_of_the_package(client):
+    found = client.get("/v1/pulses", params={"samples": 33}).json()["pulses"]
+    assert [one["name"] for one in found][: len(PULSE_NAMES)] == list(PULSE_NAMES)
+    for one in found[: len(PULSE_NAMES)]:
+        pulse = get_pulse(one["name"])
+        phase = pulse.start + 2 * np.pi * np.array(one["time"])
+        np.testing.assert_allclose(one["acceleration"], pulse.shape(phase), atol=1e-12)
+        assert one["duration"] == pytest.approx((pulse.end - pulse.start) / (2 * np.pi))
+        assert one["definition"].endswith((".", ")"))
+    durations = {one["name"]: one["duration"] for one in found}
+    assert durations["half_sine"] == durations["rectangular"] == 0.5
+    last = next(one for one in found if one["name"] == "mavroeidis_papageorgiou")
+    assert {one["name"]: one["default"] for one in last["parameters"]} == {"cycles": 2.0, "phase": 0.0}
+
+
+def test_samples_are_limited(client):
+    assert_problem(client.get("/v1/pulses", params={"samples": 1}), 422, "samples")

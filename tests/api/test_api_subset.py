@@ -1,0 +1,64 @@
+"""GET /v1/datasets/{name}/subset: a part of a cube by its axes."""
+
+import io
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.api.conftest import assert_problem, client_of
+
+NAME = "spectra/sine/eta-0.85"
+URL = f"/v1/datasets/{NAME}/subset"
+RANGES = {"slenderness_min": 0.5, "slenderness_max": 0.6, "frequency_ratio_min": 2.0, "frequency_ratio_max": 3.0}
+
+
+@pytest.fixture(scope="module")
+def expected(results):
+    cube = xr.load_dataset(results / f"{NAME}.nc", engine="netcdf4")
+    return cube.sel(slenderness=slice(0.5 - 1e-9, 0.6 + 1e-9), frequency_ratio=slice(2.0, 3.0))
+
+
+def test_netcdf_holds_the_nodes_within_the_ranges(client, expected):
+    response = client.get(URL, params=RANGES | {"variables": "peak_rotation,outcome"})
+    assert response.headers["content-type"] == "application/x-netcdf"
+    with xr.open_dataset(io.BytesIO(response.content)) as part:
+        assert set(part.data_vars) == {"peak_rotation", "outcome"}
+        for name in ("slenderness", "frequency_ratio", "alpha", "peak_rotation", "outcome"):
+            np.testing.assert_array_equal(part[name], expected[name])
+        assert part.attrs["source_sha256"] == client.get(f"/v1/datasets/{NAME}").json()["sha256"]
+        assert part["peak_rotation"].attrs["long_name"] == expected["peak_rotation"].attrs["long_name"]
+
+
+def test_csv_has_a_row_for_each_node(client, expected):
+    lines = client.get(URL, params=RANGES | {"format": "csv"}).text.splitlines()
+    assert lines[0] == "alpha,slenderness,frequency_ratio,peak_rotation,outcome,impacts,exceeded_alpha"
+    assert len(lines) - 1 == expected["outcome"].size
+    peaks = [float(line.split(",")[3] or "nan") for line in lines[1:]]
+    np.testing.assert_array_equal(peaks, expected["peak_rotation"].values.ravel())
+
+
+@pytest.mark.parametrize(
+    ("params", "name"),
+    [
+        ({"slenderness_min": 0.6, "slenderness_max": 0.5}, "slenderness_max"),
+        ({"slenderness_min": 0.501, "slenderness_max": 0.502}, "slenderness"),
+        ({"alpha_deg_min": 10.0}, "alpha"),
+        ({"frequency_ratio_min": "nan"}, "frequency_ratio_max"),
+        ({"variables": "height"}, "variables"),
+        ({"format": "json"}, "format"),
+        ({"colour": 1}, "colour"),
+    ],
+)
+def test_other_requests_are_explained(client, params, name):
+    assert_problem(client.get(URL, params=params), 422, name)
+
+
+def test_only_cubes_have_parts(client):
+    assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")
+    assert_problem(client.get("/v1/datasets/spectra/none/subset"), 404, "name")
+
+
+def test_the_size_is_limited(results):
+    with client_of(results, max_points=100) as client:
+        assert_problem(client.get(URL), 413, "points")
