@@ -73,10 +73,11 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
     ax.plot(unit * a, angle * curve.peak_rotation, **({"color": BLUE, "label": "survives"} | style))
     shade_overturned(ax, unit * a, curve.overturned)
     ax.axhline(angle, color=GREY, linewidth=0.5)
-    ax.text(0.005, angle, r"$\theta_{\max}=\alpha$", transform=ax.get_yaxis_transform(), va="bottom", color=GREY)
-    ax.axvline(unit * amplitude, color=VERMILION, linewidth=0.8, linestyle=(0, (4, 2)))
+    across = ax.get_yaxis_transform()
+    ax.text(0.995, angle, r"$\theta_{\max}=\alpha$", transform=across, ha="right", va="bottom", color=GREY)
+    ax.axvline(unit * amplitude, color=VERMILION, linewidth=0.8, linestyle=(0, (4, 2)), label="this block")
     peak = float(peak_response(pulse, slenderness=slenderness, **groups).peak_rotation)
-    ax.plot([unit * amplitude], [angle * peak], "o", color=VERMILION, label="this block")
+    ax.plot([unit * amplitude], [angle * peak], "o", color=VERMILION)  # none if it overturns
     ax.set_xlim(0.0, unit * top)
     ax.set_ylim(0.0, 1.35 * angle * max(1.0, float(np.nanmax(curve.peak_rotation))))  # room for the legend
     ax.set_xlabel(labels[0])
