@@ -14,8 +14,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 
-results = Path(os.environ.get("ROCKING_RESULTS", "results"))
-cubes = [xr.open_dataset(path) for path in sorted((results / "spectra" / "sine").glob("eta-*.nc"))]
+folder = Path(os.environ.get("ROCKING_RESULTS", "results")) / "spectra" / "sine"
+cubes = [xr.open_dataset(path) for path in sorted(folder.glob("eta-*.nc"))]
+if not cubes:
+    raise SystemExit(f"no data sets in {folder}: make reproduce, or name their folder in ROCKING_RESULTS")
 spectra = xr.concat([cube.peak_rotation.sel(alpha=0.0) for cube in cubes], dim="restitution")
 
 # %%
