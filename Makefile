@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce verify test browser serve bench stress fuzz mutants lock environment FORCE
+.PHONY: help reproduce verify test browser serve docs bench stress fuzz mutants lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -42,6 +42,10 @@ browser: .venv/project ## fetch Chromium for the tests of the web page if there 
 serve: .venv/project | results/manifest.json ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results
 
+docs: .venv/project | results/manifest.json ## build the guide in build/docs; its examples read results/, which is made first if missing
+	sphinx-build -W --keep-going -q -b html docs build/docs
+	@echo 'open build/docs/index.html, or make serve and http://$(HOST):$(PORT)/guide/'
+
 bench: .venv/project ## run the benchmarks: run time, error, interpolation, service, ablations; about 13 minutes
 	$(RUN) $(if $(CONFIG),--configfile $(CONFIG) --) bench
 
@@ -55,7 +59,7 @@ mutants: .venv/project ## mutation test: change single operators and constants, 
 	python -m stress.mutations --count $(or $(COUNT),32) --seed $(or $(SEED),1)
 
 # Extra `seismic` is large and optional: it is not locked.
-LOCKED := service plot workflow dev
+LOCKED := service plot workflow docs dev
 
 lock: ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions)
 	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }

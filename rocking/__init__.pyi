@@ -1,10 +1,12 @@
 from . import closed_form as closed_form
 from . import groups as groups
 from . import orientation as orientation
+from . import plot as plot
 from .boundary.amplitude import Thresholds as Thresholds
 from .boundary.amplitude import critical_amplitude as critical_amplitude
 from .boundary.tracing import overturning_boundary as overturning_boundary
 from .dimensional.block import Block as Block
+from .dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError

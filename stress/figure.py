@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH
+from rocking.plot.style import BLACK, BLUE, GREY, STYLE, VERMILION, WIDTH
 
 FLOOR = 1e-3
 """Smaller errors, 0 included, are drawn here [units of the conditioning]."""
@@ -20,6 +21,7 @@ SPREAD = 0.28
 """Half the height over which the dots of one family are spread."""
 
 
+@mpl.rc_context(STYLE)
 def draw(
     errors: Mapping[str, NDArray[np.float64]],
     times: Mapping[str, NDArray[np.float64]],

@@ -67,12 +67,18 @@ def members(name: str, value: Any) -> Names:
 
 
 def command_names() -> Names:
-    """Options of each command."""
-    commands = typer.main.get_command(command_line).commands  # type: ignore[attr-defined]  # a group
-    return {
-        f"rocking {name}": sorted(option for parameter in command.params for option in parameter.opts)
-        for name, command in commands.items()
-    }
+    """Options of each command, those of a group under `rocking GROUP COMMAND`."""
+
+    def options(name: str, command: Any) -> Names:
+        if hasattr(command, "commands"):
+            return {
+                key: value
+                for own, part in command.commands.items()
+                for key, value in options(f"{name} {own}", part).items()
+            }
+        return {name: sorted(option for parameter in command.params for option in parameter.opts)}
+
+    return options("rocking", typer.main.get_command(command_line))
 
 
 def http_names(results: Path) -> Names:

@@ -29,6 +29,7 @@ from rocking_api.routers import (
     control_map,
     critical_amplitude,
     datasets,
+    guide,
     health,
     history,
     metrics,
@@ -115,6 +116,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     for module in ROUTES:
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
+    app.mount("/guide", guide.GuideFiles(settings.guide))
     _describe_bodies(app)
     return app
 

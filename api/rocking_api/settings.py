@@ -23,6 +23,9 @@ class Settings(BaseSettings):
     results: Annotated[Path, BeforeValidator(_nonempty)] = Field(
         default=Path("results"), description="folder that the workflow filled"
     )
+    guide: Annotated[Path, BeforeValidator(_nonempty)] = Field(
+        default=Path("build/docs"), description="folder of the guide, which `make docs` fills"
+    )
     max_points: int = Field(default=1_000_000, ge=1, description="largest number of points of a batch")
     max_body_bytes: int = Field(default=64 * 1024 * 1024, ge=1, description="largest body of a request")
     max_record_bytes: int = Field(

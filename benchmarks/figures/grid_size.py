@@ -8,7 +8,8 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters
+from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, WIDTH
+from workflow.figures.style import panel_letters
 
 SCHEMES = {"linear": ("linear", VERMILION), "package": ("rocking", BLUE)}
 SHARES = {"0.5": ("-", "50 %"), "0.9": ("--", "90 %")}

@@ -9,7 +9,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from benchmarks.measure import spread
-from workflow.figures.style import BLUE, VERMILION, WIDTH, panel_letters
+from rocking.plot.style import BLUE, VERMILION, WIDTH
+from workflow.figures.style import panel_letters
 
 KINDS = {"slender": ("slender", BLUE), "rigid": ("rigid, 20°", VERMILION)}
 LINES = ("-", "--", "-.", ":")

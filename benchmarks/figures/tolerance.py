@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
-from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH
+from rocking.plot.style import BLACK, BLUE, GREY, STYLE, VERMILION, WIDTH
 
 MIN_ERROR = 1e-17
 """Errors of 0 are drawn here."""
@@ -17,6 +18,7 @@ DOT_SPREAD = 0.6
 """Share of the distance between two tolerances over which the dots of one are spread."""
 
 
+@mpl.rc_context(STYLE)
 def draw(tolerances: NDArray[np.float64], errors: NDArray[np.float64], path: Path) -> None:
     """Write the figure of relative errors (tolerances, cells), nan where a block overturns."""
     figure, ax = plt.subplots(figsize=(WIDTH, 0.6 * WIDTH))

@@ -13,7 +13,8 @@ from matplotlib.axes import Axes
 
 from benchmarks.cells import DIAGRAMS
 from benchmarks.measure import spread
-from workflow.figures.style import BLACK, BLUE, VERMILION, WIDTH, panel_letters
+from rocking.plot.style import BLACK, BLUE, VERMILION, WIDTH
+from workflow.figures.style import panel_letters
 
 ORANGE, SKY, GREEN, PURPLE = "#E69F00", "#56B4E9", "#009E73", "#CC79A7"
 STYLES: dict[str, dict[str, Any]] = {

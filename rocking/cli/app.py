@@ -11,7 +11,16 @@ from typing import Annotated
 import typer
 
 from rocking.cli.fragility import fragility
-from rocking.cli.options import OutputOptions, ProblemOptions, SpectrumOptions, WindowOptions, with_options
+from rocking.cli.options import (
+    FrequencyRatioMax,
+    FrequencyRatioMin,
+    OutputOptions,
+    ProblemOptions,
+    SpectrumOptions,
+    WindowOptions,
+    with_options,
+)
+from rocking.cli.plot import plot
 from rocking.cli.record import record
 from rocking.version import __version__
 
@@ -20,9 +29,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-
-FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
-FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
 
 
 def _print_version(given: bool) -> None:
@@ -122,6 +128,7 @@ def boundary(
 
 app.command()(record)
 app.command()(fragility)
+app.add_typer(plot, name="plot")
 
 
 @app.command()

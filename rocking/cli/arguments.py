@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from rocking.cli.options import ProblemOptions, ShapeOptions, SpectrumOptions, WindowOptions
+from rocking.cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.block import Block
 from rocking.model.checks import check_window
@@ -68,6 +68,8 @@ def option_errors() -> Iterator[None]:
         option = "--" + error.parameter.split("[")[0].split(",")[0].replace("_", "-")
         place = error.parameter.partition(",")[2]
         text = f"{error.value!r} is not allowed; allowed: {error.allowed}"
+        if error.value is None:
+            text = f"missing; {error.allowed}"
         if error.allowed.startswith("missing unit"):
             text = f"{error.value!r}: {error.allowed}"
         raise typer.BadParameter(f"{place.strip()}: {text}" if place else text, param_hint=option) from None
@@ -139,7 +141,7 @@ def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Para
     return _of_problem(options, block, block.uplift_acceleration, _period(block, window[0])), window
 
 
-def read_block(options: ShapeOptions) -> Block:
+def read_block(options: SizeOptions) -> Block:
     """The block of the sizes.
 
     Raises
@@ -233,7 +235,7 @@ def _period(block: Block, ratio: float) -> float:
     return 2.0 * math.pi / (ratio * block.frequency_parameter)
 
 
-def _positive(options: ShapeOptions, name: str) -> float:
+def _positive(options: SizeOptions, name: str) -> float:
     text = getattr(options, name)
     if text is None:
         raise InvalidArgumentError(name, None, "required with the other options that have units")

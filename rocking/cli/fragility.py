@@ -7,12 +7,18 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking.cli.options import OutputOptions, with_options
+from rocking.cli.progress import progress
 from rocking.cli.record import file_errors
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking.suites.configuration import SuiteConfiguration
 
 Configuration = Annotated[
     str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
@@ -23,25 +29,12 @@ Configuration = Annotated[
 def fragility(configuration: Configuration, output: OutputOptions) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates."""
     from rocking.cli import printing
-    from rocking.suites.configuration import suite_configuration
-    from rocking.suites.fragility import fragility as fragility_of
     from rocking.suites.hazard import annual_rate
     from rocking.suites.table import curve_table, fragility_table
 
-    path = Path(configuration)
-    with configuration_errors(), file_errors():
+    with configuration_errors():
         form = printing.output_format(output)
-        given = _read(path)
-        suite = suite_configuration(given.get("suite", given), path.parent)
-        found = fragility_of(
-            suite.motions(),
-            suite.blocks,
-            intensity=suite.intensity,
-            measure=suite.measure,
-            restitution=suite.restitution,
-            demand=suite.demand,
-            confidence=suite.confidence,
-        )
+    found, suite = suite_fragility(configuration)
     if suite.hazard is not None:
         found = found.assign(annual_rate(found, suite.hazard).data_vars)
     levels, curves = fragility_table(found), curve_table(found)
@@ -57,6 +50,27 @@ def fragility(configuration: Configuration, output: OutputOptions) -> None:
     printing.print_table(_finite(levels))
     typer.echo()
     printing.print_table(_finite(curves))
+
+
+def suite_fragility(configuration: str) -> tuple[xr.Dataset, SuiteConfiguration]:
+    """The fragility of the suite in a file, and the suite; errors name the key or the file."""
+    from rocking.suites.configuration import suite_configuration
+    from rocking.suites.fragility import fragility as fragility_of
+
+    path = Path(configuration)
+    with configuration_errors(), file_errors(), progress("solving the blocks under the records"):
+        given = _read(path)
+        suite = suite_configuration(given.get("suite", given), path.parent)
+        found = fragility_of(
+            suite.motions(),
+            suite.blocks,
+            intensity=suite.intensity,
+            measure=suite.measure,
+            restitution=suite.restitution,
+            demand=suite.demand,
+            confidence=suite.confidence,
+        )
+    return found, suite
 
 
 @contextmanager

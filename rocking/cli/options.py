@@ -1,7 +1,7 @@
 """Options that several commands share, declared once, and the decorator that gives them to a command.
 
-The fields of `ShapeOptions` and `ProblemOptions` are the options. A command declares one argument of that type;
-`with_options` replaces it in the signature that typer reads by the fields.
+The fields of `SizeOptions` and of the classes derived from it are the options. A command declares one argument of
+that type; `with_options` replaces it in the signature that typer reads by the fields.
 """
 
 from __future__ import annotations
@@ -30,8 +30,18 @@ def _with_units(text: str) -> Any:
     return typer.Option(help=text, rich_help_panel=_UNITS)
 
 
-@dataclass(frozen=True)
-class ShapeOptions:
+@dataclass(frozen=True, kw_only=True)
+class SizeOptions:
+    """The size of a block."""
+
+    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.")] = None
+    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.")] = None
+    half_width: Annotated[str | None, _with_units("b, such as 0.2m.")] = None
+    half_height: Annotated[str | None, _with_units("h, such as '80 cm'.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShapeOptions(SizeOptions):
     """A pulse without amplitude and a block: its slenderness angle, or its size."""
 
     pulse: Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
@@ -43,13 +53,9 @@ class ShapeOptions:
         ),
     ] = None
     alpha: Annotated[str | None, _in_groups(f"{ALPHA.help}, such as '20 deg'.")] = None
-    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.")] = None
-    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.")] = None
-    half_width: Annotated[str | None, _with_units("b, such as 0.2m.")] = None
-    half_height: Annotated[str | None, _with_units("h, such as '80 cm'.")] = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ProblemOptions(ShapeOptions):
     """A block under a pulse: in groups, or with units."""
 
@@ -59,7 +65,7 @@ class ProblemOptions(ShapeOptions):
     pulse_period: Annotated[str | None, _with_units("T_p, such as 0.5s.")] = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WindowOptions(ShapeOptions):
     """A block under pulses of all periods of a window."""
 
@@ -67,7 +73,7 @@ class WindowOptions(ShapeOptions):
     period_max: Annotated[str | None, _with_units("Longest T_p, such as 2s.")] = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SpectrumOptions(WindowOptions):
     """The same with an amplitude."""
 
@@ -83,6 +89,19 @@ class OutputOptions:
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False
 
 
+@dataclass(frozen=True)
+class PictureOptions:
+    """Where a picture goes."""
+
+    output: Annotated[
+        str | None, typer.Option("--output", "-o", help="File to write, .png or .svg; by default a window opens.")
+    ] = None
+
+
+FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
+FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
+
+
 def with_options(command: Callable[..., None]) -> Callable[..., None]:
     """A command whose arguments of the above types are options of the command line, one for each field."""
     hints = get_type_hints(command, include_extras=True)
@@ -90,7 +109,7 @@ def with_options(command: Callable[..., None]) -> Callable[..., None]:
     groups: dict[str, type[Any]] = {}
     for parameter in inspect.signature(command).parameters.values():
         hint = hints[parameter.name]
-        if not (isinstance(hint, type) and issubclass(hint, ShapeOptions | OutputOptions)):
+        if not (isinstance(hint, type) and issubclass(hint, SizeOptions | OutputOptions | PictureOptions)):
             parameters.append(parameter.replace(annotation=hint, kind=parameter.KEYWORD_ONLY))
             continue
         groups[parameter.name] = hint

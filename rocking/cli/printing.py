@@ -12,6 +12,7 @@ import typer
 
 from rocking.cli.arguments import Params
 from rocking.cli.options import OutputOptions
+from rocking.cli.progress import progress
 from rocking.datasets.csv_text import csv_text
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
@@ -45,23 +46,8 @@ def response(params: Params, form: Form) -> None:
 
     For a block with units also its rotation in degrees, displacement, changes of the outcome and warnings.
     """
-    found = _solve(params, params.frequency_ratio)
-    groups = _groups(params)
-    result = groups | {name: column[0] for name, column in _columns(found).items()}
-    sentence = Outcome[result["outcome"]].sentence
-    if params.problem is not None:
-        from rocking.dimensional.assessment import assess
-
-        assessment = assess(params.problem)
-        sentence = assessment.sentence
-        result |= _contact(assessment.contact) | _dimensional(params.problem, result["peak_rotation"], assessment)
-    elif params.alpha is not None:
-        from rocking.history.contact import contact_extremes
-        from rocking.history.motion import build_motion
-
-        contact = contact_extremes(build_motion(params.pulse, **params.groups))  # type: ignore[arg-type]
-        sentence = contact.sentence
-        result |= _contact(contact)
+    with progress("solving the block"):
+        result, sentence = _response(params)
     if form == "json":
         print_json(result)
     elif form == "csv":
@@ -76,11 +62,33 @@ def response(params: Params, form: Form) -> None:
             typer.echo(f"warning: {text}")
 
 
+def _response(params: Params) -> tuple[dict[str, Any], str]:
+    """What is printed of one block, by name, and the outcome in words."""
+    found = _solve(params, params.frequency_ratio)
+    result = _groups(params) | {name: column[0] for name, column in _columns(found).items()}
+    sentence = Outcome[result["outcome"]].sentence
+    if params.problem is not None:
+        from rocking.dimensional.assessment import assess
+
+        assessment = assess(params.problem)
+        sentence = assessment.sentence
+        result |= _contact(assessment.contact) | _dimensional(params.problem, result["peak_rotation"], assessment)
+    elif params.alpha is not None:
+        from rocking.history.contact import contact_extremes
+        from rocking.history.motion import build_motion
+
+        contact = contact_extremes(build_motion(params.pulse, **params.groups))  # type: ignore[arg-type]
+        sentence = contact.sentence
+        result |= _contact(contact)
+    return result, sentence
+
+
 def responses(table: BlockTable, form: Form) -> None:
     """Print the responses of many blocks: CSV, or JSON with one list for each column."""
     from rocking.dimensional.table import respond_table
 
-    columns = respond_table(table)
+    with progress(f"solving {len(table.problems)} blocks"):
+        columns = respond_table(table)
     if form == "json":
         print_json(columns)
     else:
@@ -172,13 +180,14 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     from rocking.history.contact import ATTRIBUTES, COLUMNS
     from rocking.history.time_history import time_history
 
-    motion = time_history(
-        params.pulse,
-        **params.groups,  # type: ignore[arg-type]
-        duration=duration,
-        samples=samples,
-        contact=contact,
-    )
+    with progress("solving the block"):
+        motion = time_history(
+            params.pulse,
+            **params.groups,  # type: ignore[arg-type]
+            duration=duration,
+            samples=samples,
+            contact=contact,
+        )
     names = ["tau", "rotation", "angular_velocity", "ground_acceleration", *(COLUMNS if contact else ())]
     columns = {name: [number(value) for value in motion[name].values.tolist()] for name in names}
     about = _groups(params) | {
@@ -218,7 +227,8 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
     """Print the peak against the frequency ratio, for a block with units against the period."""
     in_range("points", points, 2, 1_000_000)
     frequency_ratio = np.geomspace(*window, points)
-    found = _solve(params, frequency_ratio)
+    with progress(f"solving {points} blocks"):
+        found = _solve(params, frequency_ratio)
     columns = {"frequency_ratio": frequency_ratio.tolist()} | _columns(found)
     about = {name: value for name, value in _groups(params).items() if name != "frequency_ratio"}
     shown = {name: columns[name] for name in ("frequency_ratio", "peak_rotation", "outcome", "impacts")}
@@ -256,9 +266,10 @@ def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
     """Print the overturning boundary curves; for a block with units also peak accelerations and periods."""
     from rocking.boundary.tracing import overturning_boundary
 
-    curves = overturning_boundary(
-        params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
-    )
+    with progress("tracing the boundaries"):
+        curves = overturning_boundary(
+            params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
+        )
     sizes = curves["row_size"].values
     outcomes = [Outcome(int(code)).name for code in curves["outcome"].values]
     columns = {

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli.options import OutputOptions, with_options
+from rocking.cli.options import OutputOptions, SizeOptions, with_options
 from rocking.model.parameters import RESTITUTION
 
+if TYPE_CHECKING:
+    from rocking.model.block import Block
+
 File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
-HalfWidth = Annotated[str, typer.Option(help="b, such as 0.2m.")]
-HalfHeight = Annotated[str, typer.Option(help="h, such as '80 cm'.")]
 RecordRestitution = Annotated[str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or housner: (2.4).")]
 Scale = Annotated[float, typer.Option(help="Factor of the record.")]
 Unit = Annotated[
@@ -32,8 +33,7 @@ Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how b
 @with_options
 def record(
     file: File,
-    half_width: HalfWidth,
-    half_height: HalfHeight,
+    size: SizeOptions,
     output: OutputOptions,
     restitution: RecordRestitution = "housner",
     scale: Scale = 1.0,
@@ -46,15 +46,17 @@ def record(
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
     from rocking.cli import printing
-    from rocking.cli.arguments import option_errors
+    from rocking.cli.arguments import option_errors, read_block
+    from rocking.cli.progress import progress
     from rocking.dimensional.units import si_value
 
     with option_errors(), file_errors():
         form = printing.output_format(output)
         step = None if time_step is None else si_value("time_step", time_step, "s")
-        sizes = si_value("half_width", half_width, "m"), si_value("half_height", half_height, "m")
+        block = read_block(size)
         eta = restitution if restitution == "housner" else _number_of("restitution", restitution)
-        about, sentence = _solved(file, sizes, eta, scale, (unit, step, component, baseline_order), thresholds, fit)
+        with progress("solving the block under the record"):
+            about, sentence = _solved(file, block, eta, scale, (unit, step, component, baseline_order), thresholds, fit)
     if form == "json":
         printing.print_json(about)
     elif form == "csv":
@@ -92,7 +94,7 @@ def _number_of(parameter: str, text: str) -> float:
 
 def _solved(
     file: str,
-    sizes: tuple[float, float],
+    block: Block,
     restitution: str | float,
     scale: float,
     reading: tuple[str | None, float | None, str | None, int | None],
@@ -103,14 +105,12 @@ def _solved(
     from rocking.cli.printing import number
     from rocking.dimensional.record_response import respond_to_record
     from rocking.excitation.records.readers.read_record import read_record
-    from rocking.model.block import Block
     from rocking.suites.pulse_fit import fit_pulse
 
     unit, step, component, order = reading
     motion = read_record(file, unit=unit, time_step=step, component=component)
     if order is not None:
         motion = motion.baseline_corrected(order=order)
-    block = Block(*sizes)
     found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
     response, refined = found.dimensionless, found.resampled
     about: dict[str, Any] = {

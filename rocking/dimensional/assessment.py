@@ -68,9 +68,11 @@ class Assessment:
 
     @property
     def largest_safe_friction_demand(self) -> float | None:
-        """Coefficient of friction that it needs just below that acceleration [-]; None likewise."""
+        """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
         below = self.contact_below
-        return below.largest_friction_demand if below is not None and self._is_safe_below else None
+        if below is None or not self._is_safe_below or not self.problem.block.contact_is_known:
+            return None
+        return below.largest_friction_demand
 
     @property
     def _is_safe_below(self) -> bool:
@@ -104,7 +106,9 @@ class Assessment:
                 f"the restitution (2.4) of this shape is negative ({block.housner_restitution:.3g}): the block stops "
                 "at an impact, eta = 0; give a number for another restitution"
             )
-        if block.half_width > block.half_height:
+        if not block.contact_is_known:
+            texts.append("the contact forces of this structure are not known: sliding is not assessed")
+        elif block.half_width > block.half_height:
             texts.append("the block is wider than high: it would rather slide or bounce than rock")
         thresholds = self.thresholds or ()
         near = [one.value for one in thresholds if abs(one.value / problem.peak_acceleration - 1.0) < MARGIN]
@@ -158,13 +162,16 @@ def assess(
     flag = StopFlag() if stop is None else stop
     thresholds = run_with_timeout(lambda part: acceleration_thresholds(problem, part), seconds, flag)
     margins = run_with_timeout(lambda part: margins_of(problem, thresholds or (), part, served), seconds, flag)
-    contact = contact_extremes(build_motion(problem.pulse, **problem.groups, stop=flag))
-    below = _contact_below(problem, thresholds[0].value, flag) if thresholds else None
+    contact = _contact(problem, problem.groups["slenderness"], flag)
+    below = None
+    if thresholds:
+        uplift = problem.block.uplift_acceleration
+        below = _contact(problem, uplift / thresholds[0].value * (1.0 + RELATIVE_OFFSET), flag)
     return Assessment(problem, thresholds, margins, contact, below)
 
 
-def _contact_below(problem: BlockProblem, acceleration: float, stop: StopFlag) -> ContactExtremes:
-    """Contact of the motion just below a change of outcome."""
-    slenderness = problem.block.uplift_acceleration / acceleration * (1.0 + RELATIVE_OFFSET)
+def _contact(problem: BlockProblem, slenderness: float, stop: StopFlag) -> ContactExtremes:
+    """Contact with the ground during the motion at another slenderness 1/a."""
     groups = {**problem.groups, "slenderness": slenderness}
-    return contact_extremes(build_motion(problem.pulse, **groups, stop=stop))  # type: ignore[arg-type]
+    found = contact_extremes(build_motion(problem.pulse, **groups, stop=stop))  # type: ignore[arg-type]
+    return found if problem.block.contact_is_known else found.without_forces()

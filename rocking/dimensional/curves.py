@@ -81,7 +81,7 @@ def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
     for name, (scale, unit, meaning) in scales.items():
         dims = history[name].dims
         history[name] = (dims, scale * found[name].values, {"units": unit, "long_name": meaning})
-    moved = 2.0 * block.half_height * np.sin(history["rotation"].values)
+    moved = block.top_height * np.sin(history["rotation"].values)
     history["top_displacement"] = "time", moved, {"units": "m", "long_name": "horizontal displacement of a top corner"}
     return history.assign_attrs(_description(problem), pulse_end=float(found.attrs["pulse_end"]) / p)
 
@@ -132,7 +132,7 @@ def block_spectrum(
         "rotation": ("period", rotation, {"units": "rad", "long_name": "peak rotation"}),
         "top_displacement": (
             "period",
-            2.0 * block.half_height * np.sin(rotation),
+            block.top_height * np.sin(rotation),
             {"units": "m", "long_name": "largest displacement of a top corner"},
         ),
     }
@@ -188,7 +188,7 @@ def block_boundary(
         high = float(in_range("period[1]", period[1], low, math.inf, closed="neither", unit="s"))
         window = frequency_ratio_of(block, high), frequency_ratio_of(block, low)
     eta = restitution_of(block, restitution)
-    found = overturning_boundary(pulse, restitution=eta, alpha=block.alpha, frequency_ratio=window, stop=stop)
+    found = overturning_boundary(pulse, restitution=eta, alpha=block.equation_alpha, frequency_ratio=window, stop=stop)
     return add_si_axes(found, block)
 
 
@@ -214,6 +214,7 @@ def _description(problem: BlockProblem) -> dict[str, float]:
     return {
         "half_width": block.half_width,
         "half_height": block.half_height,
+        "alpha": block.alpha,
         "gravity": block.gravity,
         "peak_acceleration": problem.peak_acceleration,
         "period": problem.period,

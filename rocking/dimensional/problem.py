@@ -6,18 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypedDict
 
-import numpy as np
-
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.groups import GroupSet, Problem, groups_of
 from rocking.model.block import Block
 from rocking.model.checks import check
 from rocking.model.parameters import RESTITUTION
 
 
 class BlockGroups(TypedDict):
-    """The groups of (5.3), restitution and slenderness angle, as keyword arguments of `peak_response`."""
+    """The groups of (5.3), restitution and alpha of the equation of motion, as keyword arguments of `peak_response`."""
 
     slenderness: float
     frequency_ratio: float
@@ -64,14 +61,11 @@ class BlockProblem:
     def groups(self) -> BlockGroups:
         """The groups of (5.3)."""
         block = self.block
-        frequency = 2.0 * math.pi / self.period
-        problem = Problem(block.alpha, block.frequency_parameter, self.peak_acceleration, frequency, block.gravity)
-        found = groups_of(problem, GroupSet.RIGID)  # (5.3)
         return {
-            "slenderness": float(np.asarray(found.slenderness)),
-            "frequency_ratio": float(np.asarray(found.frequency_ratio)),
+            "slenderness": block.uplift_acceleration / self.peak_acceleration,  # (5.3)
+            "frequency_ratio": frequency_ratio_of(block, self.period),
             "restitution": restitution_of(block, self.restitution),
-            "alpha": block.alpha,
+            "alpha": block.equation_alpha,
         }
 
 

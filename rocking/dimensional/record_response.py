@@ -158,7 +158,7 @@ def respond_to_record(
             frequency_parameter=block.frequency_parameter,
             slenderness=block.uplift_acceleration / (float(factor) * motion.peak_acceleration),
             restitution=eta,
-            alpha=block.alpha,
+            alpha=block.equation_alpha,
             stop=stop,
         )
 

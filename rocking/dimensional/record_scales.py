@@ -130,7 +130,7 @@ def _solver(record: Record, block: Block, eta: float, stop: StopFlag | None) -> 
             frequency_parameter=block.frequency_parameter,
             slenderness=uplift / scales,
             restitution=eta,
-            alpha=block.alpha,
+            alpha=block.equation_alpha,
             stop=stop,
         ).overturned
 

@@ -134,8 +134,7 @@ class ScalarResponse(ABC):
         if self.outcome == Outcome.SAFE:
             peak = f"peak rotation {math.degrees(self.rotation):.4g} deg, top displacement {self.displacement:.4g} m"
             happened = f"{happened}: {peak}, {self._describe_impacts()}"
-        size = f"{2 * self.block.half_width:.4g} m x {2 * self.block.half_height:.4g} m"
-        return f"{happened}; block of {size} under {self._describe_motion()}"
+        return f"{happened}; {self.block.description} under {self._describe_motion()}"
 
 
 def count_of_impacts(impacts: int) -> str:

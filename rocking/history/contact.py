@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -49,6 +49,17 @@ ATTRIBUTES = (
 """Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
 
+FORCES = (
+    "largest_friction_demand",
+    "largest_friction_demand_over_slope",
+    "friction_time",
+    "smallest_normal_reaction",
+    "normal_time",
+    "impulse_ratio",
+)
+"""Fields of `ContactExtremes` that depend on the contact forces."""
+
+
 @dataclass(frozen=True)
 class ContactExtremes:
     """Extremes during a motion, impacts excluded; of a block that overturns, until it exceeds alpha permanently.
@@ -71,6 +82,8 @@ class ContactExtremes:
         Whether impacts accumulate to rest while the pulse acts.
     outcome : Outcome
         Final outcome of the motion.
+
+    The forces are nan where they are not known; sliding and lifting off are then not assessed.
     """
 
     largest_friction_demand: float
@@ -81,6 +94,11 @@ class ContactExtremes:
     impulse_ratio: float
     chatters: bool
     outcome: Outcome
+
+    def without_forces(self) -> ContactExtremes:
+        """The same without the forces, for structures of which only the motion is known."""
+        unknown = dict.fromkeys(FORCES, math.nan)
+        return replace(self, **unknown)  # type: ignore[arg-type]
 
     @property
     def lifts_off(self) -> bool:
@@ -94,7 +112,7 @@ class ContactExtremes:
         False if the block lifts off, or if rocking requires a coefficient of friction beyond `MAX_FRICTION`.
         A block that does not uplift without sliding does not uplift with less friction either.
         """
-        held = not self.lifts_off and self.largest_friction_demand <= MAX_FRICTION
+        held = not self.lifts_off and not self.largest_friction_demand > MAX_FRICTION
         return held or self.outcome == Outcome.NO_UPLIFT
 
     @property

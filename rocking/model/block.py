@@ -55,6 +55,21 @@ class Block:
         return math.atan2(self.half_width, self.half_height)
 
     @property
+    def equation_alpha(self) -> float:
+        """Alpha in the equation of motion [rad]: that of the block; (2.2) tends to (3.1) as it goes to 0."""
+        return self.alpha
+
+    @property
+    def description(self) -> str:
+        """The block in words."""
+        return f"block of {2 * self.half_width:.4g} m x {2 * self.half_height:.4g} m"
+
+    @property
+    def contact_is_known(self) -> bool:
+        """Whether the contact forces follow from the motion."""
+        return True
+
+    @property
     def frequency_parameter(self) -> float:
         """p = sqrt(3 g/(4 R)) [rad/s], below (2.2)."""
         return math.sqrt(0.75 * self.gravity / self.half_diagonal)
@@ -83,6 +98,11 @@ class Block:
         """
         return max(self.housner_restitution, 0.0)  # departs from (2.4) where that is negative
 
+    @property
+    def top_height(self) -> float:
+        """Height of a top corner above the pivot below it [m], 2 h."""
+        return 2.0 * self.half_height
+
     def top_displacement(self, rotation: float) -> float:
         """Horizontal displacement of a top corner [m] at a rotation [rad]: 2 h sin(theta), above the pivot."""
-        return 2.0 * self.half_height * math.sin(rotation)
+        return self.top_height * math.sin(rotation)

@@ -136,7 +136,7 @@ def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag |
     shape = tuple(map(len, (suite.blocks, suite.levels, suite.records)))
     fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in FIELDS}
     scales = np.empty(shape)
-    alpha = np.array([block.alpha for block in suite.blocks])[:, None]
+    alpha = np.array([block.equation_alpha for block in suite.blocks])[:, None]
     uplift = np.array([block.uplift_acceleration for block in suite.blocks])[:, None]
     for k, record in enumerate(suite.records):
         own = np.array([suite.measure.of(record, block) for block in suite.blocks])[:, None]

@@ -145,7 +145,7 @@ def _overturning_acceleration(pulse: AbstractPulse, period: float, block: Block,
         pulse,
         frequency_ratio=2.0 * math.pi / period / block.frequency_parameter,
         restitution=block.inelastic_restitution,
-        alpha=block.alpha,
+        alpha=block.equation_alpha,
         highest_amplitude=HIGHEST_AMPLITUDE,
         stop=stop,
     )

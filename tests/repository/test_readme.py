@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 import time
+import tomllib
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,7 +34,9 @@ COMMANDS = [
 ]
 MAKE = [command for command in COMMANDS if command[0] == "make"]
 CURL = [command for command in COMMANDS if command[0] == "curl"]
-ROCKING = [command for command in COMMANDS if command[0] == ".venv/bin/rocking"]
+ROCKING = [command for command in COMMANDS if command[0] == "rocking" and "-o" not in command]
+PICTURES = [command for command in COMMANDS if command[0] == "rocking" and "-o" in command]
+PIP = [command for command in COMMANDS if command[0] == "pip"]
 
 
 def recipe(*arguments: str) -> str:
@@ -71,7 +74,7 @@ def server_port(smoke_results: Path) -> Iterator[int]:
 
 
 def test_every_command_has_a_test() -> None:
-    assert len(MAKE) + len(CURL) + len(ROCKING) == len(COMMANDS)
+    assert len(MAKE) + len(CURL) + len(ROCKING) + len(PICTURES) + len(PIP) == len(COMMANDS)
     assert len(PYTHON_BLOCKS) == 4
     assert MAKE
     assert CURL
@@ -85,11 +88,12 @@ def test_every_command_has_a_test() -> None:
         ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
         ("test", "pytest"),
         ("serve", "rocking serve"),
+        ("docs", "echo 'open build/docs/index.html"),
     ],
 )
 def test_make_targets_of_the_readme(target: str, program: str) -> None:
     assert ["make", target] in MAKE
-    assert len(MAKE) == 4
+    assert len(MAKE) == 5
     assert recipe(target).startswith(program)
 
 
@@ -105,6 +109,19 @@ def test_python_blocks_with_output(number: int, capsys: pytest.CaptureFixture[st
     exec(PYTHON_BLOCKS[number], names)
     printed = [text for language, text in BLOCKS if language == "text"][number]
     assert capsys.readouterr().out == printed
+
+
+@pytest.mark.parametrize("command", PICTURES, ids=" ".join)
+def test_picture(command: list[str], tmp_path: Path) -> None:
+    subprocess.run([installed("rocking"), *command[1:]], cwd=tmp_path, check=True)
+    assert (tmp_path / command[-1]).read_bytes().startswith(b"\x89PNG")
+
+
+def test_extras_that_are_installed_exist() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    for command in PIP:
+        assert command[:2] == ["pip", "install"]
+        assert set(re.findall(r"\w+", command[2].partition("[")[2])) <= extras.keys()
 
 
 def test_first_command_and_first_python_block_ask_the_same() -> None:

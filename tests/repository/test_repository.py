@@ -16,7 +16,23 @@ import rocking
 ROOT = Path(__file__).parents[2]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
-FOLDERS = (".ci", "api", "benchmarks", "docs", "profiles", "reference", "rocking", "stress", "tests", "workflow")
+FOLDERS = (
+    ".ci",
+    "api",
+    "benchmarks",
+    "docs",
+    "examples",
+    "profiles",
+    "reference",
+    "rocking",
+    "stress",
+    "tests",
+    "workflow",
+)
+
+
+GENERATED = ("docs/gallery/", "docs/reference/generated/")
+"""Written by `make docs`."""
 
 
 def texts() -> dict[str, str]:
@@ -27,7 +43,8 @@ def texts() -> dict[str, str]:
         for path in paths
         if path.is_file() and "__pycache__" not in path.parts and path.name not in ("environment.lock", ".git")
     }
-    return {name: content.decode() for name, content in sorted(contents.items()) if b"\0" not in content}
+    kept = {name: content for name, content in contents.items() if not name.startswith(GENERATED)}
+    return {name: content.decode() for name, content in sorted(kept.items()) if b"\0" not in content}
 
 
 TEXTS = texts()

@@ -19,7 +19,19 @@ from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
-REQUIRED = {"lazy-loader", "llvmlite", "netCDF4", "numba", "numpy", "pandas", "pint", "scipy", "typer", "xarray"}
+REQUIRED = {
+    "lazy-loader",
+    "llvmlite",
+    "netCDF4",
+    "numba",
+    "numpy",
+    "pandas",
+    "pint",
+    "rich",
+    "scipy",
+    "typer",
+    "xarray",
+}
 """Distributions that an installation without extras requires."""
 
 OPTIONAL = {"service": {"fastapi", "prometheus-client", "uvicorn", "zarr"}, "plot": {"matplotlib"}}

@@ -16,10 +16,11 @@ from rocking.closed_form import overturning_amplitudes
 from rocking.datasets.cube import read_dataset, write_dataset
 from rocking.model.block import Block
 from rocking.model.response import Outcome
+from rocking.plot.boundary_lines import Lines
 from rocking.solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT, SMOKE
 from workflow.figures import figure_04, figure_09, figure_10, similar_histories
-from workflow.figures.boundary_lines import Lines, lines_of
+from workflow.figures.boundary_lines import lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
 

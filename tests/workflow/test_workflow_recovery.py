@@ -16,7 +16,7 @@ from stress.kills import KILLED, content, interrupt, project
 from stress.kills import reproduce as make_reproduce
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
 from workflow.records import forget_false_records
-from workflow.run_lock import RunningError, acquire
+from workflow.run_lock import RunningError, _held, acquire
 from workflow.verify import problems
 
 CUBE, FIGURE, DATA = "spectra/sine/eta-0.85.nc", "figures/figure-04.svg", "figures/figure-07.nc"
@@ -169,6 +169,7 @@ def test_second_run_is_refused_until_the_first_has_ended(
     holder.send_signal(signal.SIGKILL)
     holder.wait()
     acquire(tmp_path)
+    _held.pop(tmp_path.resolve()).close()  # a run keeps it open until its process ends
 
 
 def test_job_ends_with_its_run_and_locks_the_folder_until_then(tmp_path: Path) -> None:

@@ -1,51 +1,17 @@
-"""Traced overturning boundaries as lines to draw."""
+"""Traced overturning boundaries of files as lines, and as variables of plotted data."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 
 from rocking.boundary.curves import curves_at
 from rocking.datasets.cube import read_dataset
-from rocking.model.response import Outcome
+from rocking.plot.boundary_lines import Lines, outcome_lines
 from workflow.figures.style import plotted
-
-MAIN_IMPACTS = 1
-"""Boundaries of overturning after at most so many impacts are drawn with the full line width [-]."""
-
-DETAIL_WIDTH = 0.4
-"""Line width of the boundaries of overturning after more impacts, as a share of the full width [-]."""
-
-
-class Lines(NamedTuple):
-    """Polylines one after the other, each followed by nan; arrays of the same shape."""
-
-    amplitude: np.ndarray  # a = a_g/(g tan alpha) [-]
-    frequency_ratio: np.ndarray  # omega [-]
-    impacts: np.ndarray  # before overturning, -1 if not counted
-
-    def at_level(self, *, detail: bool) -> Lines:
-        """The lines of overturning after more than `MAIN_IMPACTS` impacts, or the others; nan elsewhere."""
-        here = ((self.impacts < 0) | (self.impacts > MAIN_IMPACTS)) == detail
-        return Lines(*(np.where(here, value, np.nan) for value in self[:2]), self.impacts)
-
-
-def outcome_lines(curves: xr.Dataset) -> Lines:
-    """The curves between overturning and survival, without those between two ways of overturning."""
-    between = curves.neighbour_outcome.values < Outcome.OVERTURNED_DIRECTLY
-    rows = curves.row_size.values
-    kept, ends = np.repeat(between, rows), np.cumsum(rows[between])
-    impacts = np.repeat(curves.impacts.values[between], rows[between])
-    return Lines(
-        np.insert(1 / curves.slenderness.values[kept], ends, np.nan),
-        np.insert(curves.frequency_ratio.values[kept], ends, np.nan),
-        np.insert(impacts, ends, curves.impacts.values[between]),
-    )
 
 
 def lines_of_files(files: Sequence[Path], alphas: Sequence[float] | None = None) -> Iterator[tuple[int, float, Lines]]:
@@ -96,11 +62,3 @@ def lines_of(data: xr.Dataset, pulse: int, alpha: float) -> Lines:
     """The lines of one pulse, by its index, and one angle [rad] among the variables of `line_variables`."""
     here = (data.boundary_pulse.values == pulse) & (data.boundary_alpha.values == alpha)
     return Lines(*(data[f"boundary_{name}"].values[here] for name in Lines._fields))
-
-
-def draw_lines(ax: Axes, x: np.ndarray, y: np.ndarray, lines: Lines, *, linewidth: float, **style: Any) -> None:
-    """Draw polylines, those of overturning after several impacts thinner; `x` and `y` are made of `lines`."""
-    for detail, width in ((False, linewidth), (True, DETAIL_WIDTH * linewidth)):
-        shown = np.isfinite(lines.at_level(detail=detail).amplitude)
-        label = {"label": style["label"]} if "label" in style and not detail else {"label": "_detail"}
-        ax.plot(np.where(shown, x, np.nan), np.where(shown, y, np.nan), linewidth=width, **(style | label))

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from rocking.excitation.pulses import get_pulse
 from rocking.model.block import Block
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
+from workflow.figures.style import panel_letters, plotted
 
 
 def data(

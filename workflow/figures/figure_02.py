@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.history.time_history import time_history
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, plotted
+from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
+from workflow.figures.style import plotted
 
 DURATION = 9.0  # tau after which every outcome is visible
 SAMPLES = 451

@@ -18,7 +18,8 @@ from rocking.closed_form import (
     semi_analytical_amplitudes,
     within_pulse,
 )
-from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
+from rocking.plot.style import GREY, WIDTH, shades
+from workflow.figures.style import panel_letters, plotted
 
 IMPACT_TIMES = 1500
 """Times of impact among which solutions beyond the pulse are looked for [-]."""

@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from rocking.boundary.curves import curves_at
 from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
 from rocking.datasets.cube import read_dataset
-from workflow.figures.boundary_lines import Lines, outcome_lines
-from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
+from rocking.plot.boundary_lines import Lines, outcome_lines
+from rocking.plot.style import BLACK, GREY, WIDTH, shades
+from workflow.figures.style import panel_letters, plotted
 
 POINTS = 401
 

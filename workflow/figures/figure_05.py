@@ -9,8 +9,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking.plot.style import BLUE, VERMILION, WIDTH
 from workflow.figures.dimensional import DimensionalProblem
-from workflow.figures.style import BLUE, VERMILION, WIDTH, panel_letters, plotted
+from workflow.figures.style import panel_letters, plotted
 
 
 def data(

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from rocking.history.time_history import time_history
 from rocking.model.block import STANDARD_GRAVITY
+from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures import figure_05
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+from workflow.figures.style import panel_letters, plotted
 
 
 def data(**settings: Any) -> xr.Dataset:

@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.history.time_history import time_history
-from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
+from rocking.plot.style import GREY, WIDTH, shades
+from workflow.figures.style import panel_letters, plotted
 
 SAMPLES = 900
 

@@ -16,10 +16,12 @@ from rocking.boundary.amplitude import critical_amplitude
 from rocking.datasets.cube import read_dataset
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
 from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking.plot.boundary_lines import Lines, draw_lines
+from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 from rocking.solver.peak_response import peak_response
-from workflow.figures.boundary_lines import Lines, draw_lines, line_variables, lines_of, lines_of_files
+from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.dimensional import DimensionalProblem
-from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+from workflow.figures.style import panel_letters, plotted
 
 Floats = NDArray[np.float64]
 

@@ -11,8 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.closed_form import overturning_amplitudes
-from workflow.figures.boundary_lines import draw_lines, line_variables, lines_of, lines_of_files
-from workflow.figures.style import BLACK, GREY, WIDTH, panel_letters, plotted, shades
+from rocking.plot.boundary_lines import draw_lines
+from rocking.plot.style import BLACK, GREY, WIDTH, shades
+from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
+from workflow.figures.style import panel_letters, plotted
 
 WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 5.6)}
 """Frequency ratios shown [-]; beyond them almost no block overturns at the amplitudes shown."""

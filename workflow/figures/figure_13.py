@@ -9,8 +9,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rocking.plot.style import BLACK, WIDTH, shades
 from workflow.figures.spectrum_curves import Block, curve_variables, peaks, rows_of
-from workflow.figures.style import BLACK, WIDTH, panel_letters, plotted, shades
+from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 

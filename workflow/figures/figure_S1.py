@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.closed_form import EXPANSION_TIME, ad_hoc_sine, pulse_end, uplift_phase
-from workflow.figures.style import BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
+from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
+from workflow.figures.style import panel_letters, plotted
 
 
 def data(*, slenderness: float, frequency_ratio: Sequence[float]) -> xr.Dataset:
@@ -54,8 +55,8 @@ def draw(data: xr.Dataset) -> Figure:
         one = data.sel(frequency_ratio=omega)
         ax.axvline(EXPANSION_TIME, color=GREY, linewidth=0.6, linestyle=":")
         acting = data.tau <= one.pulse_end
-        ax.plot(data.tau, one.exact, color=BLUE, alpha=0.35, linewidth=0.8)  # its continuation beyond the pulse
-        ax.plot(data.tau, one.exact.where(acting), color=BLUE, label=r"$\sin(\omega\tau+\psi)$, while the pulse acts")
+        ax.plot(data.tau, one.exact.where(acting), color=BLUE, label=r"$\sin(\omega\tau+\psi)$ while the pulse acts")
+        ax.plot(data.tau, one.exact, color=BLUE, alpha=0.35, linewidth=0.8, label="and beyond its end")
         ax.plot(data.tau, one.approximation, color=VERMILION, linestyle="--", label="(3.27)")
         ax.text(0.98, 0.96, rf"$\omega={omega:g}$", transform=ax.transAxes, ha="right", va="top")
         ax.set_ylim(-1.6, 1.6)
@@ -63,7 +64,7 @@ def draw(data: xr.Dataset) -> Figure:
         ax.set_xticks([0, 0.5, 1, 1.5, 2])
     for ax in axes[data.frequency_ratio.size :]:
         ax.remove()
-    axes[0].legend(loc="lower left")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     panel_letters(axes)
     figure.supxlabel(r"time since uplift $\tau=pt$ [-]", fontsize=8)
     figure.supylabel(r"ground acceleration $\ddot{u}_g/a_g$ [-]", fontsize=8)

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from rocking.closed_form import limit_amplitude, overturning_amplitudes, small_peak
 from rocking.datasets.cube import read_spectrum
 from rocking.groups.scale_law import largest_deviation, restitution_exponent
-from workflow.figures.style import WIDTH, panel_letters, plotted
+from rocking.plot.style import WIDTH
+from workflow.figures.style import panel_letters, plotted
 
 LARGEST = 12.0
 """Largest amplitude a shown [-], as in figure 4."""

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from rocking.groups import Groups, GroupSet, groups_of, problem_of_block, scaled_rotation
 from rocking.history.time_history import time_history
-from workflow.figures.style import GREY, WIDTH, panel_letters, plotted, shades
+from rocking.plot.style import GREY, WIDTH, shades
+from workflow.figures.style import panel_letters, plotted
 
 GROUP_SETS = (GroupSet.SLENDER_BY_PULSE, GroupSet.RIGID_SMALL_ROTATION)
 SAMPLES = 900

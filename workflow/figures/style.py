@@ -1,4 +1,4 @@
-"""Common settings of the figures: size, fonts, colours for colour-blind readers, and variables of plotted data."""
+"""Settings of matplotlib for the figures, letters of panels, and variables of plotted data."""
 
 from __future__ import annotations
 
@@ -13,37 +13,9 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from rocking.datasets.cube import MODEL_RESULT
+from rocking.plot.style import STYLE
 
-WIDTH = 6.7
-"""Width of a figure in print [in]."""
-
-BLACK, BLUE, VERMILION = "#000000", "#0072B2", "#D55E00"
-"""Colours of Okabe and Ito (2008), distinct to colour-blind readers."""
-
-GREY = "#6B6B6B"
-
-mpl.rcParams.update({
-    "font.size": 8,
-    "axes.titlesize": 8,
-    "axes.labelsize": 8,
-    "legend.fontsize": 7,
-    "xtick.labelsize": 7,
-    "ytick.labelsize": 7,
-    "axes.linewidth": 0.6,
-    "lines.linewidth": 1.1,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.frameon": False,
-    "mathtext.fontset": "dejavusans",
-    "savefig.dpi": 300,
-    "svg.hashsalt": "rocking",  # equal identifiers in the file on every run
-    "figure.constrained_layout.use": True,
-})  # fmt: skip
-
-
-def shades(count: int) -> list[Any]:
-    """`count` colours from dark to light of a perceptually uniform map, without its lightest part."""
-    return [mpl.colormaps["viridis"](x) for x in np.linspace(0.0, 0.85, count)]
+mpl.rcParams.update(STYLE)
 
 
 def panel_letters(axes: Sequence[Axes]) -> None:

@@ -11,15 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.datasets.cube import read_dataset
+from rocking.plot.fragility import CURVES, POINTS, draw_fractions
+from rocking.plot.style import WIDTH
 from rocking.suites.fits import curve_probability
-from workflow.figures.style import BLACK, BLUE, GREY, VERMILION, WIDTH, panel_letters, plotted
-from workflow.figures.suite_outcomes import block_title, intensity_label, logarithmic_axis
+from workflow.figures.style import panel_letters, plotted
+from workflow.figures.suite_outcomes import block_title, intensity_label
 
 COLUMNS = 3
 """Panels in a row."""
-
-POINTS = 300
-"""Points of a fitted curve."""
 
 
 def data(*, fragility: Path) -> xr.Dataset:
@@ -81,14 +80,6 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _panel(ax: Axes, data: xr.Dataset) -> None:
-    levels, fraction = data.intensity.values, data.fraction.values
-    ends = np.abs(np.stack([data.fraction_lower.values, data.fraction_upper.values]) - fraction)
-    per_cent = 100.0 * data.attrs["confidence"]
-    style = {"fmt": "o", "markersize": 2.5, "color": BLACK, "linewidth": 0.5, "ecolor": GREY}
-    ax.errorbar(levels, fraction, ends, label=f"records, {per_cent:g} % interval", **style)
-    ax.step(levels, data.first_fraction, where="post", color=GREY, linestyle=":", label="first exceedance")
-    for model, colour, line in (("lognormal", VERMILION, "-"), ("logistic", BLUE, "--")):
+    draw_fractions(ax, data)
+    for model, (colour, line) in CURVES.items():
         ax.plot(data.fine_intensity, data.curve.sel(model=model), line, color=colour, label=model)
-    logarithmic_axis(ax)
-    ax.set_xlim(levels[0], levels[-1])
-    ax.set_ylim(-0.03, 1.03)

@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking.datasets.cube import read_dataset
+from rocking.plot.style import UNITS
 from workflow.figures.style import plotted
-from workflow.figures.suite_outcomes import UNITS
 
 
 def data(*, outcomes: Path) -> xr.Dataset:

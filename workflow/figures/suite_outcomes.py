@@ -10,16 +10,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rocking.datasets.cube import read_dataset
-from workflow.figures.style import WIDTH, panel_letters, plotted, shades
+from rocking.plot.style import WIDTH, label_of, plain_numbers, shades
+from workflow.figures.style import panel_letters, plotted
 
 CLASSES = ("no uplift", "rotation below alpha/2", "below alpha", "above alpha, survives", "overturns")
 """What the colours stand for."""
-
-UNITS = {"m s-2": "m/s$^2$", "m s-1": "m/s", "1": "-"}
-"""Units as drawn."""
 
 
 def data(*, outcomes: Path) -> xr.Dataset:
@@ -73,7 +70,7 @@ def _panel(ax: Axes, data: xr.Dataset, colours: ListedColormap, norm: BoundaryNo
     edges = np.exp(np.array([ends[0], *between, ends[1]]) + (levels[0] if levels.size == 1 else 0.0))
     rows = np.arange(data.sizes["record"] + 1) - 0.5
     mesh = ax.pcolormesh(edges, rows, data.outcome_class.values.T, cmap=colours, norm=norm)
-    logarithmic_axis(ax)
+    plain_numbers(ax, "x")
     step = math.ceil(data.sizes["record"] / 30)
     ax.set_yticks(np.arange(0, data.sizes["record"], step), data.record.values[::step], fontsize=6)
     ax.invert_yaxis()
@@ -87,15 +84,7 @@ def block_title(data: xr.Dataset, k: int) -> str:
 
 def intensity_label(data: xr.Dataset) -> str:
     """The measure with its unit, for an axis."""
-    return f"{data.intensity.long_name} [{UNITS[data.intensity.units]}]"
-
-
-def logarithmic_axis(ax: Axes) -> None:
-    """A logarithmic abscissa with ticks at 1, 2, 5 times powers of ten, written as plain numbers."""
-    ax.set_xscale("log")
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    ax.xaxis.set_minor_formatter(NullFormatter())
+    return label_of(data.intensity)
 
 
 def _flag(text: str) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.datasets.cube import describe, write_dataset
+from rocking.plot.output import save_figure
 from workflow.scripts.job import run
 
 
@@ -41,9 +42,8 @@ def main(
     chosen = {"values_chosen_here": ", ".join(ours)} if ours else {}
     write_dataset(describe(dataset, id=nc.stem, history=f"workflow.figures.{figure}", **chosen, **provenance), nc)
     drawing = module.draw(dataset)
-    # without time and library version: the same data give the same bytes
-    drawing.savefig(svg, metadata={"Date": None, "Creator": None})
-    drawing.savefig(png, metadata={"Software": None})
+    save_figure(drawing, svg)
+    save_figure(drawing, png)
 
 
 if __name__ == "__main__":

@@ -102,10 +102,10 @@ def write_lane(group: Record, lane: int, response: Record) -> None:
 
 
 @kernel
-def append(lists: FloatArray, counts: FloatArray, which: int, place: int) -> None:
+def append(cells: Record, which: int, place: int) -> None:
     """Append a place to a list."""
-    lists[which, counts[which]] = place
-    counts[which] += 1
+    cells.lists[which, cells.counts[which]] = place
+    cells.counts[which] += 1
 
 
 @kernel
@@ -116,16 +116,14 @@ def start_cells(
     omega: FloatArray,
     eta: FloatArray,
     pulse: Record,
-    rows: FloatArray,
-    lists: FloatArray,
-    counts: FloatArray,
-    members: FloatArray,
+    cells: Record,
     responses: Record,
 ) -> bool:
     """Prepare the rows of the cells `first` to `last` - 1 for their first flights; True if some share a flight.
 
     Consecutive cells that differ in eta only share the first flight, which stands in the row of the first of them.
     """
+    rows, members = cells.rows, cells.members
     f_start, shared, cell = pulse.end_shape[0], False, first
     empty = rows[BLOCK_SIZE]
     for column in range(LANES):
@@ -153,7 +151,7 @@ def start_cells(
             row[SLENDERNESS], row[OMEGA], row[ETA], row[AT_UPLIFT], row[PIECE] = s, w, eta[cell], at_uplift, piece
             members[place] = following - cell
             shared = shared or following - cell > 1
-            append(lists, counts, LONG_LISTS + (1 if sign > 0.0 else 0), place)
+            append(cells, LONG_LISTS + (1 if sign > 0.0 else 0), place)
         cell = following
     return shared
 
@@ -163,9 +161,7 @@ def distribute(
     which: int,
     pulse: Record,
     group: Record,
-    rows: FloatArray,
-    lists: FloatArray,
-    counts: FloatArray,
+    cells: Record,
     responses: Record,
 ) -> None:
     """Write the responses of finished cells and put the others into the lists of their next flights."""
@@ -196,24 +192,25 @@ def distribute(
         if target < 0:
             write_lane(group, lane, responses[place])
         else:
-            append(lists, counts, target, place)
+            append(cells, target, place)
             waits = True
     if waits:
-        scatter_rows(group.columns, group.place, rows)
+        scatter_rows(group.columns, group.place, cells.rows)
 
 
 @kernel
-def take_group(which: int, group: Record, rows: FloatArray, lists: FloatArray, counts: FloatArray) -> None:
+def take_group(which: int, group: Record, cells: Record) -> None:
     """Take the last cells from a list into the group; unused lanes get an empty row."""
+    counts = cells.counts
     count = counts[which]
     start = max(count - LANES, 0)
     counts[which] = start
-    places = lists[which][start : start + LANES]
+    places = cells.lists[which][start : start + LANES]
     for lane in range(LANES):
         group.place[lane] = places[lane]
     for lane in range(count - start, LANES):
         group.place[lane] = BLOCK_SIZE
-    gather_rows(rows, group.place, group.columns)
+    gather_rows(cells.rows, group.place, group.columns)
 
 
 @kernel
@@ -222,14 +219,11 @@ def share_flights(
     eta: FloatArray,
     pulse: Record,
     group: Record,
-    rows: FloatArray,
-    lists: FloatArray,
-    counts: FloatArray,
-    members: FloatArray,
+    cells: Record,
     responses: Record,
 ) -> None:
     """End the flights for the other cells that share them; `shared` and `leader` hold the group as it was before."""
-    most = 1
+    members, most = cells.members, 1
     for lane in range(LANES):
         most = max(most, members[group.leader[lane]])
     for member in range(1, most):
@@ -243,7 +237,7 @@ def share_flights(
                 members[leader + member] = 1
                 group.columns[ETA, lane] = eta[leader + member]
         end_flights(pulse, group, 1.0 if which % 2 == 1 else -1.0)
-        distribute(which, pulse, group, rows, lists, counts, responses)
+        distribute(which, pulse, group, cells, responses)
     for lane in range(LANES):
         members[group.leader[lane]] = 1
 
@@ -255,15 +249,12 @@ def follow_group(
     eta: FloatArray,
     pulse: Record,
     group: Record,
-    rows: FloatArray,
-    lists: FloatArray,
-    counts: FloatArray,
-    members: FloatArray,
+    cells: Record,
     responses: Record,
 ) -> None:
     """Follow the next flights of the last cells of a list."""
     sign = 1.0 if which % 2 == 1 else -1.0
-    take_group(which, group, rows, lists, counts)
+    take_group(which, group, cells)
     if which < SHORT_LISTS:
         start_uplifts(pulse, group, sign)
         follow_flights(pulse, group, sign)
@@ -274,9 +265,9 @@ def follow_group(
             store(group.shared, k, load(group.columns, k))
             group.leader[k] = group.place[k]
     end_flights(pulse, group, sign)
-    distribute(which, pulse, group, rows, lists, counts, responses)
+    distribute(which, pulse, group, cells, responses)
     if shared:
-        share_flights(which, eta, pulse, group, rows, lists, counts, members, responses)
+        share_flights(which, eta, pulse, group, cells, responses)
 
 
 @kernel
@@ -297,10 +288,7 @@ def solve_by_arcs(
     eta: FloatArray,
     pulse: Record,
     group: Record,
-    rows: FloatArray,
-    lists: FloatArray,
-    counts: FloatArray,
-    members: FloatArray,
+    cells: Record,
     stop: FloatArray,
     responses: Record,
 ) -> None:
@@ -310,19 +298,20 @@ def solve_by_arcs(
     ----------
     slenderness, omega, eta : float arrays (cells,)
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-].
-    pulse, group, rows, lists, counts, members
+    pulse, group, cells
         Solver state: a record of `pulse_state`, and `stage_state`.
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight; responses are missing.
     responses : array (cells,) of `rocking.solver.state.RESPONSE_RECORD`
         Filled.
     """
+    rows, lists, counts, members = cells.rows, cells.lists, cells.counts, cells.members
     for first in range(0, len(slenderness), BLOCK_SIZE):
         last = min(first + BLOCK_SIZE, len(slenderness))
         block = responses[first:last]
         counts[:] = 0
         members[BLOCK_SIZE] = 1
-        shared = start_cells(first, last, slenderness, omega, eta, pulse, rows, lists, counts, members, responses)
+        shared = start_cells(first, last, slenderness, omega, eta, pulse, cells, responses)
         while not is_stopped(stop):
             fullest = 0
             for which in range(1, GENERAL_LIST):
@@ -330,7 +319,7 @@ def solve_by_arcs(
                     fullest = which
             if counts[fullest] == 0:
                 break
-            follow_group(fullest, shared, eta[first:last], pulse, group, rows, lists, counts, members, block)
+            follow_group(fullest, shared, eta[first:last], pulse, group, cells, block)
         for i in range(counts[GENERAL_LIST]):
             cell = first + lists[GENERAL_LIST, i]
             solve_generally(pulse, slenderness[cell], omega[cell], eta[cell], stop, responses[cell])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
@@ -106,38 +105,39 @@ GROUP_STATE = _group_layout()
 """Layout of the record of `LANES` cells. All fields before `place` are rows of a SIMD vector."""
 
 
+CELLS_STATE = np.dtype(
+    [
+        ("rows", np.float64, (BLOCK_SIZE + 1, LANES)),  # of the cells; the last is for unused lanes
+        ("lists", np.int64, (LIST_COUNT, BLOCK_SIZE + LANES)),  # places in the block
+        ("counts", np.int64, (LIST_COUNT,)),  # lengths of the lists
+        ("members", np.int64, (BLOCK_SIZE + 1,)),  # number of cells that share the first flight of a cell
+    ]
+)
+"""Layout of the record of the cells of a block, which wait in lists."""
+
+
 class StageState(NamedTuple):
     """State of the stages of one thread.
 
     Attributes
     ----------
     group : record `GROUP_STATE`
-        The cells in work, aligned to the size of a vector.
-    rows : float array (BLOCK_SIZE + 1, LANES)
-        Rows of the cells of a block; the last is for unused lanes.
-    lists : int64 array (LIST_COUNT, BLOCK_SIZE + LANES)
-        Lists of places in the block.
-    counts : int64 array (LIST_COUNT,)
-        Their lengths.
-    members : int64 array (BLOCK_SIZE + 1,)
-        Number of cells that share the first flight of a cell.
+        The cells in work.
+    cells : record `CELLS_STATE`
+        All cells of a block.
     """
 
     group: Record
-    rows: NDArray[np.float64]
-    lists: NDArray[np.int64]
-    counts: NDArray[np.int64]
-    members: NDArray[np.int64]
+    cells: Record
 
 
 def stage_state() -> StageState:
     """A new state."""
-    memory = np.zeros(GROUP_STATE.itemsize + VECTOR_BYTES, np.uint8)
+    return StageState(_aligned_record(GROUP_STATE), _aligned_record(CELLS_STATE))
+
+
+def _aligned_record(layout: np.dtype[np.void]) -> Record:
+    """A record of zeros that starts at a multiple of the size of a vector."""
+    memory = np.zeros(layout.itemsize + VECTOR_BYTES, np.uint8)
     start = -memory.ctypes.data % VECTOR_BYTES
-    return StageState(
-        memory[start : start + GROUP_STATE.itemsize].view(GROUP_STATE)[0],
-        np.zeros((BLOCK_SIZE + 1, LANES)),
-        np.zeros((LIST_COUNT, BLOCK_SIZE + LANES), np.int64),
-        np.zeros(LIST_COUNT, np.int64),
-        np.zeros(BLOCK_SIZE + 1, np.int64),
-    )
+    return memory[start : start + layout.itemsize].view(layout)[0]

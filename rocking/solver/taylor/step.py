@@ -38,23 +38,25 @@ def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
 
 
 @kernel
+def start_series(steps: Record) -> None:
+    """Set the first coefficients of z, w, S and C from z0 and w0."""
+    slender, z0, w0 = load(steps.slender, 0), load(steps.z0, 0), load(steps.w0, 0)
+    store(steps.z, 0, z0)
+    store(steps.z, 1, w0)
+    store(steps.rate, 0, w0)
+    rest = 1.0 - z0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
+    store(steps.s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
+    store(steps.c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
+
+
+@kernel
 def expand_motion(steps: Record) -> None:
     """Fill `z` and `rate` from z0, w0 and `f`."""
     z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
-    at_uplift, slender, z0, w0 = (
-        load(steps.starts_at_uplift, 0),
-        load(steps.slender, 0),
-        load(steps.z0, 0),
-        load(steps.w0, 0),
-    )
+    at_uplift = load(steps.starts_at_uplift, 0)
     store(f, 0, (1.0 - at_uplift) * load(f, 0) - at_uplift)  # |a f| = 1 exactly at uplift
-    store(z, 0, z0)
-    store(z, 1, w0)
-    store(rate, 0, w0)
-    rest = 1.0 - z0
-    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
-    store(s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
-    store(c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
+    start_series(steps)
     factor, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
     for n in range(steps.order - 1):
         restoring, sine, cosine = load(s, n), splat(0.0), splat(0.0)
@@ -90,11 +92,8 @@ def choose_step_size(steps: Record) -> None:
 
 
 @kernel
-def take_step(steps: Record) -> None:
-    """Expand about z0, w0 at `phase`; set the step size, z and w at the end, and the bound of |w''| on the step."""
-    expand_excitation(steps)
-    expand_motion(steps)
-    choose_step_size(steps)
+def evaluate_step(steps: Record) -> None:
+    """Set z and w at the end of the step of size `h`, and the bound of |w''| on the step."""
     z, rate, order = steps.z, steps.rate, steps.order
     h = load(steps.h, 0)
     rotation, velocity = load(z, order), load(rate, order - 1)
@@ -108,3 +107,12 @@ def take_step(steps: Record) -> None:
     store(steps.z1, 0, rotation * h + load(z, 0))
     store(steps.w1, 0, velocity)
     store(steps.second_derivative_bound, 0, bound)
+
+
+@kernel
+def take_step(steps: Record) -> None:
+    """Expand about z0, w0 at `phase`; set the step size, z and w at the end, and the bound of |w''| on the step."""
+    expand_excitation(steps)
+    expand_motion(steps)
+    choose_step_size(steps)
+    evaluate_step(steps)

@@ -1,0 +1,110 @@
+"""Directives that write reference tables from the code: routes of the service, fields of the data files, settings."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import typer
+from docutils import nodes
+from docutils.parsers.rst import Directive
+from docutils.statemachine import StringList
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
+from typer.cli import get_docs_for_click
+
+from rocking.cli.app import app as command_line
+from rocking.datasets.cube import AXES, VARIABLES
+
+
+class Generated(Directive):
+    """Markdown text made by `lines`, parsed in place."""
+
+    has_content: ClassVar[bool] = False
+
+    def lines(self) -> list[str]:
+        """The text."""
+        raise NotImplementedError
+
+    def run(self) -> list[nodes.Node]:
+        container = nodes.container()
+        text = self.lines()
+        self.state.nested_parse(
+            StringList(text, source=type(self).__name__), self.content_offset, container, match_titles=True
+        )
+        return container.children
+
+
+def cell(text: Any) -> str:
+    """Text as the cell of a table."""
+    return " ".join(str(text).replace("|", "\\|").split())
+
+
+class Routes(Generated):
+    """Every route of the service with its parameters, from the OpenAPI description."""
+
+    def lines(self) -> list[str]:
+
+        text: list[str] = []
+        document = create_app(Settings()).openapi()
+        for path, operations in document["paths"].items():
+            for method, operation in operations.items():
+                text += [f"**{method.upper()} `{path}`**", "", operation.get("summary", ""), ""]
+                parameters = operation.get("parameters", [])
+                if parameters:
+                    text += ["| parameter | in | required | meaning |", "|---|---|---|---|"]
+                    for one in parameters:
+                        meaning = one.get("description") or one["schema"].get("description", "")
+                        need = "yes" if one.get("required") else "no"
+                        text.append(f"| `{one['name']}` | {one['in']} | {need} | {cell(meaning)} |")
+                    text.append("")
+                body = operation.get("requestBody", {}).get("content", {})
+                if body:
+                    text += ["Body: " + ", ".join(f"`{kind}`" for kind in body) + ".", ""]
+        return text
+
+
+class ServiceSettings(Generated):
+    """Environment variables of the service with their defaults."""
+
+    def lines(self) -> list[str]:
+
+        rows = [
+            f"| `ROCKING_{name.upper()}` | `{field.default}` | {cell(field.description or '')} |"
+            for name, field in Settings.model_fields.items()
+        ]
+        return ["| variable | default | meaning |", "|---|---|---|", *rows, ""]
+
+
+class CubeFields(Generated):
+    """Axes and variables of a spectrum cube."""
+
+    def lines(self) -> list[str]:
+
+        text = ["| variable | type | unit | equation | meaning |", "|---|---|---|---|---|"]
+        fields = [(name, "f8", about) for name, about in AXES.items()]
+        fields += [(name, kind, about) for name, (kind, about) in VARIABLES.items()]
+        for name, kind, about in fields:
+            unit, equation = about.get("units", "1"), about.get("equation", "")
+            meaning = "; ".join(str(about[key]) for key in ("long_name", "comment", "flag_meanings") if key in about)
+            text.append(f"| `{name}` | {kind} | {unit} | {equation} | {cell(meaning)} |")
+        return [*text, ""]
+
+
+class Command(Generated):
+    """Every command with its options, as `typer utils docs` writes them."""
+
+    def lines(self) -> list[str]:
+
+        command = typer.main.get_command(command_line)
+        with typer.Context(command, info_name="rocking") as context:
+            text = get_docs_for_click(obj=command, ctx=context, name="rocking", title="rocking")
+        return text.replace("**Usage**", "Usage").splitlines()[1:]
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """Register the directives."""
+    app.add_directive("service-routes", Routes)
+    app.add_directive("service-settings", ServiceSettings)
+    app.add_directive("cube-fields", CubeFields)
+    app.add_directive("command-options", Command)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,29 @@
+"""
+Map of the control space with its boundaries
+============================================
+
+The outcome of slender blocks under a full sine, over amplitude and frequency: a million of them take a
+second. The boundaries are traced with the solver, not taken from the picture.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import rocking
+
+amplitude = np.geomspace(1.0, 10.0, 300)
+blocks = rocking.peak_response(
+    "sine", slenderness=1 / amplitude[:, None], frequency_ratio=np.linspace(0.3, 8.0, 400), restitution=0.85
+)
+print(blocks)
+
+# %%
+# Inside the closed curve a block overturns after an impact, above the other one without impact. Between the
+# two is the upper safe region, in which the ground brings the block back after it has passed alpha. The thin
+# curves at the bottom left belong to overturning after several impacts, which the closed forms of the paper
+# do not cover.
+
+boundaries = rocking.overturning_boundary("sine", restitution=0.85, frequency_ratio=(0.3, 8.0), slenderness=(0.1, 1.0))
+ax = rocking.plot.control_map(blocks.to_xarray())
+rocking.plot.boundary(boundaries, ax, color="white")
+plt.show()

@@ -1,0 +1,62 @@
+"""
+A recorded ground motion
+========================
+
+A component of the South Napa earthquake of 2014 under a stele of 0.5 m by 2 m. ``read_record`` reads PEER
+AT2, ESM, K-NET and columns of numbers.
+"""
+
+import os
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import rocking
+
+motions = Path(os.environ.get("ROCKING_MOTIONS", "workflow/motions"))
+motion = rocking.read_record(motions / "napa_HNE.csv")
+block = rocking.Block(half_width=0.25, half_height=1.0)  # m
+response = block.response(motion, scale=1.2, thresholds=True)
+print(response)
+for warning in response.warnings:
+    print("warning:", warning)
+
+# %%
+# The outcome is not monotone in the scale of the record: between two scales at which the block overturns
+# there can be some at which it survives.
+
+scales = response.thresholds
+print(f"{scales.scale.size} changes of the outcome up to {scales.searched[1]:.2f} times the record, the first of them:")
+for scale, above in zip(scales.scale[:6], scales.overturns_above[:6], strict=True):
+    print(f"{'overturns' if above else 'survives'} above {scale:.3f} times the record")
+
+# %%
+# The motion under 1.2 times the record, until the block has overturned.
+
+history = rocking.record_history(
+    motion,
+    frequency_parameter=block.frequency_parameter,
+    slenderness=response.slenderness,
+    restitution=response.restitution,
+    alpha=block.alpha,
+    duration=30.0,
+)
+figure, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
+rocking.plot.history(history, axes[0])
+rocking.plot.ground_acceleration(history, axes[1], linewidth=0.6)
+plt.show()
+
+# %%
+# Many blocks under one record: arguments broadcast as those of numpy.
+
+heights = np.linspace(1.0, 6.0, 200)  # m
+blocks = [rocking.Block(half_width=0.15 * height, half_height=0.5 * height) for height in heights]
+many = rocking.record_response(
+    motion,
+    frequency_parameter=[one.frequency_parameter for one in blocks],
+    slenderness=[one.uplift_acceleration / response.peak_acceleration for one in blocks],
+    restitution=0.9,
+    alpha=[one.alpha for one in blocks],
+)
+print(many)

@@ -1,0 +1,28 @@
+"""
+Rocking spectrum of a block
+===========================
+
+The peak rotation of one block under pulses of one amplitude, against the period of the pulse. A longer pulse
+of the same amplitude rotates the block further, until it overturns.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import rocking
+
+block = rocking.Block(half_width=0.35, half_height=1.4)  # m
+periods = np.geomspace(0.1, 2.0, 400)  # s
+
+figure, axes = plt.subplots(1, 2, sharey=True, figsize=(8, 3.4), layout="constrained")
+for ax, pulse in zip(axes, ("sine", "ricker"), strict=True):
+    spectrum = block.spectrum(pulse, peak_acceleration=4.0, period=periods)
+    rocking.plot.spectrum(spectrum, ax, label="survives")
+    ax.set_title(pulse)
+    ax.legend()
+plt.show()
+
+# %%
+# The data set holds the outcome and the displacement of the top as well.
+
+print(spectrum[["rotation", "top_displacement", "outcome"]].sel(period=0.8, method="nearest"))

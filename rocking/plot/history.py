@@ -1,0 +1,101 @@
+"""Rotation and ground acceleration of one block against time."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from rocking.errors import InvalidArgumentError
+from rocking.model.outcome import Outcome
+from rocking.plot.style import BLUE, GREY, VERMILION, axes_of, label_of
+
+
+def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
+    """Draw the rotation against time, with the impacts and the angle alpha; the title says the outcome.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `rocking.time_history`, `rocking.record_history` or `rocking.Block.history`. Rotation in radians is
+        drawn in degrees.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default in a new figure.
+    **style
+        Properties of the line.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `data` is not a time history.
+    """
+    x = _time(data)
+    ax = axes_of(ax)
+    rotation = data["rotation"]
+    in_degrees = rotation.attrs["units"] == "rad"
+    scale, alpha = (180.0 / math.pi, math.degrees(data.attrs["alpha"])) if in_degrees else (1.0, 1.0)
+    _mark_pulse(ax, data)
+    for sign in (-1.0, 1.0):
+        ax.axhline(sign * alpha, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
+    ax.axhline(0.0, color=GREY, linewidth=0.5)
+    ax.plot(x, scale * rotation.values, **({"color": BLUE} | style))
+    impacts = data["impact_time"].values
+    shown = impacts[impacts <= x.values[-1]]
+    ax.plot(shown, np.zeros(shown.size), "o", color=VERMILION, markersize=2.5, label="impact")
+    ax.annotate(
+        r"$\alpha$", (1.0, alpha), xycoords=("axes fraction", "data"), xytext=(2, 0), textcoords="offset points",
+        va="center", color=GREY,
+    )  # fmt: skip
+    ax.set_xlim(0.0, float(x.values[-1]))
+    ax.set_xlabel(label_of(x))
+    ax.set_ylabel(r"rotation $\theta$ [deg]" if in_degrees else r"rotation $\theta/\alpha$ [-]")
+    ax.set_title(Outcome[data.attrs["outcome"]].sentence, loc="right")
+    return ax
+
+
+def ground_acceleration(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
+    """Draw the ground acceleration of a time history; dashed lines at the smallest value that starts rocking.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As for `history`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default in a new figure.
+    **style
+        Properties of the line.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `data` is not a time history.
+    """
+    x = _time(data)
+    ax = axes_of(ax)
+    ground = data["ground_acceleration"]
+    in_si = ground.attrs["units"] != "1"
+    uplift = data.attrs["peak_acceleration"] * data.attrs["slenderness"] if in_si else 1.0
+    for sign in (-1.0, 1.0):
+        ax.axhline(sign * uplift, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
+    ax.axhline(0.0, color=GREY, linewidth=0.5)
+    ax.plot(x, ground.values, **({"color": "black"} | style))
+    ax.set_xlim(0.0, float(x.values[-1]))
+    ax.set_xlabel(label_of(x))
+    ax.set_ylabel("ground\nacceleration" + (" [m/s$^2$]" if in_si else "\n" + r"over $g\,\tan\alpha$ [-]"))
+    return ax
+
+
+def _time(data: xr.Dataset) -> xr.DataArray:
+    """Time in seconds where it is known, else tau = p t."""
+    if "rotation" not in data or "impact_time" not in data:
+        raise InvalidArgumentError("data", sorted(map(str, data)), "a time history")
+    return data["time"] if "time" in data.coords else data["tau"]
+
+
+def _mark_pulse(ax: Axes, data: xr.Dataset) -> None:
+    """Shade the time of the pulse; a recorded motion is longer than what is of interest."""
+    if "pulse" in data.attrs:
+        ax.axvspan(0.0, float(data.attrs["pulse_end"]), color="#F0F0F0", zorder=0)

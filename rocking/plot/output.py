@@ -1,0 +1,66 @@
+"""Figures that are saved to files, or shown in a window."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+from matplotlib.backends.registry import BackendFilter, backend_registry
+from matplotlib.figure import Figure
+
+from rocking.errors import InvalidArgumentError
+from rocking.plot.style import STYLE
+
+FORMATS = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
+"""Endings of files, and the metadata that are left out, so that equal pictures are equal files."""
+
+
+def style() -> AbstractContextManager[None]:
+    """The settings of `STYLE` while a figure is made, drawn and saved."""
+    return mpl.rc_context(STYLE)  # type: ignore[arg-type]  # names of settings are not text in the stubs
+
+
+def new_figure(path: str | None, size: tuple[float, float]) -> Figure:
+    """A figure of a size [in] for the file `path`, or for a window.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the ending of the name is not known, or there is no file and no display.
+    """
+    if path is not None:
+        _metadata(path)
+        return Figure(figsize=size)
+    if plt.get_backend().lower() not in backend_registry.list_builtin(BackendFilter.INTERACTIVE):  # type: ignore[no-untyped-call]
+        raise InvalidArgumentError("output", None, "a file, such as picture.png or picture.svg: there is no display")
+    return plt.figure(figsize=size)
+
+
+def save_figure(figure: Figure, path: str | Path) -> None:
+    """Write a figure; equal pictures give equal bytes.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the ending of the name is not known, or the file cannot be written.
+    """
+    metadata = _metadata(path)
+    try:
+        figure.savefig(path, metadata=metadata)
+    except OSError as error:
+        raise InvalidArgumentError("output", str(path), f"a file that can be written: {error.strerror}") from None
+
+
+def show_figure(figure: Figure) -> None:
+    """Show a figure of `new_figure(None, size)` in a window until it is closed."""
+    plt.figure(figure)
+    plt.show()
+
+
+def _metadata(path: str | Path) -> dict[str, None]:
+    ending = Path(path).suffix.lower()
+    if ending not in FORMATS:
+        raise InvalidArgumentError("output", str(path), f"a name that ends in {' or '.join(FORMATS)}")
+    return FORMATS[ending]

@@ -1,0 +1,57 @@
+"""`rocking plot`: a file for each picture, and errors that name the option."""
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.cli.test_cli import GROUPS, UNITS, refused, run
+
+BLOCK = UNITS[:6]
+SUITE = Path(__file__).parents[2] / "workflow/config/suite.yaml"
+AMPLITUDE = ["--peak-acceleration", "0.5g"]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["response", *UNITS],
+        ["response", *GROUPS],
+        ["history", *UNITS, "--duration", "2s"],
+        ["history", *GROUPS],
+        ["spectrum", *BLOCK, *AMPLITUDE],
+        ["spectrum", *GROUPS[:4], *GROUPS[6:]],
+        ["boundary", *BLOCK, "--period-min", "0.4s", "--period-max", "0.8s"],
+        ["map", *BLOCK],
+        ["map", "--pulse", "sine", "--restitution", "0.85"],
+        ["fragility", str(SUITE)],
+    ],
+    ids=lambda command: f"{command[0]} {'units' if '--half-width' in command else 'groups'}",
+)
+def test_a_picture_in_a_file(command, tmp_path):
+    path = tmp_path / "picture.png"
+    assert run("plot", *command, "--output", str(path)) == ""
+    with Image.open(path) as picture:
+        # something is drawn: more than the white of an empty figure, in more than black
+        colours = picture.convert("RGB").resize((100, 100)).getcolors(10_000)
+    assert len(colours) > 20
+    assert max(count for count, _ in colours) < 9_500
+
+
+@pytest.mark.slow
+def test_picture_of_a_cube(smoke_results, tmp_path):
+    path = tmp_path / "cube.svg"
+    run("plot", "cube", str(smoke_results / "spectra/sine/eta-0.85.nc"), "-o", str(path))
+    text = path.read_text()
+    assert "<!-- slender limit -->" in text
+    assert "<!-- alpha = 20 deg -->" in text
+
+
+def test_errors_name_the_option_or_the_file(tmp_path):
+    assert "--output" in refused("plot", "response", *GROUPS)  # there is no display
+    assert "a name that ends in .png or .svg" in refused("plot", "response", *GROUPS, "-o", "picture.gif")
+    missing = str(tmp_path / "no" / "folder.png")
+    assert "a file that can be written" in refused("plot", "response", *GROUPS, "-o", missing)
+    assert "--slenderness" in refused("plot", "map", *GROUPS, "-o", "picture.png")
+    assert "FILE" in refused("plot", "cube", str(tmp_path / "none.nc"), "-o", "picture.png")
+    assert "missing unit: write 3s" in refused("plot", "history", *UNITS, "--duration", "3", "-o", "picture.png")

@@ -1,0 +1,183 @@
+"""Pictures hold what they are drawn from: curves, ranges, points, names and units of axes."""
+
+import subprocess
+import sys
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import rocking
+from rocking import plot
+from rocking.dimensional.curves import block_boundary
+from rocking.errors import InvalidArgumentError
+from rocking.plot.output import new_figure, save_figure
+from tests.suites.motions import noise
+
+BLOCK = rocking.Block(half_width=0.2, half_height=0.8)
+PULSE = {"peak_acceleration": 4.0, "period": 0.5}
+GROUPS = {"slenderness": 0.3, "frequency_ratio": 5.0, "restitution": 0.85}
+
+
+@pytest.fixture
+def ax():
+    return Figure(layout="constrained").add_subplot()
+
+
+def shaded(ax):
+    """Ends of the shaded ranges."""
+    return [
+        (path.vertices[:, 0].min(), path.vertices[:, 0].max()) for part in ax.collections for path in part.get_paths()
+    ]
+
+
+def test_history_of_a_block_in_degrees(ax):
+    data = BLOCK.history("sine", **PULSE)
+    assert plot.history(data, ax) is ax
+    curve = ax.lines[3]
+    np.testing.assert_array_equal(curve.get_xdata(), data.time)
+    np.testing.assert_allclose(curve.get_ydata(), np.degrees(data.rotation), rtol=1e-12)
+    assert ax.lines[1].get_ydata()[0] == pytest.approx(np.degrees(BLOCK.alpha))
+    assert ax.lines[4].get_xdata()[0] == data.impact_time[0]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [s]", r"rotation $\theta$ [deg]")
+    assert ax.get_title("right") == "rocks and comes to rest"
+
+
+def test_an_equivalent_block_has_its_own_angle(ax):
+    arch = rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=np.radians(157.5), voussoirs=7)
+    plot.history(arch.history("sine", peak_acceleration=4.0, period=0.3), ax)
+    assert ax.lines[1].get_ydata()[0] == pytest.approx(np.degrees(arch.alpha))
+    found = arch.response("sine", peak_acceleration=4.0, period=0.3)
+    point = plot.response(found).lines[-1]
+    assert point.get_ydata()[0] == pytest.approx(np.degrees(found.rotation))
+
+
+def test_ground_acceleration_with_the_smallest_one_that_starts_rocking(ax):
+    data = BLOCK.history("sine", **PULSE)
+    plot.ground_acceleration(data, ax)
+    assert ax.lines[1].get_ydata()[0] == pytest.approx(BLOCK.uplift_acceleration)
+    assert ax.lines[3].get_ydata().max() == pytest.approx(4.0, rel=1e-3)
+    assert "m/s" in ax.get_ylabel()
+
+
+def test_history_of_a_record_and_in_groups(ax):
+    record = noise(3)
+    found = rocking.record_history(record, frequency_parameter=3.0, slenderness=0.3, restitution=0.85)
+    assert plot.history(found, ax).get_xlabel() == "time [s]"
+    history = rocking.time_history("sine", **GROUPS)
+    assert plot.history(history, color="k").get_xlabel() == r"time $\tau=p\,t$ [-]"
+
+
+def test_response_between_its_thresholds(ax):
+    found = BLOCK.response("sine", **PULSE)
+    plot.response(found, ax)
+    point = ax.lines[-1]
+    assert (point.get_xdata()[0], point.get_ydata()[0]) == pytest.approx((4.0, np.degrees(found.rotation)))
+    ((low, high),) = shaded(ax)
+    assert low == pytest.approx(found.thresholds[0].value, rel=1e-6)
+    assert high == pytest.approx(8.0)
+
+
+def test_response_in_groups_shows_both_safe_ranges(ax):
+    plot.response(rocking.peak_response("sine", **GROUPS), ax)
+    ((low, high),) = shaded(ax)
+    assert (low, high) == pytest.approx((3.980175, 5.356347), rel=1e-6)  # falls from, safe again
+
+
+def test_spectrum_is_interrupted_where_the_block_overturns(ax):
+    data = BLOCK.spectrum("sine", peak_acceleration=5.0, period=np.linspace(0.1, 1.0, 91)[::-1])
+    plot.spectrum(data, ax, label="eta")
+    ((low, high),) = shaded(ax)
+    overturned = data.period.values[data.overturned.values]
+    assert (low, high) == (overturned.min(), overturned.max())
+    assert np.isnan(ax.lines[0].get_ydata()).sum() == overturned.size
+    assert np.all(np.diff(ax.lines[0].get_xdata()) > 0)
+    assert [text.get_text() for text in ax.legend().get_texts()] == ["eta", "overturns"]
+
+
+def test_boundary_in_groups_and_in_si_units(ax):
+    window = 2 * np.pi / (np.array([4.0, 2.0]) * BLOCK.frequency_parameter)
+    curves = block_boundary(BLOCK, "sine", restitution=0.85, period=tuple(window))
+    x = np.concatenate([line.get_xdata() for line in plot.boundary(curves, ax).lines])
+    assert (np.nanmin(x), np.nanmax(x)) == pytest.approx(tuple(window), rel=1e-9)
+    groups = plot.boundary(curves.drop_vars(["period", "peak_acceleration"]))
+    direct = groups.lines[2]
+    nearest = np.nanargmin(np.abs(direct.get_xdata() - 3.0))
+    found = rocking.critical_amplitude(
+        "sine", frequency_ratio=direct.get_xdata()[nearest], restitution=0.85, alpha=BLOCK.alpha
+    )
+    assert direct.get_ydata()[nearest] == pytest.approx(found.amplitude[-1], rel=1e-6)
+
+
+def test_map_of_any_orientation(ax):
+    grid = {"slenderness": np.linspace(0.1, 1.1, 12)[:, None], "frequency_ratio": np.linspace(1.0, 6.0, 9)}
+    data = rocking.peak_response("sine", **grid, restitution=0.85).to_xarray()
+    peaks, classes = plot.control_map(data, ax).collections
+    assert peaks.get_array().count() == (data.outcome == rocking.Outcome.SAFE).sum()
+    assert set(classes.get_array().compressed()) == {0, 1, 2}
+    turned = plot.control_map(data.transpose(), key=False)
+    np.testing.assert_array_equal(turned.collections[0].get_array(), peaks.get_array())
+    assert turned.get_ylabel().startswith("amplitude")
+
+
+def test_cube_has_a_panel_for_each_angle(ax):
+    data = rocking.peak_response(
+        "sine",
+        alpha=np.array([0.0, 0.3])[:, None, None],
+        slenderness=np.linspace(0.2, 0.9, 5)[:, None],
+        frequency_ratio=np.linspace(1.0, 6.0, 6),
+        restitution=0.85,
+    ).to_xarray()
+    panels = plot.cube(data)
+    assert [one.get_title("right") for one in panels] == ["slender limit", "alpha = 17.2 deg"]
+    with pytest.raises(InvalidArgumentError, match="one for each of 2 angles"):
+        plot.cube(data, [ax])
+
+
+def test_fragility_of_one_block(ax):
+    levels = np.geomspace(1.0, 20.0, 8)
+    data = rocking.fragility([noise(seed) for seed in range(4)], [BLOCK], intensity=levels, restitution=0.85)
+    plot.fragility(data.isel(block=0), ax)
+    observed = ax.containers[0].lines[0]
+    np.testing.assert_array_equal(observed.get_ydata(), data.fraction.isel(block=0))
+    assert ax.get_ylabel() == "probability of overturning [-]"
+    with pytest.raises(InvalidArgumentError, match="of one block"):
+        plot.fragility(data, ax)
+
+
+@pytest.mark.parametrize("picture", [plot.history, plot.ground_acceleration, plot.spectrum, plot.boundary])
+def test_other_data_are_refused_by_name(picture, ax):
+    with pytest.raises(InvalidArgumentError, match="`data` = "):
+        picture(rocking.peak_response("sine", **GROUPS).to_xarray(), ax)
+    with pytest.raises(InvalidArgumentError, match="`found` = "):
+        plot.response(rocking.peak_response("sine", **(GROUPS | {"slenderness": [0.3, 0.4]})), ax)
+    assert not ax.has_data()
+
+
+def test_files_of_equal_pictures_are_equal(tmp_path):
+    for ending in ("png", "svg"):
+        for name in "ab":
+            with mpl.rc_context(plot.STYLE):
+                figure = new_figure(f"{name}.{ending}", (2.0, 1.5))
+                plot.response(rocking.peak_response("sine", **GROUPS), figure.add_subplot())
+                save_figure(figure, tmp_path / f"{name}.{ending}")
+        first, second = ((tmp_path / f"{name}.{ending}").read_bytes() for name in "ab")
+        assert first == second
+
+
+def test_without_a_display_a_file_is_asked_for():
+    with pytest.raises(InvalidArgumentError, match=r"picture\.png or picture\.svg: there is no display"):
+        new_figure(None, (2.0, 1.5))
+
+
+def test_without_matplotlib_the_extra_is_named():
+    program = (
+        "import sys; sys.modules['matplotlib'] = None; import importlib.util as u; u.find_spec = lambda name: None\n"
+        "import rocking\n"
+        "rocking.Block\n"
+        "try: rocking.plot\n"
+        "except ModuleNotFoundError as error: print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "pip install 'rocking[plot]'" in done.stdout

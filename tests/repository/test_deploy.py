@@ -1,0 +1,117 @@
+"""The files of deploy/ agree with the tree, the settings and the command of the service."""
+
+import configparser
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import typer
+from rocking_api.settings import Settings
+
+from rocking.cli.app import app
+
+ROOT = Path(__file__).parents[2]
+DEPLOY = ROOT / "deploy"
+CONTAINER = (DEPLOY / "Containerfile").read_text()
+PROXY = (DEPLOY / "nginx.conf").read_text()
+VARIABLES = {f"ROCKING_{name.upper()}" for name in Settings.model_fields}
+
+
+@pytest.fixture(scope="module")
+def unit():
+    """Keys of the unit with their values in order; one key may occur several times."""
+    found = {}
+    for line in (DEPLOY / "rocking.service").read_text().splitlines():
+        if "=" in line and not line.startswith("#"):
+            key, _, value = line.partition("=")
+            found.setdefault(key, []).append(value)
+    return found
+
+
+def serve_arguments(command):
+    """The options of a command line `.../rocking serve ...`, as the command itself reads them."""
+    assert command[0] == "/opt/rocking/bin/rocking"
+    assert command[1] == "serve"
+    serve = typer.main.get_command(app).commands["serve"]
+    return serve.make_context("serve", command[2:], resilient_parsing=False).params
+
+
+def instructions(name):
+    return re.findall(rf"^{name} (.*)$", CONTAINER, re.MULTILINE)
+
+
+def test_container_copies_what_exists():
+    sources = [part for line in instructions("COPY") if "--from" not in line for part in line.split()[:-1]]
+    assert {"environment.lock", "rocking", "api"} <= set(sources)
+    assert [name for name in sources if not (ROOT / name).exists()] == []
+
+
+def test_container_takes_the_versions_of_the_lock(tmp_path):
+    (command,) = [line for line in instructions("RUN") if line.startswith("sed")]
+    shutil.copy(ROOT / "environment.lock", tmp_path)
+    subprocess.run(["sh", "-c", command], cwd=tmp_path, check=True)
+    constraints = (tmp_path / "constraints.txt").read_text().split()
+    lock = (ROOT / "environment.lock").read_text()
+    assert constraints == re.findall(r"^(\S+==\S+) \\$", lock, re.MULTILINE)
+    assert any(line.startswith("uvicorn==") for line in constraints)
+
+
+def test_container_starts_the_service():
+    (command,) = instructions("CMD")
+    options = serve_arguments(json.loads(command))
+    assert options["host"] == "0.0.0.0"
+    assert instructions("EXPOSE") == [str(options["port"])]
+    assert f"127.0.0.1:{options['port']}/health" in instructions("HEALTHCHECK")[0]
+    variables = dict(part.split("=") for part in instructions("ENV")[0].split())
+    assert set(variables) - {"NUMBA_CACHE_DIR"} <= VARIABLES
+    assert instructions("USER") == ["rocking"]
+
+
+@pytest.mark.skipif("ROCKING_CONTAINER" not in os.environ, reason="ROCKING_CONTAINER names no container tool")
+def test_container_is_built():
+    tool = os.environ["ROCKING_CONTAINER"]
+    subprocess.run([tool, "build", "--tag", "rocking", "--file", "deploy/Containerfile", "."], cwd=ROOT, check=True)
+    done = subprocess.run([tool, "run", "--rm", "rocking", "/opt/rocking/bin/rocking", "--version"], check=True)
+    assert done.returncode == 0
+
+
+def test_unit_starts_the_service_and_stops_it_in_time(unit):
+    options = serve_arguments(shlex.split(unit["ExecStart"][0]))
+    assert options["host"] == "127.0.0.1"
+    variables = dict(line.split("=") for line in unit["Environment"])
+    assert set(variables) - {"NUMBA_CACHE_DIR"} <= VARIABLES
+    assert int(unit["TimeoutStopSec"][0]) > int(variables["ROCKING_STOP_SECONDS"])
+    assert variables["NUMBA_CACHE_DIR"] == f"%C/{unit['CacheDirectory'][0]}"
+    configparser.ConfigParser(strict=False, interpolation=None).read(DEPLOY / "rocking.service")
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="no systemd-analyze")
+def test_unit_is_understood_by_systemd():
+    done = subprocess.run(
+        ["systemd-analyze", "verify", "--man=no", str(DEPLOY / "rocking.service")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    # the program is not installed where the tests run
+    lines = [line for line in done.stderr.splitlines() if "rocking.service" in line and "is not executable" not in line]
+    assert lines == []
+
+
+def test_proxy_has_the_limits_of_the_service(unit):
+    settings = Settings()
+
+    def directive(name):
+        return re.findall(rf"^ *{name} (.*);$", PROXY, re.MULTILINE)
+
+    assert directive("client_max_body_size") == [f"{settings.max_body_bytes // 2**20}m"]
+    assert directive("large_client_header_buffers") == [f"4 {settings.max_header_bytes // 2**10}k"]
+    assert int(directive("proxy_read_timeout")[0].rstrip("s")) > settings.max_seconds
+    port = serve_arguments(shlex.split(unit["ExecStart"][0]))["port"]
+    assert set(directive("proxy_pass")) == {f"http://127.0.0.1:{port}"}
+    assert PROXY.count("{") == PROXY.count("}")

@@ -1,0 +1,145 @@
+"""The guide: it builds without a warning, its examples and blocks of code run, and its reference names everything."""
+
+import json
+import os
+import re
+import runpy
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import pytest
+from typer.testing import CliRunner
+
+import rocking
+from rocking import plot
+from rocking.cli.app import app
+from tests.api.servers import serving
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [path for path in sorted([*DOCS.glob("*.md"), *DOCS.glob("howto/*.md")]) if "```python" in path.read_text()]
+
+PRINTED = {
+    "ask_a_server": ["meaning: rocks and comes to rest", "OVERTURNED_AFTER_IMPACT", "1.85"],
+    "cube_without_package": ["safe 0.55", " nan]"],
+    "does_it_overturn": ["rocks and comes to rest", "overturns above 4.70 m/s2"],
+    "figure_8": [],
+    "fragility": ["median 5.40 m/s2"],
+    "large_rotations": ["6.06624767, 7.45218141"],
+    "map_with_boundaries": ["400 never uplift"],
+    "own_pulse": ["2.02417318"],
+    "record": ["43 changes of the outcome", "overturns above 1.134"],
+    "spectrum": ["rotation", "0.04483"],
+}
+"""Parts of the output of each example."""
+
+PICTURES = {
+    **dict.fromkeys(PRINTED, 1), "ask_a_server": 0, "does_it_overturn": 2, "large_rotations": 2,
+}  # fmt: skip
+"""Pictures that each example draws."""
+
+
+@pytest.fixture(autouse=True)
+def figures():
+    """Pictures are drawn without a display, and closed."""
+    with mpl.rc_context({"backend": "agg"}):
+        yield
+    plt.close("all")
+
+
+def test_every_example_has_an_expected_output():
+    assert {path.stem for path in (ROOT / "examples").glob("*.py")} == PRINTED.keys()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PRINTED)
+def test_example(name, smoke_results, monkeypatch, capsys, tmp_path):
+    monkeypatch.setenv("ROCKING_RESULTS", str(smoke_results))
+    monkeypatch.setenv("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
+    path = str(ROOT / "examples" / f"{name}.py")
+    if name == "ask_a_server":
+        with serving(smoke_results, tmp_path / "log") as server:
+            monkeypatch.setenv("ROCKING_SERVER", server.address)
+            runpy.run_path(path)
+    else:
+        runpy.run_path(path)
+    output = capsys.readouterr().out
+    assert [text for text in PRINTED[name] if text not in output] == []
+    assert len(plt.get_fignums()) == PICTURES[name]
+    assert all(ax.has_data() for number in plt.get_fignums() for ax in plt.figure(number).axes if ax.get_label() == "")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
+    (tmp_path / "results").symlink_to(smoke_results)
+    (tmp_path / "workflow").symlink_to(ROOT / "workflow")
+    monkeypatch.chdir(tmp_path)
+    text, names = page.read_text(), {}
+    for block in re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        if "http://127.0.0.1" not in block:  # a running service: the example ask_a_server
+            exec(block, names)
+    output = capsys.readouterr().out
+    if page.stem == "start":
+        (printed,) = re.findall(r"^```text\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+        assert output == printed
+    assert "nan" not in output
+
+
+def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
+    """Each `rocking` command of start and how-to pages runs, apart from the server and long tables."""
+    (tmp_path / "workflow").symlink_to(ROOT / "workflow")
+    monkeypatch.chdir(tmp_path)
+    fleet = re.search(r"```text\n(name,.*?)```", (DOCS / "howto/fleet.md").read_text(), re.DOTALL)
+    assert fleet
+    Path("fleet.csv").write_text(fleet[1])
+    pages = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md"))]
+    lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
+    commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]
+    assert len(commands) >= 8
+    for command in commands:
+        done = CliRunner().invoke(app, command.split()[1:])
+        assert done.exit_code == 0, f"{command}: {done.output}"
+        if " -o " in command:
+            assert Path(command.split()[-1]).stat().st_size > 10_000
+
+
+def test_reference_names_every_public_name():
+    page = (DOCS / "reference/python.md").read_text() + (DOCS / "reference/modules.rst").read_text()
+    assert [name for name in rocking.__all__ if not re.search(rf"\b{name}\b", page)] == ["plot"]
+    pictures = (DOCS / "reference/plot.md").read_text()
+    assert [name for name in plot.__all__ if not re.search(rf"\b{name}\b", pictures)] == []
+
+
+@pytest.mark.slow
+def test_guide_builds_without_warning(tmp_path):
+    """In a copy, because the build writes beside its sources; the examples are run by the test above."""
+    for folder in ("docs", "examples"):
+        ignored = shutil.ignore_patterns("gallery", "generated", "__pycache__")
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=ignored)
+    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "results/README.md", "workflow/config/paper.yaml"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    target = tmp_path / "html"
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-D", "plot_gallery=0", "docs", str(target)]
+    environment = os.environ | {"PYTHONWARNINGS": "ignore"}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    index = " ".join(
+        re.sub(r"<[^>]+>", "", (target / f"reference/{page}.html").read_text()) for page in ("http", "command")
+    )
+    for text in ("/v1/blocks/response", "ROCKING_MAX_POINTS", "rocking plot fragility", "--peak-acceleration"):
+        assert text in index, text
+    assert "restitution_error" in (target / "reference/files.html").read_text()
+    assert (target / "reference/generated/rocking.peak_response.html").exists()
+    loaded = [
+        (page.name, url)
+        for page in target.rglob("*.html")
+        for url in re.findall(r'<(?:script|link|img)[^>]*?(?:src|href)="(https?://[^"]+)"', page.read_text())
+    ]
+    assert loaded == []  # nothing comes from other hosts
+    assert json.loads((target / "searchindex.js").read_text()[len("Search.setIndex(") : -1])["titles"]
