@@ -37,7 +37,7 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	pytest --numprocesses auto --dist loadfile
 
 browser: .venv/project ## fetch Chromium for the tests of the web page if there is none (ROCKING_NO_BROWSER=1: skip them)
-	@test -n '$(ROCKING_NO_BROWSER)' || python -m tests.api.explorer.chromium
+	@test -n '$(ROCKING_NO_BROWSER)' || { python -m tests.api.explorer.chromium && python -m tests.api.explorer.axe; }
 
 serve: .venv/project | results/manifest.json ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=)
 	rocking serve --host $(HOST) --port $(PORT) --results results

@@ -22,6 +22,10 @@ MAX_DRAWN = 2000
 """Most samples of a pulse for a drawing [-]."""
 
 
+DIGITS = 4
+"""Decimals of the samples [-]: enough for a drawing, at a fifth of the length."""
+
+
 class PulsesParams(Params):
     """How finely the pulses are sampled."""
 
@@ -49,8 +53,10 @@ class PulseDescription(BaseModel):
     phase_start: float = Field(description="phase at the first instant [rad]")
     phase_end: float = Field(description="phase at the last instant [rad]")
     duration: float = Field(description="duration over the period T_p [-]")
-    time: list[float] = Field(description="times from the first instant over T_p, for a drawing [-]")
-    acceleration: list[float] = Field(description="f at these times [-]; the largest absolute value of f is 1")
+    time: list[float] = Field(description="times from the first instant over T_p [-], to four decimals, for a drawing")
+    acceleration: list[float] = Field(
+        description="f at these times [-], to four decimals; the largest absolute value of f is 1"
+    )
 
 
 class PulsesResponse(BaseModel):
@@ -77,8 +83,8 @@ def _described(name: str, samples: int) -> PulseDescription:
         phase_start=pulse.start,
         phase_end=pulse.end,
         duration=(pulse.end - pulse.start) / (2.0 * math.pi),
-        time=((phase - pulse.start) / (2.0 * math.pi)).tolist(),
-        acceleration=pulse.shape(phase).tolist(),
+        time=((phase - pulse.start) / (2.0 * math.pi)).round(DIGITS).tolist(),
+        acceleration=pulse.shape(phase).round(DIGITS).tolist(),
     )
 
 

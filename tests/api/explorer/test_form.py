@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 
 import rocking
 from rocking.constants import STANDARD_GRAVITY
-from tests.api.explorer.reading import BLOCK, query, settle
+from tests.api.explorer.reading import BLOCK, pixels, query, settle
 
 
 @pytest.mark.parametrize(
@@ -99,3 +99,50 @@ def test_an_invalid_value_is_explained_beside_its_field(open_page, field, value,
     page.locator("#ask").click()
     expect(page.locator(".verdict")).to_be_visible()
     expect(page.locator(f"#{field}-problem")).to_be_hidden()
+
+
+def test_all_errors_are_shown_at_once_in_the_words_of_the_form(open_page):
+    page = open_page()
+    for name, value in (("width", ""), ("height", "tall"), ("acceleration", "-1")):
+        page.locator(f"#{name}").fill(value)
+    page.locator("#how").select_option("number")
+    page.locator("#block-eta").fill("2")
+    page.locator("#ask").click()
+    expect(page.locator("#width-problem")).to_have_text("Width of the base is missing.")
+    expect(page.locator("#height-problem")).to_have_text("Height is “tall”; allowed: a number.")
+    expect(page.locator("#acceleration-problem")).to_have_text("Peak acceleration is -1; allowed: a number above 0.")
+    expect(page.locator("#block-eta-problem")).to_contain_text("allowed: 0 to 1")
+    expect(page.locator("#width")).to_be_focused()
+    assert "width" not in query(page)
+
+
+def test_a_size_out_of_range_is_told_as_it_was_typed(open_page):
+    page = open_page()
+    page.locator("#width").fill("30000")
+    page.locator("#ask").click()
+    expect(page.locator("#width-problem")).to_have_text("width is 30000; allowed: [0.0002, 20000] [m]")
+
+
+def test_the_motion_is_previewed_with_its_period(open_page):
+    page = open_page()
+    note = page.locator("#pulse-note")
+    expect(note).to_contain_text("It lasts 1 T.")
+    for name, duration in (("half_sine", "0.5"), ("ricker", "4")):
+        page.locator("#block-pulse").select_option(name)
+        expect(note).to_contain_text(f"It lasts {duration} T.")
+    drawn = pixels(page, "#pulse-preview")
+    assert (drawn != drawn[0, 0]).any(axis=-1).mean() > 0.01
+
+
+def test_assumptions_are_stated_and_the_motion_goes_to_rest_in_view(open_page):
+    page = open_page(BLOCK, viewport={"width": 1280, "height": 720}, reduced_motion="reduce")
+    page.locator("#motion-caption").filter(has_text="comes to rest").wait_for()
+    page.locator("#answer summary").click()
+    expect(page.locator("#answer details")).to_contain_text("rigid, rectangular and of uniform density")
+    end = page.locator("#time").get_attribute("max")
+    page.evaluate(
+        "t => { const s = document.getElementById('time'); s.value = t; s.dispatchEvent(new Event('input')) }", end
+    )
+    assert float(page.locator("#stage").get_attribute("data-angle")) == 0.0
+    box = page.locator("#stage").bounding_box()
+    assert box["y"] + box["height"] <= 720

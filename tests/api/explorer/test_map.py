@@ -97,3 +97,67 @@ def test_it_fits_a_phone_in_light_and_dark(open_page, path, scheme):
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     brightness = pixels(page, "#map")[3, 3].mean()  # a corner outside the frame
     assert brightness > 200 if scheme == "light" else brightness < 60
+
+
+def window(page):
+    return {name: float(value) for name, value in query(page).items() if name.endswith(("_min", "_max"))}
+
+
+def test_the_wheel_zooms_about_the_pointer_and_then_scrolls(open_page):
+    page = open_page()
+    settle(page)
+    page.locator("#map-marks").hover(position=place_of(page, 4.0, 0.5))
+    page.mouse.wheel(0, -300)
+    page.wait_for_url(lambda url: "slenderness_max" in url)
+    zoomed = window(page)
+    assert zoomed["slenderness_max"] - zoomed["slenderness_min"] == pytest.approx(0.52, abs=1e-3)
+    share = (0.5 - 0.01) / 1.04  # the point under the pointer stays there
+    assert (0.5 - zoomed["slenderness_min"]) / 0.52 == pytest.approx(share, abs=0.01)
+    for _ in range(3):
+        page.mouse.wheel(0, 300)
+        page.wait_for_timeout(50)
+    page.wait_for_url(lambda url: "slenderness_max" not in url)
+    page.mouse.wheel(0, 200)
+    page.wait_for_function("scrollY > 0")
+
+
+def test_a_drag_pans_and_chooses_no_point(open_page):
+    page = open_page()
+    settle(page)
+    box = page.locator("#map-marks").bounding_box()
+    place = place_of(page, 2.0, 0.5)
+    x, y = box["x"] + place["x"], box["y"] + place["y"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 40, y, steps=4)
+    page.mouse.up()
+    page.wait_for_url(lambda url: "frequency_ratio_min" in url)
+    ratio = (12.0 / 0.5) ** (-40 / (box["width"] - 116))
+    assert window(page)["frequency_ratio_min"] == pytest.approx(0.5 * ratio, rel=1e-3)
+    assert "frequency_ratio" not in query(page)
+    page.go_back()
+    page.wait_for_url(lambda url: "frequency_ratio_min" not in url)
+
+
+def test_two_fingers_zoom(open_page):
+    page = open_page(has_touch=True)
+    settle(page)
+    place = place_of(page, 2.0, 0.5)
+    page.evaluate(
+        """([x, y]) => {
+            const over = document.getElementById("map-marks");
+            over.setPointerCapture = () => {};
+            const box = over.getBoundingClientRect();
+            const send = (type, pointerId, dx) => over.dispatchEvent(new PointerEvent(type, {
+                pointerId, clientX: box.left + x + dx, clientY: box.top + y, bubbles: true, pointerType: "touch" }));
+            send("pointerdown", 1, -30);
+            send("pointerdown", 2, 30);
+            send("pointermove", 2, 90);
+            send("pointerup", 1, -30);
+            send("pointerup", 2, 90);
+        }""",
+        [place["x"], place["y"]],
+    )
+    page.wait_for_url(lambda url: "slenderness_max" in url)
+    found = window(page)
+    assert found["slenderness_max"] - found["slenderness_min"] == pytest.approx(0.52, abs=2e-3)

@@ -1,6 +1,7 @@
 // The form for a block in metres, and its response in words.
 
-import { element, facts } from "./page.js";
+import { assumptions, element, facts } from "./page.js";
+import { showErrors } from "./form_errors.js";
 import { MISSING, split, UNITS } from "./units.js";
 import { distinct, inG, length, number } from "./labels.js";
 
@@ -19,7 +20,7 @@ export function wireForm(submit, edit) {
   form.elements.how.addEventListener("change", showHow);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    submit(formParts());
+    if (showErrors(form, form.elements.how.value === "housner" ? QUANTITIES : [...QUANTITIES, "eta"])) submit(formParts());
   });
   form.addEventListener("input", edit);
   showHow();
@@ -63,6 +64,7 @@ export function showAnswer(found) {
     const lines = found.warnings.map((warning) => element("li", warning));
     answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
   }
+  answer.append(assumptions(found.metadata));
 }
 
 function safe(found) {

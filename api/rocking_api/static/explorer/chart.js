@@ -1,11 +1,31 @@
 // A line chart by uPlot in the colours of the page, as wide as its container.
 
+import { Problem } from "./api.js";
 import { onTheme, themed } from "./colours.js";
 import { number } from "./labels.js";
 
 const FONT = "12px system-ui, sans-serif";
 
+const SOURCE = "/static/uplot/uPlot.iife.min.js";
+
 const live = new Map();
+let loading = null; // promise of uPlot, a third of the bytes of the page: it is loaded for the first chart
+
+/** Resolves once charts can be drawn. */
+export function chartsReady() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.addEventListener("load", resolve);
+    script.addEventListener("error", () => {
+      loading = null;
+      script.remove();
+      reject(new Problem({ detail: "the service does not answer (a part of the page is missing)" }));
+    });
+    script.src = SOURCE;
+    document.head.append(script);
+  });
+  return loading;
+}
 
 /** An axis with a title. */
 export function axis(label, more = {}) {

@@ -3,7 +3,7 @@
 import { BROUGHT_BACK, colourOfPeak, hatch, onTheme, scaleGradient, themed } from "./colours.js";
 
 const ENTRIES = [
-  ["BROUGHT_BACK", "exceeds α, survives"],
+  ["BROUGHT_BACK", "exceeds α but recovers"],
   ["OVERTURNED_AFTER_IMPACT", "overturns after impacts"],
   ["OVERTURNED_DIRECTLY", "overturns without impact"],
   ["NO_UPLIFT", "no uplift"],

@@ -5,10 +5,12 @@ import { fillForm, formParts, showAnswer, wireForm } from "./block_form.js";
 import { showControls, wireControls } from "./controls.js";
 import { setLinks, wireDownloads } from "./downloads.js";
 import { curvesUrl, mapParams, showMap } from "./map.js";
+import { wireGestures } from "./map_gestures.js";
 import { showReadout, wireMap } from "./map_pointer.js";
 import { motionUrl, showMotion } from "./motion.js";
 import { clearErrors } from "./page.js";
 import { once, pane } from "./pane.js";
+import { showPreview } from "./pulse_preview.js";
 import { blockParams, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state } from "./state.js";
@@ -37,6 +39,7 @@ let left = false; // a block was shown before the current scenario
 function show() {
   clearErrors();
   fillForm(state());
+  showPreview(state().pulse);
   resolve();
 }
 
@@ -117,8 +120,10 @@ function caption() {
 const look = () => ({ state: state(), scenario, view });
 wireForm((parts) => change({ ...parts, frequency_ratio: "", slenderness: "", alpha_deg: "0" }), edit);
 wireControls(look, set);
+wireGestures(look, set);
 wireMap(look, (point, keep) => set(movedTo(state(), scenario, point), keep), set);
 wireDownloads(caption);
 document.getElementById("whole").addEventListener("click", () => set(whole()));
+document.getElementById("block-pulse").addEventListener("change", ({ target }) => showPreview(target.value));
 onChange(show);
 show();

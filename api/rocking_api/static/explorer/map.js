@@ -90,6 +90,13 @@ export function pointAt(x, y) {
   return inside ? { frequency_ratio: scales.x.value(x), slenderness: scales.y.value(y) } : null;
 }
 
+/** Distances on the canvas [px] as shares of the sides of the frame, to the right and up; null without a map. */
+export function sharesOf(dx, dy) {
+  if (!drawn) return null;
+  const { frame } = layout(1);
+  return { across: dx / frame.width, up: dy / frame.height };
+}
+
 /** Mark a point under the pointer, or none. */
 export function hover(point) {
   hovered = point;

@@ -69,7 +69,7 @@ export function wireMap(look, choose, frame) {
 export function showReadout(point, scenario) {
   if (!scenario) return numbers.wait();
   current = { point: point ?? scenario.point, scenario };
-  if (!current.point) return numbers.nothing("Point at the map for the numbers there.");
+  if (!current.point) return numbers.nothing("Hover over the map to read values.");
   const { pulse, restitution, alpha_deg, size } = scenario;
   const params = { pulse, restitution, alpha_deg, ...rounded(current.point) };
   return numbers.show(JSON.stringify([params, size, point === null]), once("/v1/response", params));

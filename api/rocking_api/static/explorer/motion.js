@@ -1,10 +1,13 @@
 // The time history of the chosen block: its request, and its view.
 
-import { urlOf } from "./api.js";
+import { ask, urlOf } from "./api.js";
+import { chartsReady } from "./chart.js";
 import { drawMotion } from "./motion_charts.js";
-import { once, pane } from "./pane.js";
+import { pane } from "./pane.js";
 import { unload } from "./player.js";
 import { validityNote } from "./scenario.js";
+
+const LONGEST = 16; // times the duration of the service for which the motion is followed to rest
 
 const section = document.getElementById("motion");
 
@@ -26,7 +29,26 @@ export function showMotion(scenario, lasting) {
   if (!scenario.point) return motion.nothing();
   current = scenario;
   const params = motionParams(scenario);
-  return motion.show(JSON.stringify([params, scenario.size]), once("/v1/history", params));
+  return motion.show(JSON.stringify([params, scenario.size]), (signal) => untilRest(params, signal));
+}
+
+/** The history of a block until it is at rest; how long that takes is asked for first, with few samples. */
+async function* untilRest(params, signal) {
+  await chartsReady();
+  let probe = await ask("/v1/history", { ...params, samples: 2 }, signal);
+  for (let times = 2; times <= LONGEST && isMoving(probe); times *= 2) {
+    probe = await ask("/v1/history", { ...params, samples: 2, duration: 2 * probe.tau.at(-1) }, signal);
+  }
+  if (probe.outcome !== "SAFE" || isMoving(probe)) {
+    yield await ask("/v1/history", params, signal);
+    return;
+  }
+  const quiet = Math.max(probe.impact_time.at(-1) ?? 0, probe.tau[probe.ground_acceleration.findLastIndex((u) => u !== 0)] ?? 0);
+  yield await ask("/v1/history", { ...params, duration: Math.max(1.02 * quiet, quiet + 0.5) }, signal);
+}
+
+function isMoving({ outcome, rotation }) {
+  return outcome === "SAFE" && rotation.at(-1) !== 0;
 }
 
 /** Parameters of the charts, for a download. */

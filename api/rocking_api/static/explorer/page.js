@@ -29,17 +29,35 @@ export function facts(pairs) {
   return made;
 }
 
+/** The assumptions of a response in SI units, folded. */
+export function assumptions({ assumptions: lines, disclaimer }) {
+  const list = element("ul", lines.map((line) => element("li", line)));
+  return element("details", [element("summary", "Assumptions"), list, element("p", disclaimer, { class: "small" })]);
+}
+
+/** Mark a field of a form as wrong, with the reason beside it. */
+export function markField(place, words) {
+  place.textContent = words;
+  const field = document.getElementById(place.dataset.field);
+  field.setAttribute("aria-invalid", "true");
+  field.setAttribute("aria-describedby", place.id);
+  return field;
+}
+
 /** Show an error beside the field of a form that it names; returns whether there is one. */
 function showFieldError({ parameter, value, allowed, message }, form) {
   const place = form.querySelector(`[data-problem="${CSS.escape(parameter ?? "")}"]`);
   if (!place) return false;
   const name = parameter.replaceAll("_", " ");
-  if (parameter === "record") place.textContent = inTermsOf(form, message);
-  else place.textContent = value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`;
-  const field = document.getElementById(place.dataset.field);
-  field.setAttribute("aria-invalid", "true");
-  field.setAttribute("aria-describedby", place.id);
+  if (parameter === "record") markField(place, inTermsOf(form, message));
+  else if (name.startsWith("half ")) markField(place, `${name.slice(5)} is ${doubled(String(value))}; allowed: ${doubled(allowed)}`);
+  else markField(place, value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`);
   return true;
+}
+
+/** A text about a half size as one about the whole: each number twice. */
+function doubled(text) {
+  return text.replace(/\d+(\.\d+)?(e[-+]?\d+)?/g, (digits) => String(2 * Number(digits)));
 }
 
 /** The message of a reader, which names arguments, with the labels of the fields of the form. */

@@ -1,6 +1,6 @@
 // The response to a record in words.
 
-import { element, facts } from "./page.js";
+import { assumptions, element, facts } from "./page.js";
 import { inG, length, number } from "./labels.js";
 
 const answer = document.getElementById("answer");
@@ -20,6 +20,7 @@ export function showRecordAnswer(found) {
     const lines = found.warnings.map((warning) => element("li", warning));
     answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
   }
+  answer.append(assumptions(found.metadata));
 }
 
 /** The outcome in a few words. */

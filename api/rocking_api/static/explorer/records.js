@@ -1,6 +1,7 @@
 // The page of a record: file and block from the form, and from there to every view.
 
 import { send } from "./api.js";
+import { chartsReady } from "./chart.js";
 import { drawMotion } from "./motion_charts.js";
 import { clearErrors, element } from "./page.js";
 import { pane } from "./pane.js";
@@ -65,6 +66,7 @@ async function show() {
 
 function upload(route, params) {
   return async function* load(signal) {
+    await chartsReady();
     yield await send(`/v1/records/${route}`, params, file, signal);
   };
 }

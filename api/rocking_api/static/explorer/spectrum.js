@@ -1,7 +1,7 @@
 // The rocking spectrum at the chosen slenderness: peak against frequency ratio, other restitutions beside it.
 
 import { ask, urlOf } from "./api.js";
-import { axis, chart } from "./chart.js";
+import { axis, chart, chartsReady } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { pane } from "./pane.js";
 import { number } from "./labels.js";
@@ -33,6 +33,7 @@ export function showSpectrum(scenario, view, lasting) {
   const params = spectrumParams(scenario, view);
   const key = JSON.stringify([params, scenario.point.frequency_ratio]);
   return spectrum.show(key, async function* load(signal) {
+    await chartsReady();
     const all = [params.restitution, ...OTHERS];
     yield await Promise.all(all.map((restitution) => ask("/v1/spectrum", { ...params, restitution }, signal)));
   });

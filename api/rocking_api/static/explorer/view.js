@@ -41,6 +41,27 @@ export function zoomed(view, about, factor) {
   return parts;
 }
 
+/** The parts of a state that show the window moved by some shares of its sides. */
+export function panned(view, across, up) {
+  const ratio = (view.frequency_ratio_max / view.frequency_ratio_min) ** across;
+  const span = view.slenderness_max - view.slenderness_min;
+  const room = [Math.min(WHOLE.slenderness_min - view.slenderness_min, 0), Math.max(MOST_SLENDER - view.slenderness_max, 0)];
+  const shift = Math.min(Math.max(up * span, room[0]), room[1]);
+  const moved = {
+    frequency_ratio_min: view.frequency_ratio_min * ratio,
+    frequency_ratio_max: view.frequency_ratio_max * ratio,
+    slenderness_min: view.slenderness_min + shift,
+    slenderness_max: view.slenderness_max + shift,
+  };
+  return Object.fromEntries(Object.entries(moved).map(([name, value]) => [name, Number(value.toPrecision(5)).toString()]));
+}
+
+/** Whether a window holds the whole map. */
+export function covers(view) {
+  const within = (name, sign) => sign * (Number(view[name]) - WHOLE[name]) >= -1e-9;
+  return ["frequency_ratio", "slenderness"].every((name) => within(`${name}_max`, 1) && within(`${name}_min`, -1));
+}
+
 /** The point in the middle of the window. */
 export function middleOf(view) {
   return pointAt(view, 0.5, 0.5);

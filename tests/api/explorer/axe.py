@@ -1,0 +1,56 @@
+"""axe-core, a checker of accessibility, from the npm registry: unpacked into build/axe, and run inside a page.
+
+`python -m tests.api.explorer.axe` fetches it if it is not there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+import tarfile
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+PACKAGE = "axe-core@4.10.3"
+SHA256 = "880970c081707360e64f34cea25ff91892f5bc95675b0776925b9709dd8a68bb"
+SCRIPT = Path(__file__).parents[3] / "build" / "axe" / "axe.min.js"
+HOW = "the checks of accessibility need axe-core: have npm on the path, and run `make browser`"
+
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+
+
+def fetch() -> bool:
+    """Unpack the script; returns whether it is there."""
+    if SCRIPT.exists():
+        return True
+    with tempfile.TemporaryDirectory() as scratch:
+        try:
+            subprocess.run(
+                ["npm", "pack", "--silent", PACKAGE], cwd=scratch, check=True, timeout=120, capture_output=True
+            )
+        except (OSError, subprocess.SubprocessError):
+            return False
+        (archive,) = Path(scratch).glob("*.tgz")
+        with tarfile.open(archive) as packed:
+            packed.extractall(scratch, filter="data")
+        content = (Path(scratch) / "package" / "axe.min.js").read_bytes()
+    if hashlib.sha256(content).hexdigest() != SHA256:
+        raise RuntimeError(f"{PACKAGE} is not what was published")
+    SCRIPT.parent.mkdir(parents=True, exist_ok=True)
+    SCRIPT.write_bytes(content)
+    return True
+
+
+def violations(page: Page) -> list[str]:
+    """Rule, and elements that violate it, of everything that the page shows."""
+    page.evaluate(SCRIPT.read_text())
+    found = page.evaluate("rules => axe.run({ runOnly: rules })", RULES)
+    return [f"{one['id']}: {[node['target'] for node in one['nodes']]}: {one['help']}" for one in found["violations"]]
+
+
+if __name__ == "__main__":
+    if not fetch():
+        sys.stderr.write(f"{HOW}\n")

@@ -1,0 +1,52 @@
+"""No page violates a rule of axe-core: WCAG 2.2 level AA, and its best practices."""
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.explorer import axe
+from tests.api.explorer.reading import BLOCK, POINT, settle
+from tests.api.explorer.test_records import choose, short_record
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _fetched():
+    if not axe.fetch():
+        pytest.skip(axe.HOW)
+
+
+@pytest.mark.parametrize(("path", "scheme"), [(POINT, "light"), (BLOCK, "dark")])
+def test_the_explorer_is_accessible(open_page, path, scheme):
+    page = open_page(path, color_scheme=scheme, reduced_motion="reduce")
+    settle(page)
+    expect(page.locator("#spectrum-chart canvas")).to_be_visible()
+    expect(page.locator("#rotation canvas")).to_be_visible()
+    assert axe.violations(page) == []
+    if path == BLOCK:
+        page.locator("#open-report").click()
+        assert axe.violations(page) == []
+
+
+def test_errors_are_accessible(open_page):
+    page = open_page()
+    page.locator("#width").fill("-1")
+    page.locator("#ask").click()
+    expect(page.locator("#width-problem")).to_be_visible()
+    settle(page)
+    assert axe.violations(page) == []
+
+
+def test_the_page_of_a_record_is_accessible(open_page):
+    page = open_page("/records", reduced_motion="reduce")
+    assert axe.violations(page) == []
+    page.locator("#more summary").click()
+    choose(page, "short.csv", short_record())
+    expect(page.locator("#scales-caption")).to_contain_text("Hatched")
+    assert axe.violations(page) == []
+
+
+@pytest.mark.parametrize("path", ["/datasets", "/state"])
+def test_other_pages_are_accessible(open_page, path):
+    page = open_page(path, color_scheme="dark")
+    expect(page.locator("#status")).not_to_have_text("")
+    page.wait_for_load_state("networkidle")
+    assert axe.violations(page) == []
