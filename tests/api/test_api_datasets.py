@@ -29,6 +29,24 @@ def test_catalogue_lists_every_file_with_its_digest(client, results):
         assert client.get(entry["zarr"] + "/.zmetadata").status_code == 200
 
 
+def test_catalogue_tells_pulse_restitution_extent_and_links(client, own_results):
+    listed = {entry["name"]: entry for entry in client.get("/v1/datasets").json()["datasets"]}
+    cube = listed[NAME]
+    assert (cube["pulse"], cube["restitution"]) == ("sine", 0.85)
+    assert "sine" in cube["title"]
+    assert cube["extent"]["slenderness"] == pytest.approx([0.05, 0.95])
+    assert cube["extent"]["frequency_ratio"] == pytest.approx([0.5, 12.0])
+    assert [link["rel"] for link in cube["links"]] == ["self", "data", "version", "zarr", "subset"]
+    for link in cube["links"]:
+        path = link["href"] + ("/.zgroup" if link["rel"] == "zarr" else "")
+        assert client.get(path).status_code == 200, link
+    assert "subset" not in [link["rel"] for link in listed["overturning/sine/eta-0.85"]["links"]]
+    (own_results / f"{NAME}.nc").write_bytes(b"no netCDF")
+    with client_of(own_results) as other:  # a damaged file is listed by its name alone
+        damaged = next(one for one in other.get("/v1/datasets").json()["datasets"] if one["name"] == NAME)
+    assert (damaged["title"], damaged["pulse"], damaged["extent"]) == (NAME, None, {})
+
+
 def test_description_lists_dimensions_variables_and_attributes(client):
     described = client.get(f"/v1/datasets/{NAME}").json()
     assert described["dimensions"] == {"alpha": 1, "slenderness": 91, "frequency_ratio": 91}
