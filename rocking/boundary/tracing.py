@@ -179,7 +179,7 @@ def _as_dataset(chains: Chains) -> xr.Dataset:
             "slenderness": (
                 "point",
                 chains.slenderness[points],
-                {"long_name": "dimensionless slenderness g tan(alpha)/a_g (3.6)", "units": "1"},
+                {"long_name": "g tan(alpha)/a_g (3.6)", "units": "1"},
             ),
             "frequency_ratio": (
                 "point",

@@ -38,6 +38,7 @@ from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_number
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking.model.fields import CUBE_FIELDS
+from rocking.model.parameters import FREQUENCY_RATIO, SLENDERNESS
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 """Dimensions of a spectrum cube, in order."""
@@ -45,11 +46,12 @@ DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 AXES: dict[str, dict[str, Any]] = {
     "alpha": {
         "units": "rad",
-        "long_name": "slenderness angle of the block, 0 for the slender limit",
+        "long_name": "slenderness angle alpha",
         "equation": "2.1",
+        "comment": "0 for the slender limit",
     },
-    "slenderness": {"units": "1", "long_name": "dimensionless slenderness g tan(alpha)/a_g = 1/a", "equation": "4.11"},
-    "frequency_ratio": {"units": "1", "long_name": "frequency ratio omega = omega_g/p", "equation": "3.6"},
+    "slenderness": {"units": "1", "long_name": SLENDERNESS.label, "equation": "4.11"},
+    "frequency_ratio": {"units": "1", "long_name": FREQUENCY_RATIO.label, "equation": "3.6"},
 }
 """Attributes of the axes of a spectrum cube."""
 
@@ -60,29 +62,33 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     **{field.name: (field.file_dtype, field.attributes) for field in CUBE_FIELDS},
     "stencil": (
         "i1",
-        {"long_name": "how peak_rotation is interpolated in the cell above the node", "equation": "3.2",
-         "comment": "four-point Lagrange in slenderness and log(frequency_ratio) over the 16 nodes around the cell",
+        {"long_name": "kind of interpolation", "equation": "3.2",
+         "comment": "of peak_rotation in the cell above the node: four-point Lagrange in slenderness and "
+                    "log(frequency_ratio) over the 16 nodes around the cell",
          "flag_values": np.array([NO_STENCIL, PEAK, SQUARED, OVERTURNS], dtype=np.int8),
          "flag_meanings": "not_interpolated peak_rotation square_of_1_minus_peak_rotation all_overturn_alike"},
     ),
     "interpolation_error": (
         "f4",
-        {"long_name": "largest measured error of interpolated peak_rotation around the cell above the node",
+        {"long_name": "interpolation error",
          "equation": "3.2",
-         "comment": "against the solver, in the cell and those around it, at two points of each and at five where the "
+         "comment": "largest measured error of interpolated peak_rotation around the cell above the node: against "
+                    "the solver, in the cell and those around it, at two points of each and at five where the "
                     "error exceeds 1e-6; 0 where all overturn in the same way, missing where no bound is known"},
     ),
     "restitution_error": (
         "f4",
-        {"long_name": "largest measured error of peak_rotation interpolated before the next restitution",
+        {"long_name": "error between restitutions",
          "equation": "3.2",
-         "comment": "four-point Lagrange over the nearest restitution_slices, measured halfway at the centres of the "
+         "comment": "largest measured error of peak_rotation interpolated before the next restitution: four-point "
+                    "Lagrange over the nearest restitution_slices, measured halfway at the centres of the "
                     "cell above the node and of those around it; missing where no bound is known"},
     ),
     "alpha_error": (
         "f4",
-        {"long_name": "largest measured error of peak_rotation interpolated before the next alpha", "equation": "3.2",
-         "comment": "four-point Lagrange in the square of alpha, measured as restitution_error"},
+        {"long_name": "error between angles", "equation": "3.2",
+         "comment": "largest measured error of peak_rotation interpolated before the next alpha: four-point "
+                    "Lagrange in the square of alpha, measured as restitution_error"},
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking.model.fields`."""

@@ -71,18 +71,18 @@ def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
     block, p = problem.block, problem.block.frequency_parameter
     scales = {
         "rotation": (block.alpha, "rad", "rotation theta"),
-        "angular_velocity": (block.alpha * p, "rad s-1", "angular velocity theta'"),
+        "angular_velocity": (block.alpha * p, "rad s-1", "velocity theta'"),
         "ground_acceleration": (block.uplift_acceleration, "m s-2", "ground acceleration"),
         "impact_time": (1.0 / p, "s", "time of impact"),
     }
     history = found.rename({"tau": "time"}).assign_coords(
-        time=("time", found["tau"].values / p, {"units": "s", "long_name": "time from the start of the pulse"})
+        time=("time", found["tau"].values / p, {"units": "s", "long_name": "time from pulse start"})
     )
     for name, (scale, unit, meaning) in scales.items():
         dims = history[name].dims
         history[name] = (dims, scale * found[name].values, {"units": unit, "long_name": meaning})
     moved = block.top_height * np.sin(history["rotation"].values)
-    history["top_displacement"] = "time", moved, {"units": "m", "long_name": "horizontal displacement of a top corner"}
+    history["top_displacement"] = "time", moved, {"units": "m", "long_name": "top corner displacement"}
     return history.assign_attrs(_description(problem), pulse_end=float(found.attrs["pulse_end"]) / p)
 
 
@@ -133,7 +133,7 @@ def block_spectrum(
         "top_displacement": (
             "period",
             block.top_height * np.sin(rotation),
-            {"units": "m", "long_name": "largest displacement of a top corner"},
+            {"units": "m", "long_name": "largest top displacement"},
         ),
     }
     variables |= {
@@ -198,7 +198,7 @@ def add_si_axes(curves: xr.Dataset, block: Block) -> xr.Dataset:
         peak_acceleration=(
             "point",
             block.uplift_acceleration / curves["slenderness"].values,
-            {"units": "m s-2", "long_name": "peak ground acceleration"},
+            {"units": "m s-2", "long_name": "peak acceleration a_g"},
         ),
         period=(
             "point",

@@ -96,7 +96,7 @@ def record_history(
             "impact_time": ("impact", impact_times / p, {"long_name": "time of impact", "units": "s"}),
         },
         coords={
-            "tau": ("tau", tau, {"long_name": "time p t from the first sample", "units": "1"}),
+            "tau": ("tau", tau, {"long_name": "p t from the first sample", "units": "1"}),
             "time": ("tau", tau / p, {"long_name": "time from the first sample", "units": "s"}),
         },
         attrs={

@@ -77,7 +77,7 @@ def time_history(
             ),
             "impact_time": ("impact", impact_times, {"long_name": "time of impact p t", "units": "1"}),
         },
-        coords={"tau": ("tau", tau, {"long_name": "time p t from the start of the pulse (3.6)", "units": "1"})},
+        coords={"tau": ("tau", tau, {"long_name": "time p t from pulse start", "units": "1"})},
         attrs={
             "pulse": motion.pulse.name,
             "slenderness": motion.slenderness,

@@ -83,9 +83,9 @@ PEAK_ROTATION = ResponseField(
     "f8",
     "1",
     "3.2",
-    "peak rotation, max |theta|/alpha over the whole response",
+    "peak of |theta|/alpha",
     "the block overturns",
-    "0 without uplift",
+    "over the whole response; 0 without uplift",
 )
 OUTCOME = ResponseField("outcome", "i1", "1", "3.8", "final outcome")
 IMPACTS = ResponseField(
@@ -93,9 +93,10 @@ IMPACTS = ResponseField(
     "i4",
     "1",
     "2.3",
-    "number of impacts before the pulse ends",
+    "number of impacts",
     "",
-    "and the one after it that is followed by overturning; impacts that chatter sums up are not counted",
+    "before the pulse ends, and the one after it that is followed by overturning; impacts that chatter sums up are not "
+    "counted",
 )
 CHATTER = ResponseField("chatter", "?", "1", "2.3", "whether impacts accumulate to rest while the pulse acts")
 EXCEEDED_ALPHA = ResponseField("exceeded_alpha", "?", "1", "3.2", "whether |theta| passed alpha at some time")

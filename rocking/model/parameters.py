@@ -9,6 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+MAX_LABEL = 25
+"""Characters of a label that xarray writes in one line, with a unit [-]."""
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -49,6 +52,13 @@ class Parameter:
     def help(self) -> str:
         """Meaning, symbol and unit in one line."""
         return f"{self.description}, {self.symbol} [{self.unit}]"
+
+    @property
+    def label(self) -> str:
+        """Meaning and symbol for the axis of a picture; the symbol alone if both are longer than a label may be."""
+        symbol = self.symbol.partition(" = ")[0]
+        text = f"{self.description} {symbol}"
+        return text if len(text) <= MAX_LABEL else symbol
 
     def restricted(self, lower: float, upper: float) -> Parameter:
         """The same parameter on a smaller range, closed at its finite ends.

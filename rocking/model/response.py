@@ -31,7 +31,7 @@ class Response:
     Attributes
     ----------
     peak_rotation : float64 array [-]
-        Peak rotation, max |theta|/alpha over the whole response, free rocking included; nan where the block
+        Peak of |theta|/alpha over the whole response, free rocking included; nan where the block
         overturns, 0 without uplift.
     outcome : int8 array
         Final outcome, a code of `Outcome`.
@@ -139,7 +139,7 @@ class Response:
             if value is not None:
                 shape = (1,) * (len(self.shape) - value.ndim) + value.shape
                 axes = [axis for axis, size in enumerate(shape) if size != 1]
-                about = {"units": "1" if group.unit == "-" else group.unit, "long_name": group.help}
+                about = {"units": "1" if group.unit == "-" else group.unit, "long_name": group.label}
                 own = tuple(names[axis] for axis in axes)
                 coordinates[group.name] = (own, value.reshape([shape[axis] for axis in axes]), about)
         attributes = {"pulse": self.pulse} if self.pulse else {}

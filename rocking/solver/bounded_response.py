@@ -30,7 +30,7 @@ class BoundedResponse:
     Attributes
     ----------
     peak_rotation : float64 array [-]
-        Peak rotation, max |theta|/alpha over the whole response; nan where the block overturns, 0 without uplift.
+        Peak of |theta|/alpha over the whole response; nan where the block overturns, 0 without uplift.
     outcome : int8 array
         Final outcome, a code of `rocking.Outcome`.
     impacts : int32 array

@@ -70,7 +70,7 @@ def _frequency_ratio(record: Record, block: Block) -> float:
 MEASURES = {
     measure.name: measure
     for measure in (
-        Measure("pga", "m s-2", "peak ground acceleration", lambda record, _: record.peak_acceleration),
+        Measure("pga", "m s-2", "peak acceleration PGA", lambda record, _: record.peak_acceleration),
         Measure("pgv", "m s-1", "peak ground velocity", lambda record, _: record.peak_velocity),
         Measure("pga_ratio", "1", "peak ground acceleration over g tan(alpha)", _pga_ratio),
         Measure("pgv_ratio", "1", "peak ground velocity times p over g tan(alpha)", _pgv_ratio),
