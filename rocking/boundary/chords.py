@@ -84,12 +84,11 @@ def refine_chords(
         todo = np.zeros(chains.chain.size - 1, dtype=bool)
         place = cut + np.arange(cut.size)
         todo[place] = todo[place + 1] = True
-    chains = chains.without_points()
     at, many, distance = (np.concatenate(each) for each in zip(*errors, strict=True))
     lost = np.concatenate([np.empty(0), *unknown])
     return [
         (
-            chains.take(np.flatnonzero(chains.eta == eta)),
+            chains.take(np.flatnonzero(chains.eta == eta)).without_points(),
             float(distance[(at == eta) & ~many].max(initial=0.0)),
             float(distance[(at == eta) & many].max(initial=0.0)),
             int((lost == eta).sum()),
