@@ -3,7 +3,8 @@
 Every threshold of `critical_amplitude` should lie on a curve of `overturning_boundary`, within its chord error, and at
 every crossing of a line with a curve the outcome should change. `critical_amplitude` does not use the curves. A
 threshold without a curve belongs to a region that the nodes did not show, or to one below the stated resolution;
-`widest` is the largest distance from such a threshold to the next one, of the lines that have another one.
+`few` counts those of overturning after at most twelve impacts, and `widest` is the largest distance from such a
+threshold to the next one, of the lines that have another one.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import rocking
+from rocking.boundary.search import MANY_IMPACTS
 from rocking.boundary.tracer import END
 from rocking.model.response import Outcome
 
@@ -52,19 +54,19 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
     curves = rocking.overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=nodes)
     seconds = time.process_time() - begin
     chords = Chords(curves)
-    limit = curves.chord_error + 1.1 * END  # the end of a region is known to END, that of some to end_distance
-    thresholds = unlisted = crossings = wrong = 0
+    limits = curves.chord_error + 1.1 * END, curves.uncounted_chord_error + 1.1 * curves.end_distance
+    thresholds = unlisted = few = crossings = wrong = 0
     widest = 0.0
     groups = {"restitution": restitution, "alpha": alpha}
     for y in np.random.default_rng(1).uniform(np.log(0.2), np.log(15.0), lines):
         omega = float(np.exp(y))
-        found = (
-            1.0 / rocking.critical_amplitude(pulse, frequency_ratio=omega, **groups, highest_amplitude=50.0).amplitude
-        )
+        on_line = rocking.critical_amplitude(pulse, frequency_ratio=omega, **groups, highest_amplitude=50.0)
+        found = 1.0 / on_line.amplitude
         thresholds += found.size
-        for k, x in enumerate(found):
-            if chords.distance(x, y) > limit:
+        for k, (x, impacts) in enumerate(zip(found, on_line.impacts, strict=True)):
+            if chords.distance(x, y) > limits[int(impacts > MANY_IMPACTS)]:
                 unlisted += 1
+                few += int(impacts <= MANY_IMPACTS)
                 others = np.delete(found, k)
                 if others.size:
                     widest = max(widest, np.abs(others - x).min())
@@ -79,7 +81,7 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
     return {
         "curves": sizes.size, "short": int((sizes < 6).sum()), "points": int(sizes.sum()), "seconds": seconds,
         "open_ends": curves.open_ends, "chord_error": curves.chord_error,
-        "thresholds": thresholds, "unlisted": unlisted, "widest": widest,
+        "thresholds": thresholds, "unlisted": unlisted, "few": few, "widest": widest,
         "crossings": crossings, "wrong": wrong,
     }  # fmt: skip
 

@@ -21,6 +21,8 @@ class Chains:
     ----------
     chain : int array
         Number of the chain.
+    eta : float array
+        Restitution [-].
     slenderness, log_omega : float arrays [-]
         The last point within the region along a line omega = const.
     own, neighbour : int arrays
@@ -32,6 +34,7 @@ class Chains:
     """
 
     chain: Index
+    eta: Floats
     slenderness: Floats
     log_omega: Floats
     own: Codes
@@ -62,12 +65,12 @@ class Chains:
 
 
 def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
-    """Follow the joins of one restitution from end to end; a closed chain ends with the point it begins with.
+    """Follow the joins from end to end; a closed chain ends with the point it begins with.
 
     Regions that lie on a single line are left out.
     """
     number: dict[tuple[int, int, int], int] = {}
-    points: list[tuple[float, float, int, int, int, float]] = []
+    points: list[tuple[float, float, float, int, int, int, float]] = []
     beside: list[list[int]] = []
     for join in joins:
         ends = []
@@ -99,23 +102,24 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
             chain.append(here)
         if len(beside[start]) == 2:
             chain.append(start)
-        if len({points[k][1] for k in chain}) == 1:
+        if len({points[k][2] for k in chain}) == 1:
             continue  # seen on one line only: shorter than the distance within which ends are known
         order += chain
         sizes.append(len(chain))
-    table = np.array([points[k] for k in order]).reshape(-1, 6).T
+    table = np.array([points[k] for k in order]).reshape(-1, 7).T
     return Chains(
         chain=np.repeat(np.arange(len(sizes)), sizes),
-        slenderness=table[0],
-        log_omega=table[1],
-        own=table[2].astype(np.int64),
-        neighbour=table[3].astype(np.int64),
-        side=table[4].astype(np.int64),
-        width=table[5],
+        eta=table[0],
+        slenderness=table[1],
+        log_omega=table[2],
+        own=table[3].astype(np.int64),
+        neighbour=table[4].astype(np.int64),
+        side=table[5].astype(np.int64),
+        width=table[6],
     )
 
 
-def _point(column: Column, m: int, side: int) -> tuple[float, float, int, int, int, float]:
+def _point(column: Column, m: int, side: int) -> tuple[float, float, float, int, int, int, float]:
     if side:
         top = column.below[m + 1] if m + 1 < column.below.size else column.top
         x, width = column.above[m], top - column.above[m]
@@ -123,6 +127,7 @@ def _point(column: Column, m: int, side: int) -> tuple[float, float, int, int, i
         bottom = column.above[m - 1] if m else column.bottom
         x, width = column.below[m], column.below[m] - bottom
     return (
+        column.eta,
         float(x),
         column.log_omega,
         column.codes[m + side],

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
 from rocking.boundary.columns import Index
-from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, refine_brackets
+from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Codes, Floats, refine_brackets
 
 SCAN = 31
 """Points by which a region is looked for at the middle of a chord [-]."""
@@ -18,13 +18,16 @@ WIDENINGS = 4
 SURE = 0.5
 """Share of the largest distance below which it is not measured where the chords on both sides agree on it [-]."""
 
+FINE = 0.02
+"""Share of the largest distance to which a distance near it is measured [-]."""
+
 HALVINGS = 12
 """Times that a chord is halved at most [-]."""
 
 
 def refine_chords(
-    chains: Chains, eta: float, classify: Classify, *, largest: float, end: float
-) -> tuple[Chains, float, int]:
+    chains: Chains, etas: Floats, classify: Classify, *, largest: float, uncounted: Floats, end: float
+) -> list[tuple[Chains, float, float, int]]:
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
     Regions of many impacts lie side by side with equal codes, and a chord can join two of them. It is taken out: the
@@ -33,22 +36,26 @@ def refine_chords(
     Parameters
     ----------
     chains : Chains
-        The curves at one restitution.
-    eta : float
-        Restitution [-].
+        The curves.
+    etas : float array (restitutions,)
+        Their restitutions, ascending [-].
     classify : Classify
         The solver, with region codes.
     largest : float
         Distance in the plane of 1/a and log omega [-].
+    uncounted : float array (restitutions,)
+        The same for regions of many impacts [-].
     end : float
         Width in log omega of the chords that end a region, which are not halved [-].
 
     Returns
     -------
-    chains, error, unknown
-        The curves, the largest distance found, and the number of chords whose curve was not found at the middle.
+    list of (chains, error, uncounted_error, unknown)
+        For each restitution the curves, bounds of the largest distance of a chord from its curve, without regions of
+        many impacts and for these, and the number of chords whose curve was not found at the middle.
     """
-    error, unknown = 0.0, 0
+    errors: list[tuple[Floats, NDArray[np.bool_], Floats]] = []
+    unknown: list[Floats] = []
     todo = np.ones(max(chains.chain.size - 1, 0), dtype=bool)
     for _ in range(HALVINGS):
         todo &= (
@@ -59,23 +66,35 @@ def refine_chords(
         first = np.flatnonzero(todo)
         bend, spread = _bend(chains, first)
         sure = (np.abs(bend) + spread < SURE * largest) & ~_uncounted(chains, first)
-        error = max(error, float((np.abs(bend) + spread)[sure].max(initial=0.0)))
+        errors.append((chains.eta[first[sure]], np.zeros(sure.sum(), dtype=bool), (np.abs(bend) + spread)[sure]))
         first, bend = first[~sure], bend[~sure]
         if not first.size:
             break
-        middle, found, distance = _middles(chains, first, bend, eta, classify)
-        wrong = ~found & _uncounted(chains, first)
-        unknown += int((~found & ~wrong).sum())
+        many = _uncounted(chains, first)
+        most = np.where(many, uncounted[np.searchsorted(etas, chains.eta[first])], largest)
+        middle, found, distance = _middles(chains, first, bend, most, classify)
+        wrong = ~found & many
+        unknown.append(middle.eta[~found & ~wrong])
         chains = chains.divide(first[wrong] + 1)
         middle.chain = chains.chain[first]
-        close = ~found | (distance <= largest)
-        error = max(error, float(distance[found & close].max(initial=0.0)))
+        close = ~found | (distance <= most)
+        errors.append((middle.eta[found & close], many[found & close], distance[found & close]))
         cut = first[~close]
         chains = chains.insert(cut + 1, middle.take(np.flatnonzero(~close)))
         todo = np.zeros(chains.chain.size - 1, dtype=bool)
         place = cut + np.arange(cut.size)
         todo[place] = todo[place + 1] = True
-    return chains.without_points(), error, unknown
+    at, many, distance = (np.concatenate(each) for each in zip(*errors, strict=True))
+    lost = np.concatenate([np.empty(0), *unknown])
+    return [
+        (
+            chains.take(np.flatnonzero(chains.eta == eta)).without_points(),
+            float(distance[(at == eta) & ~many].max(initial=0.0)),
+            float(distance[(at == eta) & many].max(initial=0.0)),
+            int((lost == eta).sum()),
+        )
+        for eta in etas
+    ]
 
 
 def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:
@@ -84,9 +103,12 @@ def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:
 
 
 def _middles(
-    chains: Chains, first: Index, bend: Floats, eta: float, classify: Classify
+    chains: Chains, first: Index, bend: Floats, largest: Floats, classify: Classify
 ) -> tuple[Chains, NDArray[np.bool_], Floats]:
-    """Points of the curves halfway along some chords, whether they were found, and their distance from the chords."""
+    """Points of the curves halfway along some chords, whether they were found, and their distance from the chords.
+
+    Where the distance is not larger than `largest`, it is a bound, and the point is not refined.
+    """
     one, two = chains.take(first), chains.take(first + 1)
     y = 0.5 * (one.log_omega + two.log_omega)
     chord = 0.5 * (one.slenderness + two.slenderness)
@@ -101,22 +123,25 @@ def _middles(
             break
         inside[lost] = guess[lost] - outward[lost] * near[lost]
         beyond[lost] = guess[lost] + outward[lost] * near[lost]
-        codes, _ = classify(np.stack([inside[lost], beyond[lost]]), y[lost], np.asarray(eta))
+        codes, _ = classify(np.stack([inside[lost], beyond[lost]]), y[lost], one.eta[lost])
         found[lost] = (codes[0] == one.own[lost]) & (codes[1] != one.own[lost])
         near = np.minimum(8.0 * near, 0.4 * width)
     lost = np.flatnonzero(~found)
     if lost.size:
         reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
         inside[lost], beyond[lost], found[lost] = _scan(
-            guess[lost], outward[lost], reach, one.own[lost], y[lost], eta, classify
+            guess[lost], outward[lost], reach, one.own[lost], y[lost], one.eta[lost], classify
         )
-    k = np.flatnonzero(found)
-    points = np.stack([chord[k], y[k], np.full(k.size, eta)], axis=1)
-    x = guess.copy()
-    x[k], _ = refine_brackets(0, points, np.stack([inside[k], beyond[k]], axis=1), one.own[k], classify)
     slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
-    middle = Chains(one.chain, x, y, one.own, one.neighbour, one.side, width)
-    return middle, found, np.abs(x - chord) / np.hypot(1.0, slope)
+    distance = np.maximum(np.abs(inside - chord), np.abs(beyond - chord)) / np.hypot(1.0, slope)
+    for resolution in (FINE * largest, np.full(y.size, RESOLUTION)):  # the second one for new vertices only
+        k = np.flatnonzero(found & (distance > largest))
+        points = np.stack([chord[k], y[k], one.eta[k]], axis=1)
+        ends = np.stack([inside[k], beyond[k]], axis=1)
+        inside[k], beyond[k] = refine_brackets(0, points, ends, one.own[k], classify, resolution[k])
+        distance[k] = np.maximum(np.abs(inside - chord), np.abs(beyond - chord))[k] / np.hypot(1.0, slope[k])
+    middle = Chains(one.chain, one.eta, inside, y, one.own, one.neighbour, one.side, width)
+    return middle, found, distance
 
 
 def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
@@ -139,7 +164,7 @@ def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
 
 
 def _scan(
-    guess: Floats, outward: Floats, reach: Floats, own: Codes, y: Floats, eta: float, classify: Classify
+    guess: Floats, outward: Floats, reach: Floats, own: Codes, y: Floats, eta: Floats, classify: Classify
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
     """Points within and beyond the region next to each other, and whether they are.
 
@@ -147,7 +172,7 @@ def _scan(
     """
     shares = np.linspace(-1.0, 1.0, SCAN)
     x = guess[:, None] + outward[:, None] * reach[:, None] * shares
-    codes, _ = classify(np.clip(x, 1e-6, 1.0), y[:, None], np.asarray(eta))
+    codes, _ = classify(np.clip(x, 1e-6, 1.0), y[:, None], eta[:, None])
     within = codes == own[:, None]
     leaves = within[:, :-1] & ~within[:, 1:]
     k = np.argmin(np.where(leaves, np.abs(shares[:-1]), np.inf), axis=1)

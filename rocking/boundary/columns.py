@@ -96,11 +96,11 @@ class Lines:
         1/a (any), log omega and eta of each line.
     classify : Classify
         The solver, with layer codes or region codes.
-    thinnest : float
+    thinnest : float array (lines,)
         As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
     """
 
-    def __init__(self, points: Floats, classify: Classify, thinnest: float) -> None:
+    def __init__(self, points: Floats, classify: Classify, thinnest: Floats) -> None:
         self.points = points
         self.classify = classify
         self.thinnest = thinnest
@@ -132,7 +132,8 @@ class Lines:
         for many in (False, True):  # first the safe bands between two regions of many impacts, then such regions
             thinnest = np.full(codes.size, THINNEST)
             uncounted = codes == UNCOUNTED
-            thinnest[uncounted if many else _between(uncounted)] = self.thinnest
+            coarse = uncounted if many else _between(uncounted)
+            thinnest[coarse] = self.thinnest[line[coarse]]
             edge = np.diff(line) != 0
             kept = np.append(True, edge) | np.append(edge, True) | (high - low >= thinnest)
             line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]

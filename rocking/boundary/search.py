@@ -5,8 +5,8 @@ A point is 1/a, log omega and the restitution.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -88,11 +88,21 @@ def without_layers(codes: Codes) -> Codes:
     return np.where(impacts_of_code(codes) > MANY_IMPACTS, UNCOUNTED, codes)
 
 
-@dataclass
 class Work:
-    """Impacts that the solver has followed, and blocks: what the search for curves has cost."""
+    """Impacts that the solver has followed, and blocks, at each restitution: what the search for curves has cost."""
 
-    done: int = 0
+    def __init__(self) -> None:
+        self._done: Counter[float] = Counter()
+
+    def add(self, eta: Floats, impacts: NDArray[np.int32]) -> None:
+        """Count blocks and their impacts, arrays of one shape."""
+        values, which = np.unique(eta, return_inverse=True)
+        done = np.bincount(which.ravel(), 1.0 + impacts.ravel())
+        self._done.update({float(value): int(amount) for value, amount in zip(values, done, strict=True)})
+
+    def at(self, eta: float) -> int:
+        """Impacts and blocks at one restitution so far."""
+        return self._done[eta]
 
 
 def classifier(
@@ -122,7 +132,7 @@ def classifier(
         records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
         found: Any = records.view(np.recarray).reshape(groups[0].shape)
         if work is not None:
-            work.done += found.impacts.size + int(found.impacts.sum(dtype=np.int64))
+            work.add(groups[2], found.impacts)
         return code_of(found), outcome_margin(found.end_rotation, found.end_velocity, groups[2], groups[3])
 
     return classify
@@ -214,7 +224,7 @@ def refine_lines(
     codes: Codes,
     classify: Classify,
     thinnest: float = RESOLUTION,
-    layers: float = RESOLUTION,
+    layers: Floats | float = RESOLUTION,
 ) -> tuple[Index, Floats, Codes]:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
 
@@ -230,7 +240,7 @@ def refine_lines(
         The solver.
     thinnest : float
         Width below which a region between two others need not be found [-].
-    layers : float
+    layers : float or float array (lines,)
         Distance of the two nodes where two layers of one region meet, see `region_code` [-].
 
     Returns
@@ -238,10 +248,11 @@ def refine_lines(
     line, x, codes : arrays (nodes,)
         The nodes and both ends of every bracket in which the outcome changes, in the same order.
     """
+    layers = np.broadcast_to(layers, len(points))
     for _ in range(ROUNDS):
         change = (np.diff(codes) != 0) & (np.diff(line) == 0)
         width = np.diff(x)
-        resolution = _resolution(codes[:-1], codes[1:], layers)
+        resolution = _resolution(codes[:-1], codes[1:], layers[line[:-1]])
         exact = np.concatenate([[False], change & (width <= 2 * resolution), [False]])  # where a region is known to end
         narrow = width <= thinnest
         edge = change & (width > 2 * resolution) & ~(narrow & exact[:-2] & exact[2:])
@@ -264,7 +275,7 @@ def refine_lines(
         low, below = np.append(outside[other], x[after]), np.append(met[other], codes[after])
         own, on = codes[last], line[last]
         ends = np.stack([x[last], low], 1)
-        inside, outside = refine_brackets(axis, points[on], ends, own, classify, _resolution(below, own, layers))
+        inside, outside = refine_brackets(axis, points[on], ends, own, classify, _resolution(below, own, layers[on]))
         added.append((on, inside, own))
         added.append((on, outside, _codes_at(axis, points[on], outside, classify)))
         wide = outside - low > 2 * thinnest
@@ -275,7 +286,7 @@ def refine_lines(
     return line, x, codes
 
 
-def _resolution(below: Codes, above: Codes, layers: float) -> Floats:
+def _resolution(below: Codes, above: Codes, layers: Floats) -> Floats:
     """How near to each other the two nodes beside a change of outcome shall lie."""
     return np.where(without_layers(below) == without_layers(above), layers, RESOLUTION)
 

@@ -18,7 +18,7 @@ from rocking.boundary.chains import Chains, chains_of
 from rocking.boundary.chords import refine_chords
 from rocking.boundary.columns import THINNEST
 from rocking.boundary.search import Floats, Work, classifier, layer_code, region_code
-from rocking.boundary.tracer import END, Tracer
+from rocking.boundary.tracer import CHORD, END, Tracer
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check, check_window
@@ -27,9 +27,6 @@ from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
 """Blocks that the pulse can uplift."""
-
-CHORD = 1e-4
-"""Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
 
 
 def overturning_boundary(
@@ -66,8 +63,8 @@ def overturning_boundary(
         another way of overturning). An outline is cut into curves where its neighbour changes, the point before the
         cut being repeated; outline(curve) numbers it. `impacts` is -1 for overturning after more than `MANY_IMPACTS`
         impacts or after impacts that accumulate to rest: that is one region. Attributes: chord_error [-], the largest
-        distance of a chord from its curve,
-        measured at the middles of the chords; thinnest_region [-], the width in 1/a below which a region is not
+        distance of a chord from its curve, at the middles of the chords; uncounted_chord_error, the same for the
+        curves of regions whose `impacts` are -1; thinnest_region [-], the width in 1/a below which a region is not
         resolved and its two neighbours are taken to meet; thinnest_uncounted_region [-], the same for regions whose
         `impacts` are -1 and for safe bands between two of them; end_distance [-], the distance in log omega within
         which the ends of these regions are known, and below which they are not resolved (`END` for all others);
@@ -117,31 +114,30 @@ def overturning_boundaries(
     made = as_pulse(pulse)
     log_omega = np.linspace(np.log(low), np.log(high), int(nodes))
     rows = _rows(bottom, top, int(nodes), log_omega.size)
-    return [_curves(made, alpha, float(eta), rows, log_omega, stop) for eta in etas]
-
-
-def _curves(
-    pulse: AbstractPulse, alpha: float | None, eta: float, rows: Floats, log_omega: Floats, stop: StopFlag | None
-) -> xr.Dataset:
-    """The boundary curves at one restitution, from nodes of 1/a (nodes, columns)."""
     work = Work()
-    classify, classify_regions = (classifier(pulse, alpha, stop, code, work) for code in (layer_code, region_code))
-    tracer = Tracer(log_omega, eta, classify, classify_regions, work)
+    classify, classify_regions = (classifier(made, alpha, stop, code, work) for code in (layer_code, region_code))
+    unique, which = np.unique(etas, return_inverse=True)
+    tracer = Tracer(log_omega, unique, classify, classify_regions, work)
     tracer.trace(rows)
-    joins = [join for k in tracer.panels for join in tracer.joins[k]]
-    chains, error, unknown = refine_chords(chains_of(joins), eta, classify_regions, largest=CHORD, end=END)
-    return _as_dataset(chains).assign_attrs(
-        pulse=pulse.name,
-        restitution=eta,
-        alpha=float(alpha or 0.0),
-        chord_error=error,
-        thinnest_region=THINNEST,
-        thinnest_uncounted_region=tracer.thinnest,
-        end_distance=tracer.end,
-        node_distance=float(np.diff(rows, axis=0).max()),
-        open_ends=tracer.open_ends,
-        unmeasured_chords=unknown,
-    )
+    joins = (join for k in tracer.panels for join in tracer.joins[k])
+    refined = refine_chords(chains_of(joins), unique, classify_regions, largest=CHORD, uncounted=tracer.chords, end=END)
+    curves = [
+        _as_dataset(chains).assign_attrs(
+            pulse=made.name,
+            restitution=float(eta),
+            alpha=float(alpha or 0.0),
+            chord_error=error,
+            uncounted_chord_error=uncounted_error,
+            thinnest_region=THINNEST,
+            thinnest_uncounted_region=float(tracer.thinnest[k]),
+            end_distance=float(tracer.ends[k]),
+            node_distance=float(np.diff(rows, axis=0).max()),
+            open_ends=tracer.open_ends(k),
+            unmeasured_chords=unknown,
+        )
+        for k, (eta, (chains, error, uncounted_error, unknown)) in enumerate(zip(unique, refined, strict=True))
+    ]
+    return [curves[k] for k in which]
 
 
 def _rows(low: float, high: float, nodes: int, columns: int) -> Floats:

@@ -8,8 +8,7 @@ import pytest
 import rocking
 from rocking import Outcome, closed_form
 from rocking.boundary.search import MANY_IMPACTS, RESOLUTION, UNCOUNTED, region_code
-from rocking.boundary.tracer import END
-from rocking.boundary.tracing import CHORD
+from rocking.boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD
 from rocking.model.outcome_code import outcome_codes
 
 
@@ -112,16 +111,19 @@ def test_a_thin_tongue_is_one_curve(alpha):
     assert after_two.row_size.min() > 20
 
 
-@pytest.mark.parametrize(("pulse", "alpha"), [("sine", np.radians(20.0)), ("cosine", None), ("cosine", 0.3)])
-def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse, alpha):
-    case = {"restitution": 0.85, "alpha": alpha}
+@pytest.mark.parametrize(
+    ("pulse", "alpha", "restitution"),
+    [("sine", np.radians(20.0), 0.85), ("cosine", None, 0.85), ("cosine", 0.3, 0.85), ("cosine", None, 0.94)],
+)
+def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse, alpha, restitution):
+    case = {"restitution": restitution, "alpha": alpha}
     boundary = rocking.overturning_boundary(pulse, **case, nodes=201)
     assert 0.0 < boundary.chord_error <= CHORD
     assert boundary.unmeasured_chords <= 0.01 * boundary.sizes["point"]
     s, log_omega = boundary.slenderness.values, np.log(boundary.frequency_ratio.values)
     first = np.delete(np.arange(s.size), np.cumsum(boundary.row_size.values) - 1)  # of each chord
     to_safety = np.repeat(boundary.neighbour_outcome.values <= Outcome.SAFE, boundary.row_size.values)
-    limit = 1.5 * (boundary.chord_error + END)
+    limits = 1.5 * (boundary.chord_error + END), 1.5 * (boundary.uncounted_chord_error + boundary.end_distance)
     rng = np.random.default_rng(4)
     unlisted = crossings = wrong = 0
     for omega in np.exp(rng.uniform(np.log(0.3), np.log(10.0), 25)):
@@ -129,9 +131,11 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
         thresholds = 1 / found.amplitude
         y = np.log(omega)
         for x, impacts in zip(thresholds, found.impacts, strict=True):
-            if distances(x, y, s, log_omega, first).min() > limit:
+            if distances(x, y, s, log_omega, first).min() > limits[int(impacts > MANY_IMPACTS)]:
                 unlisted += 1
+                # a region that no node shows, of many impacts: narrower than the distance of the finer nodes
                 assert impacts > MANY_IMPACTS
+                assert np.sort(np.abs(thresholds - x))[1] < boundary.node_distance / FINER
         cut = first[((log_omega[first] - y) * (log_omega[first + 1] - y) < 0) & to_safety[first]]
         share = (y - log_omega[cut]) / (log_omega[cut + 1] - log_omega[cut])
         x = s[cut] + share * (s[cut + 1] - s[cut])
@@ -144,8 +148,9 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
     assert crossings > 60
     # between regions of many impacts that lie side by side a chord can join two of them: 1 of 143 at the most
     assert wrong <= 0.01 * crossings
-    # thresholds of regions that the nodes do not show, all after many impacts: 9 of 143 at the most
-    assert unlisted <= 0.08 * crossings
+    # thresholds of regions that the nodes do not show, all after many impacts: 9 of 143 at the most up to a restitution
+    # of 0.9, many more above
+    assert restitution > 0.9 or unlisted <= 0.08 * crossings
 
 
 def distances(x, y, s, log_omega, first):
@@ -178,8 +183,10 @@ def test_nearly_elastic_blocks_have_no_open_ends():
     assert boundary.open_ends <= 2
     assert boundary.unmeasured_chords == 0
     # what the search resolves is stated: coarser than for less elastic blocks
-    assert boundary.thinnest_region < boundary.thinnest_uncounted_region <= 1e-4
-    assert boundary.end_distance <= 1e-3
+    assert boundary.thinnest_region < boundary.thinnest_uncounted_region <= 3e-4
+    assert boundary.chord_error <= CHORD
+    assert boundary.uncounted_chord_error <= UNCOUNTED_CHORD
+    assert boundary.end_distance <= 3e-3
     # half of the nodes are uniform in 1/a, half of them in its logarithm
     assert 0.3 / 40 < boundary.node_distance < 0.3 / 19
     # no outline lies on one line omega = const

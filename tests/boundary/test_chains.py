@@ -11,7 +11,7 @@ def chains(numbers):
     numbers = np.array(numbers)
     x = np.linspace(0.1, 0.9, numbers.size)
     code = np.full(numbers.size, 7)
-    return Chains(numbers, x, x.copy(), code, 0 * code, 0 * code, x.copy())
+    return Chains(numbers, 0 * x, x, x.copy(), code, 0 * code, 0 * code, x.copy())
 
 
 def test_a_chain_is_divided_before_a_point():
