@@ -19,8 +19,8 @@ from rocking.model.response import Outcome
 from workflow.scripts.job import run
 
 ACCURACY = (
-    "chord_error", "uncounted_chord_error", "thinnest_region", "thinnest_uncounted_region", "end_distance", "node_distance",
-    "unmeasured_chords", "open_ends",
+    "chord_error", "uncounted_chord_error", "thinnest_region", "thinnest_uncounted_region",
+    "end_distance", "node_distance", "unmeasured_chords", "open_ends",
 )  # fmt: skip
 """Attributes of `overturning_boundary` that state how accurate the curves are."""
 
