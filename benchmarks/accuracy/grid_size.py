@@ -30,7 +30,7 @@ from rocking.lookup.open import open_cube
 from rocking.lookup.points import Points
 from rocking.solver.peak_response import peak_response
 from rocking.spectra.cubes import spectra
-from workflow.scripts import overturning
+from workflow.scripts import overturning, overturning_part
 from workflow.scripts.axes import stepped
 
 Vector = NDArray[np.float64]
@@ -61,14 +61,13 @@ def build_cubes(folder: Path, config: dict[str, Any], scales: tuple[float, ...])
     """Yield the cube of each grid and the time it took [s]."""
     curves = folder / "boundaries.nc"
     progress("grid size: boundaries")
-    overturning.main(
-        pulse=PULSE,
-        restitution=[RESTITUTION],
-        alpha_deg=ANGLES,
-        boundary=config["boundary"],
-        boundaries=[curves],
-        provenance={},
-    )
+    window, eta, parts = config["boundary"], [RESTITUTION], []
+    for angle in ANGLES:
+        parts.append(folder / f"{PULSE}-{angle:g}.nc")
+        nodes = window["nodes_rigid"] if angle else window["nodes"]
+        axis = {name: window[name] for name in ("slenderness", "frequency_ratio")}
+        overturning_part.main(pulse=PULSE, restitution=eta, alpha_deg=angle, nodes=nodes, **axis, part=parts[-1])
+    overturning.main(pulse=PULSE, restitution=eta, parts=parts, boundaries=[curves], provenance={})
     boundary, angles = read_dataset(curves), [math.radians(angle) for angle in ANGLES]
     for scale in scales:
         plane = axes(config, scale)

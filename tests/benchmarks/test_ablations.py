@@ -21,7 +21,7 @@ COUNTS_ONLY = 0
         (lambda: motion.motions(16, COUNTS_ONLY), {"free": 30, "chatter: slender": 1.5, "chatter: rigid": 1.5}),
         (lambda: motion.first_flights(12, COUNTS_ONLY), {"first": 11}),
         (lambda: [grids.precision(32, COUNTS_ONLY)], {"all digits": 10}),
-        (lambda: grids.tracing(61, COUNTS_ONLY), {"points": 1.5}),
+        (lambda: grids.tracing(61, COUNTS_ONLY), {"points": 1.35}),
         (lambda: grids.probes(COUNTS_ONLY), {"probes": 1.5, "between": 1.5}),
     ],
     ids=["motion", "first flights", "digits", "tracing", "cubes"],

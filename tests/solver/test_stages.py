@@ -52,7 +52,7 @@ def assert_equal(first, second):
 @pytest.mark.parametrize("name", SIGNED)
 def test_stages_and_event_loop_agree(name):
     pulse = rocking.get_pulse(name)
-    s, w, eta = cells(1200, SIGNED.index(name))
+    s, w, eta = cells(500, SIGNED.index(name))
     stages, loop = by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta)
     # where the peaks of two uplifts differ by rounding only, which 1/(1 - s) amplifies, either may be the first
     tie = (stages["peak_mode"] - loop["peak_mode"]) % 65536 == 0
