@@ -11,6 +11,7 @@ import ast
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -70,18 +71,29 @@ def _package(root: Path) -> tuple[Path, ...]:
     return tuple((root / "rocking").rglob("*.py"))
 
 
-def _imported_files(path: Path, root: Path) -> Iterable[Path]:
-    for node in ast.walk(ast.parse(path.read_bytes())):
+@lru_cache(maxsize=1024)
+def _imports(source: bytes) -> tuple[tuple[str, str | None, int], ...]:
+    """The names that a module imports, with the module of which each may be an attribute, and the relative level.
+
+    Kept by the content: every rule of the workflow asks for the digest of its code, and most share their modules.
+    """
+    found: list[tuple[str, str | None, int]] = []
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield from _module_files(alias.name, root)
+            found += [(alias.name, None, 0) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                parts = path.relative_to(root).parts[: -node.level]
-                base = ".".join([*parts, *([base] if base else [])])
-            for alias in node.names:
-                yield from _module_files(f"{base}.{alias.name}", root, attribute_of=base)
+            found += [(alias.name, node.module or "", node.level) for alias in node.names]
+    return tuple(found)
+
+
+def _imported_files(path: Path, root: Path) -> Iterable[Path]:
+    for name, base, level in _imports(path.read_bytes()):
+        if base is None:
+            yield from _module_files(name, root)
+            continue
+        parts = path.relative_to(root).parts[:-level] if level else ()
+        full = ".".join([*parts, *([base] if base else [])])
+        yield from _module_files(f"{full}.{name}", root, attribute_of=full)
 
 
 def _module_files(name: str, root: Path, attribute_of: str | None = None) -> Iterable[Path]:
