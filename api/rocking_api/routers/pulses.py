@@ -92,7 +92,7 @@ def _definition(name: str) -> str:
     """The first line of the documentation of a pulse of the package."""
     if name not in pulses.PULSE_NAMES:
         return "registered in this process"
-    return inspect.getdoc(getattr(pulses, name)).partition("\n")[0]  # type: ignore[union-attr]  # each has one
+    return (inspect.getdoc(getattr(pulses, name)) or "").partition("\n")[0]
 
 
 def _parameters(name: str) -> list[PulseParameter]:

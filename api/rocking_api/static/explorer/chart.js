@@ -59,6 +59,22 @@ export function chart(place, options, data) {
   return made;
 }
 
+/** A dashed vertical line over the height of a chart at a value of its x axis, if that is in view. */
+export function markValue(u, value) {
+  const { ctx, bbox } = u;
+  const x = u.valToPos(value, "x", true);
+  if (!(x >= bbox.left && x <= bbox.left + bbox.width)) return;
+  ctx.save();
+  ctx.strokeStyle = themed("ink");
+  ctx.lineWidth = 1.5 * devicePixelRatio;
+  ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(x, bbox.top);
+  ctx.lineTo(x, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.restore();
+}
+
 /** The canvas of a chart, for a picture of it. */
 export function canvasOf(place) {
   return place.querySelector("canvas");

@@ -1,6 +1,6 @@
 // The response over the scale of a record: peak rotation, and where the block overturns.
 
-import { axis, chart } from "./chart.js";
+import { axis, chart, markValue } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { distinct, number } from "./labels.js";
 
@@ -27,7 +27,7 @@ export function drawScales(found, answer) {
       },
       hooks: {
         drawClear: [(u) => shade(u, found)],
-        draw: [(u) => mark(u, scale)],
+        draw: [(u) => markValue(u, scale)],
         setCursor: [({ cursor }) => (caption.textContent = readout(found, answer, cursor.idx))],
       },
     },
@@ -65,20 +65,6 @@ function shade(u, { thresholds, scale }) {
     const right = u.valToPos(thresholds[at + 1]?.scale ?? scale.at(-1), "x", true);
     ctx.fillRect(left, bbox.top, right - left, bbox.height);
   });
-  ctx.restore();
-}
-
-function mark(u, scale) {
-  const { ctx, bbox } = u;
-  const x = u.valToPos(scale, "x", true);
-  ctx.save();
-  ctx.strokeStyle = themed("ink");
-  ctx.lineWidth = 1.5 * devicePixelRatio;
-  ctx.setLineDash([5 * devicePixelRatio, 4 * devicePixelRatio]);
-  ctx.beginPath();
-  ctx.moveTo(x, bbox.top);
-  ctx.lineTo(x, bbox.top + bbox.height);
-  ctx.stroke();
   ctx.restore();
 }
 

@@ -1,7 +1,7 @@
 // The rocking spectrum at the chosen slenderness: peak against frequency ratio, other restitutions beside it.
 
 import { ask, urlOf } from "./api.js";
-import { axis, chart, chartsReady } from "./chart.js";
+import { axis, chart, chartsReady, markValue } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { pane } from "./pane.js";
 import { number } from "./labels.js";
@@ -68,7 +68,7 @@ function draw(scenario, [chosen, ...others]) {
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, Math.max(1.2, high * 1.2)] } },
       hooks: {
         drawClear: [(u) => shadeOverturning(u, chosen)],
-        draw: [(u) => markPoint(u, scenario.point), (u) => labelOthers(u, others)],
+        draw: [(u) => markValue(u, scenario.point.frequency_ratio), (u) => labelOthers(u, others)],
         setCursor: [tell],
       },
     },
@@ -135,20 +135,5 @@ function labelOthers(u, others) {
     ctx.strokeText(`η ${number(OTHERS[n], 2)}`, x, y);
     ctx.fillText(`η ${number(OTHERS[n], 2)}`, x, y);
   });
-  ctx.restore();
-}
-
-function markPoint(u, point) {
-  const { ctx, bbox } = u;
-  const x = u.valToPos(point.frequency_ratio, "x", true);
-  if (!(x >= bbox.left && x <= bbox.left + bbox.width)) return;
-  ctx.save();
-  ctx.strokeStyle = themed("ink");
-  ctx.lineWidth = 1.5 * devicePixelRatio;
-  ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
-  ctx.beginPath();
-  ctx.moveTo(x, bbox.top);
-  ctx.lineTo(x, bbox.top + bbox.height);
-  ctx.stroke();
   ctx.restore();
 }
