@@ -36,8 +36,8 @@ from rocking.excitation.records.record import UNITS, Record
 from rocking.model.block import Block
 from rocking.model.checks import check
 from rocking.model.parameters import RESTITUTION
-from rocking.suites.fragility import check_demands
-from rocking.suites.hazard import check_hazard_curve
+from rocking.suites.demand import check_demands
+from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ state, is given for comparison only: it is the usual result of incremental dynam
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,17 +16,15 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
+from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import LINKS, CurveFit, FitStatus, binomial_interval, curve_probability, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
 
 Array = NDArray[np.float64]
-
-MAX_THRESHOLD = 1e3
-"""Largest threshold of max |theta|/alpha [-]; at 90 degrees a block of alpha = 0.1 degrees is at 900."""
 
 COMPARISON = "for comparison: a record counts from the lowest level on at which it reaches the limit state"
 
@@ -191,33 +189,6 @@ _STATUS_ATTRIBUTES: dict[str, Any] = {
     "flag_meanings": " ".join(status.name.lower() for status in FitStatus),
     "comment": "; ".join(f"{status.name.lower()}: {status.sentence}" for status in FitStatus),
 }
-
-
-def label(limit: str | float) -> str:
-    """The name of a limit state in results: overturning, alpha, or such as `0.5 alpha`."""
-    return limit if isinstance(limit, str) else f"{limit:g} alpha"
-
-
-def check_demands(demand: str | float | Iterable[str | float]) -> list[str | float]:
-    """The limit states, thresholds as floats.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If one is not allowed, there is none, or two are equal.
-    """
-    given = [demand] if isinstance(demand, str) or np.ndim(demand) == 0 else list(demand)  # type: ignore[arg-type]
-    found: list[str | float] = []
-    for limit in given:
-        if isinstance(limit, str):
-            if limit not in ("overturning", "alpha"):
-                raise InvalidArgumentError("demand", limit, "overturning, alpha, or a threshold of max |theta|/alpha")
-            found.append(limit)
-        else:
-            found.append(float(in_range("demand", limit, 0.0, MAX_THRESHOLD, closed="right")))  # type: ignore[arg-type]
-    if not found or len({label(limit) for limit in found}) != len(found):
-        raise InvalidArgumentError("demand", demand, "one or more different limit states")
-    return found
 
 
 def _reached(outcomes: xr.Dataset, limit: str | float) -> NDArray[np.bool_]:

@@ -18,8 +18,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError
 from rocking.suites.fits import curve_probability
+from rocking.suites.hazard_curve import check_hazard_curve
 
 Array = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     """
     if not {"median_intensity", "dispersion", "model"} <= {*fragility.variables}:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
-    x, rates = check_hazard_curve(hazard_curve)
+    x, rates = check_hazard_curve(_pair(hazard_curve))
     weights, nodes = _quadrature(x, rates)
     found = xr.full_like(fragility["median_intensity"], np.nan)
     at_end = xr.full_like(fragility["median_intensity"], np.nan)
@@ -77,31 +78,13 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     )
 
 
-def check_hazard_curve(hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> tuple[Array, Array]:
-    """Intensities and annual rates of a hazard curve, as `annual_rate` describes them.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If they are not.
-    """
-    if isinstance(hazard_curve, xr.DataArray):
-        if hazard_curve.dims != ("intensity",):
-            raise InvalidArgumentError("hazard_curve", hazard_curve.dims, "the one dimension `intensity`")
-        given: tuple[ArrayLike, ArrayLike] = (hazard_curve["intensity"].values, hazard_curve.values)
-    else:
-        given = hazard_curve
-    if len(given) != 2:
-        raise InvalidArgumentError("hazard_curve", f"{len(given)} arrays", "intensities and annual rates")
-    x = in_range("hazard_curve intensity", given[0], 0.0, math.inf, closed="neither")
-    rates = in_range("hazard_curve rate", given[1], 0.0, math.inf, closed="neither", unit="1/year")
-    if x.ndim != 1 or x.size < 2 or x.shape != rates.shape or not np.all(np.diff(x) > 0.0):
-        raise InvalidArgumentError(
-            "hazard_curve", (x.shape, rates.shape), "ascending intensities, two at least, and rates"
-        )
-    if np.any(np.diff(rates) > 0.0):
-        raise InvalidArgumentError("hazard_curve", rates.tolist(), "annual rates of exceedance that do not increase")
-    return x, rates
+def _pair(hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> tuple[ArrayLike, ArrayLike]:
+    """Intensities and rates of either form of the argument."""
+    if not isinstance(hazard_curve, xr.DataArray):
+        return hazard_curve
+    if hazard_curve.dims != ("intensity",):
+        raise InvalidArgumentError("hazard_curve", hazard_curve.dims, "the one dimension `intensity`")
+    return hazard_curve["intensity"].values, hazard_curve.values
 
 
 def _quadrature(x: Array, rates: Array) -> tuple[Array, Array]:

@@ -97,6 +97,16 @@ def test_a_response_in_groups_loads_the_solver_only() -> None:
     assert done.stdout.split() == []
 
 
+def test_every_process_of_a_run_reads_its_rules_without_heavy_imports() -> None:
+    modules = re.findall(r"^from ((?:rocking|workflow)[\w.]*) import", TEXTS["workflow/rules/common.smk"], re.MULTILINE)
+    assert len(modules) > 4
+    program = (
+        f"import sys, {', '.join(modules)}; print(*({{'numba', 'scipy', 'xarray', 'matplotlib'}} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
 def headings(text: str) -> set[str]:
     """Anchors of a Markdown page as GitHub makes them."""
     titles = re.findall(r"^#+ (.*)$", text, re.MULTILINE)

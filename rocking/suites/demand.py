@@ -1,0 +1,42 @@
+"""Limit states of a block whose probability is asked for: overturning, rotations of alpha, or a threshold.
+
+Separate from `fragility`, so that a configuration is checked without the imports of the statistics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from rocking.errors import InvalidArgumentError, in_range
+
+MAX_THRESHOLD = 1e3
+"""Largest threshold of max |theta|/alpha [-]; at 90 degrees a block of alpha = 0.1 degrees is at 900."""
+
+
+def label(limit: str | float) -> str:
+    """The name of a limit state in results: overturning, alpha, or such as `0.5 alpha`."""
+    return limit if isinstance(limit, str) else f"{limit:g} alpha"
+
+
+def check_demands(demand: str | float | Iterable[str | float]) -> list[str | float]:
+    """The limit states, thresholds as floats.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If one is not allowed, there is none, or two are equal.
+    """
+    given = [demand] if isinstance(demand, str) or np.ndim(demand) == 0 else list(demand)  # type: ignore[arg-type]
+    found: list[str | float] = []
+    for limit in given:
+        if isinstance(limit, str):
+            if limit not in ("overturning", "alpha"):
+                raise InvalidArgumentError("demand", limit, "overturning, alpha, or a threshold of max |theta|/alpha")
+            found.append(limit)
+        else:
+            found.append(float(in_range("demand", limit, 0.0, MAX_THRESHOLD, closed="right")))  # type: ignore[arg-type]
+    if not found or len({label(limit) for limit in found}) != len(found):
+        raise InvalidArgumentError("demand", demand, "one or more different limit states")
+    return found
