@@ -116,31 +116,33 @@ def _middles(
     outward = np.where(one.side == 1, -1.0, 1.0)
     width = np.minimum(one.width, two.width)
     near = np.clip(0.3 * np.abs(bend), 1e-8, 0.4 * width)
-    inside, beyond, found = np.empty(y.size), np.empty(y.size), np.zeros(y.size, dtype=bool)
+    ends, margins, met = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
+    found = np.zeros(y.size, dtype=bool)
     for _ in range(WIDENINGS):
         lost = np.flatnonzero(~found)
         if not lost.size:
             break
-        inside[lost] = guess[lost] - outward[lost] * near[lost]
-        beyond[lost] = guess[lost] + outward[lost] * near[lost]
-        codes, _ = classify(np.stack([inside[lost], beyond[lost]]), y[lost], one.eta[lost])
-        found[lost] = (codes[0] == one.own[lost]) & (codes[1] != one.own[lost])
+        reach = (outward * near)[lost, None] * [-1.0, 1.0]
+        ends[lost] = guess[lost, None] + reach
+        codes, margins[lost] = classify(ends[lost], y[lost, None], one.eta[lost, None])
+        met[lost] = codes[:, 1]
+        found[lost] = (codes[:, 0] == one.own[lost]) & (codes[:, 1] != one.own[lost])
         near = np.minimum(8.0 * near, 0.4 * width)
     lost = np.flatnonzero(~found)
     if lost.size:
         reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
-        inside[lost], beyond[lost], found[lost] = _scan(
+        ends[lost], margins[lost], met[lost], found[lost] = _scan(
             guess[lost], outward[lost], reach, one.own[lost], y[lost], one.eta[lost], classify
         )
     slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
-    distance = np.maximum(np.abs(inside - chord), np.abs(beyond - chord)) / np.hypot(1.0, slope)
+    distance = np.abs(ends - chord[:, None]).max(axis=1) / np.hypot(1.0, slope)
     for resolution in (FINE * largest, np.full(y.size, RESOLUTION)):  # the second one for new vertices only
         k = np.flatnonzero(found & (distance > largest))
         points = np.stack([chord[k], y[k], one.eta[k]], axis=1)
-        ends = np.stack([inside[k], beyond[k]], axis=1)
-        inside[k], beyond[k] = refine_brackets(0, points, ends, one.own[k], classify, resolution[k])
-        distance[k] = np.maximum(np.abs(inside - chord), np.abs(beyond - chord))[k] / np.hypot(1.0, slope[k])
-    middle = Chains(one.chain, one.eta, inside, y, one.own, one.neighbour, one.side, width)
+        refined = refine_brackets(0, points, ends[k], margins[k], one.own[k], met[k], classify, resolution[k])
+        ends[k], margins[k], met[k] = refined.ends, refined.margins, refined.met
+        distance[k] = np.abs(ends[k] - chord[k, None]).max(axis=1) / np.hypot(1.0, slope[k])
+    middle = Chains(one.chain, one.eta, ends[:, 0], y, one.own, one.neighbour, one.side, width)
     return middle, found, distance
 
 
@@ -165,16 +167,16 @@ def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
 
 def _scan(
     guess: Floats, outward: Floats, reach: Floats, own: Codes, y: Floats, eta: Floats, classify: Classify
-) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Points within and beyond the region next to each other, and whether they are.
+) -> tuple[Floats, Floats, Codes, NDArray[np.bool_]]:
+    """Points within and beyond the region next to each other (points, 2), the margins there, the code beyond.
 
-    They are the nearest such pair to the guess among equally spaced points.
+    They are the nearest such pair to the guess among equally spaced points; last, whether there is one.
     """
     shares = np.linspace(-1.0, 1.0, SCAN)
-    x = guess[:, None] + outward[:, None] * reach[:, None] * shares
-    codes, _ = classify(np.clip(x, 1e-6, 1.0), y[:, None], eta[:, None])
+    x = np.clip(guess[:, None] + outward[:, None] * reach[:, None] * shares, 1e-6, 1.0)
+    codes, margins = classify(x, y[:, None], eta[:, None])
     within = codes == own[:, None]
     leaves = within[:, :-1] & ~within[:, 1:]
     k = np.argmin(np.where(leaves, np.abs(shares[:-1]), np.inf), axis=1)
-    rows = np.arange(guess.size)
-    return x[rows, k], x[rows, k + 1], leaves.any(axis=1)
+    rows, pair = np.arange(guess.size)[:, None], k[:, None] + [0, 1]
+    return x[rows, pair], margins[rows, pair], codes[rows[:, 0], k + 1], leaves.any(axis=1)
