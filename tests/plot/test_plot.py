@@ -69,6 +69,11 @@ def test_history_of_a_record_and_in_groups(ax):
     assert plot.history(history, color="k").get_xlabel() == r"time $\tau=p\,t$ [-]"
 
 
+def test_response_to_a_record_is_refused_as_a_curve_over_the_amplitude():
+    with pytest.raises(InvalidArgumentError, match=r"rocking\.plot\.history"):
+        plot.response(BLOCK.response(noise(3)))
+
+
 def test_response_between_its_thresholds(ax):
     found = BLOCK.response("sine", **PULSE)
     plot.response(found, ax)
