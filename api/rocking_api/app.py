@@ -40,6 +40,7 @@ from rocking_api.routers import (
     response,
     spectrum,
     subset,
+    suites,
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
@@ -48,7 +49,15 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
-    *(pulses, subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
+    *(
+        pulses,
+        suites,
+        subset,
+        datasets,
+        health,
+        metrics,
+        pages,
+    ),  # a name may have slashes: /subset is matched before names
 )
 
 
