@@ -36,7 +36,7 @@ for scale, above in zip(scales.scale[:6], scales.overturns_above[:6], strict=Tru
 
 history = block.history(motion, scale=1.2, duration=30.0)
 figure, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
-rocking.plot.history(history, axes[0])
+rocking.plot.history(history, axes[0]).set_xlabel("")
 rocking.plot.ground_acceleration(history, axes[1], linewidth=0.6)
 plt.show()
 

@@ -32,6 +32,7 @@ from rocking_api.routers import (
     guide,
     health,
     history,
+    metadata,
     metrics,
     overturning,
     pages,
@@ -49,15 +50,8 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
-    *(
-        pulses,
-        suites,
-        subset,
-        datasets,
-        health,
-        metrics,
-        pages,
-    ),  # a name may have slashes: /subset is matched before names
+    *(pulses, metadata, suites),
+    *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 
 

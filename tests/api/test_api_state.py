@@ -116,6 +116,7 @@ def test_openapi_describes_every_route(client):
         "/v1/records/scales",
         "/v1/records/pulse",
         "/v1/pulses",
+        "/v1/metadata",
         "/v1/suites",
         "/v1/suites/{name}",
         "/v1/datasets/{name}/subset",
