@@ -82,6 +82,8 @@ def test_margins_and_quantiles_follow_from_the_outcomes(suite, files):
 
 
 def test_unknown_and_damaged_suites_are_refused(client, own_results):
+    for name in ("none", "%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
+        assert client.get(f"/v1/suites/{name}").status_code == 404
     assert_problem(client.get("/v1/suites/none"), 404, "name")
     path = own_results / "suites" / "demonstration" / "fragility.nc"
     path.unlink()
