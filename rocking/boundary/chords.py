@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
 from rocking.boundary.columns import Index
-from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Codes, Floats, refine_brackets
+from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
-SCAN = 31
-"""Points by which a region is looked for at the middle of a chord [-]."""
+SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
+"""Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the
+distance at which it may lie [-]."""
 
 WIDENINGS = 4
 """Times that the distance at which the two sides of a curve are looked for is widened [-]."""
@@ -116,31 +117,38 @@ def _middles(
     outward = np.where(one.side == 1, -1.0, 1.0)
     width = np.minimum(one.width, two.width)
     near = np.clip(0.3 * np.abs(bend), 1e-8, 0.4 * width)
-    inside, beyond, found = np.empty(y.size), np.empty(y.size), np.zeros(y.size, dtype=bool)
+    ends, margins, met = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
+    found = np.zeros(y.size, dtype=bool)
     for _ in range(WIDENINGS):
         lost = np.flatnonzero(~found)
         if not lost.size:
             break
-        inside[lost] = guess[lost] - outward[lost] * near[lost]
-        beyond[lost] = guess[lost] + outward[lost] * near[lost]
-        codes, _ = classify(np.stack([inside[lost], beyond[lost]]), y[lost], one.eta[lost])
-        found[lost] = (codes[0] == one.own[lost]) & (codes[1] != one.own[lost])
+        reach = (outward * near)[lost, None] * [-1.0, 1.0]
+        ends[lost] = guess[lost, None] + reach
+        codes, margins[lost] = classify(ends[lost], y[lost, None], one.eta[lost, None])
+        met[lost] = codes[:, 1]
+        found[lost] = (codes[:, 0] == one.own[lost]) & (codes[:, 1] != one.own[lost])
         near = np.minimum(8.0 * near, 0.4 * width)
-    lost = np.flatnonzero(~found)
-    if lost.size:
+    for shares in SCANS:
+        lost = np.flatnonzero(~found)
+        if not lost.size:
+            break
         reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
-        inside[lost], beyond[lost], found[lost] = _scan(
-            guess[lost], outward[lost], reach, one.own[lost], y[lost], one.eta[lost], classify
-        )
+        x = np.clip(guess[lost, None] + (outward[lost] * reach)[:, None] * shares, 1e-6, 1.0)
+        codes, at = classify(x, y[lost, None], one.eta[lost, None])
+        k, found[lost] = _nearest_end(codes == one.own[lost, None])
+        rows = np.arange(lost.size)
+        ends[lost], margins[lost] = (np.stack([each[rows, k], each[rows, k + 1]], axis=1) for each in (x, at))
+        met[lost] = codes[rows, k + 1]
     slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
-    distance = np.maximum(np.abs(inside - chord), np.abs(beyond - chord)) / np.hypot(1.0, slope)
+    distance = np.abs(ends - chord[:, None]).max(axis=1) / np.hypot(1.0, slope)
     for resolution in (FINE * largest, np.full(y.size, RESOLUTION)):  # the second one for new vertices only
         k = np.flatnonzero(found & (distance > largest))
         points = np.stack([chord[k], y[k], one.eta[k]], axis=1)
-        ends = np.stack([inside[k], beyond[k]], axis=1)
-        inside[k], beyond[k] = refine_brackets(0, points, ends, one.own[k], classify, resolution[k])
-        distance[k] = np.maximum(np.abs(inside - chord), np.abs(beyond - chord))[k] / np.hypot(1.0, slope[k])
-    middle = Chains(one.chain, one.eta, inside, y, one.own, one.neighbour, one.side, width)
+        refined = refine_brackets(0, points, ends[k], margins[k], one.own[k], met[k], classify, resolution[k])
+        ends[k], margins[k], met[k] = refined.ends, refined.margins, refined.met
+        distance[k] = np.abs(ends[k] - chord[k, None]).max(axis=1) / np.hypot(1.0, slope[k])
+    middle = Chains(one.chain, one.eta, ends[:, 0], y, one.own, one.neighbour, one.side, width)
     return middle, found, distance
 
 
@@ -163,18 +171,8 @@ def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
     return bend, np.where(known.all(axis=0), np.abs(bends[0] - bends[1]), np.inf)
 
 
-def _scan(
-    guess: Floats, outward: Floats, reach: Floats, own: Codes, y: Floats, eta: Floats, classify: Classify
-) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Points within and beyond the region next to each other, and whether they are.
-
-    They are the nearest such pair to the guess among equally spaced points.
-    """
-    shares = np.linspace(-1.0, 1.0, SCAN)
-    x = guess[:, None] + outward[:, None] * reach[:, None] * shares
-    codes, _ = classify(np.clip(x, 1e-6, 1.0), y[:, None], eta[:, None])
-    within = codes == own[:, None]
+def _nearest_end(within: NDArray[np.bool_]) -> tuple[Index, NDArray[np.bool_]]:
+    """The last point within a region nearest to the middle one of some points in a row, and whether there is one."""
     leaves = within[:, :-1] & ~within[:, 1:]
-    k = np.argmin(np.where(leaves, np.abs(shares[:-1]), np.inf), axis=1)
-    rows = np.arange(guess.size)
-    return x[rows, k], x[rows, k + 1], leaves.any(axis=1)
+    distance = np.abs(np.arange(leaves.shape[1]) - leaves.shape[1] // 2)
+    return np.argmin(np.where(leaves, distance, np.inf), axis=1), np.asarray(leaves.any(axis=1))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, merge_nodes, refine_lines, without_layers
+from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, refine_lines, without_layers
 
 THINNEST = 1e-6
 """Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
@@ -30,15 +30,15 @@ class Column:
         Region codes, see `region_code`.
     bottom, top : float
         1/a at the two ends [-].
+    thinnest : float
+        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
     middle : float array (thresholds,)
         1/a of each threshold, halfway between its two regions [-].
-    kinds : list of (int, int) (thresholds,)
-        Region codes below and above each threshold.
-    secant, step : float arrays (2, thresholds)
-        Slope of the chord of the boundary curve that ends at each threshold, and its width in log omega: of the one
-        from the left (row 0) and of the one from the right (row 1); nan where unknown.
-    curvature : float array (2, thresholds)
-        Second derivative of 1/a with respect to log omega there, from the last two chords; nan where unknown.
+    regions : int array (thresholds + 1,)
+        The codes as an array.
+    trends : float array (2, thresholds, 4)
+        How the boundary curve goes that ends at each threshold, see `rocking.boundary.trends`: known from the left
+        (row 0) and from the right (row 1); nan where unknown.
     whole, offset : Column, int
         The column that this one is a part of, and the index of its first threshold there.
     """
@@ -50,29 +50,27 @@ class Column:
     codes: list[int]
     bottom: float
     top: float
+    thinnest: float = THINNEST
     middle: Floats = field(init=False)
-    secant: Floats = field(init=False)
-    step: Floats = field(init=False)
-    curvature: Floats = field(init=False)
-    kinds: list[tuple[int, int]] = field(init=False)
+    regions: Codes = field(init=False)
+    trends: Floats = field(init=False)
     whole: Column = field(init=False)
     offset: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
-        self.secant, self.step, self.curvature = np.full((3, 2, self.below.size), np.nan)
+        self.regions = np.array(self.codes, dtype=np.int64)
+        self.trends = np.full((2, self.below.size, 4), np.nan)
         self.whole = self
         self.middle = 0.5 * (self.below + self.above)
-        self.kinds = [*zip(self.codes[:-1], self.codes[1:], strict=True)]
 
     def code_at(self, x: Floats) -> Codes:
         """Region code at points between the two ends."""
-        return np.asarray(self.codes)[np.searchsorted(self.middle, x)]
+        return self.regions[np.searchsorted(self.middle, x)]
 
-    def slope(self, side: int) -> Floats:
-        """Derivative of 1/a with respect to log omega at each threshold, known from one side; nan where unknown."""
-        bend = 0.5 * (1 - 2 * side) * self.step[side] * self.curvature[side]
-        slope: Floats = self.secant[side] + np.where(np.isnan(bend), 0.0, bend)
-        return slope
+    def least_width(self, inner: Index) -> Floats:
+        """Widths in 1/a below which the regions above some thresholds are not resolved [-]."""
+        below, own, above = (self.regions[inner + k] == UNCOUNTED for k in range(3))
+        return np.where(own | (below & above), self.thinnest, THINNEST)
 
     def between(self, first: int, last: int) -> Column:
         """The thresholds from `first` to before `last`, and the regions beside them."""
@@ -80,9 +78,16 @@ class Column:
         top = self.below[last] if last < self.below.size else self.top
         cut = slice(first, last)
         part = Column(
-            self.eta, self.log_omega, self.below[cut], self.above[cut], self.codes[first : last + 1], bottom, top
+            self.eta,
+            self.log_omega,
+            self.below[cut],
+            self.above[cut],
+            self.codes[first : last + 1],
+            bottom,
+            top,
+            self.thinnest,
         )
-        part.secant, part.step, part.curvature = self.secant[:, cut], self.step[:, cut], self.curvature[:, cut]
+        part.trends = self.trends[:, cut]
         part.whole, part.offset = self.whole, self.offset + first
         return part
 
@@ -104,25 +109,19 @@ class Lines:
         self.points = points
         self.classify = classify
         self.thinnest = thinnest
-        self.nodes: list[tuple[Floats, Codes]] = [(np.empty(0), np.empty(0, dtype=np.int64))] * len(points)
+        self.nodes: dict[int, Nodes] = {}
 
-    def add(self, line: Index, x: Floats, codes: Codes) -> dict[int, Column]:
+    def add(self, new: Nodes) -> dict[int, Column]:
         """Take in classified nodes, refine all changes between neighbours, and give the columns of these lines."""
-        touched = np.unique(line)
-        known = [self.nodes[k] for k in touched]
-        line, x, codes = merge_nodes(
-            np.concatenate([line, np.repeat(touched, [old[0].size for old in known])]),
-            np.concatenate([x, *(old[0] for old in known)]),
-            np.concatenate([codes, *(old[1] for old in known)]),
-        )
-        line, x, codes = refine_lines(0, self.points, line, x, codes, self.classify, THINNEST, 0.5 * self.thinnest)
-        edge = (np.diff(line) != 0) | (np.diff(codes) != 0)
-        kept = np.append(True, edge) | np.append(edge, True)  # the ends of every run
-        line, x, codes = line[kept], x[kept], codes[kept]
-        bounds = np.append(np.searchsorted(line, touched), line.size)
+        touched = np.unique(new.line).tolist()
+        nodes = Nodes.merged([new, *(self.nodes[k] for k in touched if k in self.nodes)])
+        nodes = refine_lines(0, self.points, nodes, self.classify, THINNEST, 0.5 * self.thinnest)
+        edge = (np.diff(nodes.line) != 0) | (np.diff(nodes.codes) != 0)
+        nodes = nodes.take(np.append(True, edge) | np.append(edge, True))  # the ends of every run
+        bounds = np.append(np.searchsorted(nodes.line, touched), nodes.line.size).tolist()
         for k, first, last in zip(touched, bounds[:-1], bounds[1:], strict=True):
-            self.nodes[k] = x[first:last], codes[first:last]
-        return {int(k): column for k, column in zip(touched, self._columns(line, x, codes), strict=True)}
+            self.nodes[k] = nodes.take(slice(first, last))
+        return dict(zip(touched, self._columns(nodes.line, nodes.x, nodes.codes), strict=True))
 
     def _columns(self, line: Index, x: Floats, codes: Codes) -> list[Column]:
         """A column for each line of some nodes, without the regions that are too thin."""
@@ -149,6 +148,7 @@ class Lines:
                 codes[a:b].tolist(),
                 float(low[a]),
                 float(high[b - 1]),
+                float(self.thinnest[line[a]]),
             )
             for a, b in zip(first, np.append(first[1:], line.size), strict=True)
         ]

@@ -9,6 +9,7 @@ import numpy as np
 from rocking.boundary.columns import THINNEST, Column, Index
 from rocking.boundary.matching import Pairs
 from rocking.boundary.search import Codes, Floats
+from rocking.boundary.trends import follow_trends
 
 PROBES = 81
 """Most points by which a region is looked for in one column [-]."""
@@ -68,24 +69,8 @@ def courses_of(column: Column, inner: Index, side: int, step: float, at: Floats,
     at, shift : float arrays
         Ascending 1/a, and by how much curves there move: it counts where slopes are not known [-].
     """
-    low, high = column.above[inner], column.below[inner + 1]
-    middle, width = 0.5 * (low + high), high - low
-    slope, curvature = (
-        np.stack([each[inner], each[inner + 1]]) for each in (column.slope(side), column.curvature[side])
-    )
-    if at.size:
-        beside = np.interp(middle, at, shift)
-        nearby = 0.5 * np.abs(np.interp(high, at, shift) - beside) + 0.3 * np.abs(beside)
-    else:
-        beside, nearby = np.zeros(inner.size), np.full(inner.size, 0.1 * abs(step))
-    straight, bend = slope.mean(axis=0) * step, 0.5 * curvature.mean(axis=0) * step * step
-    known, bent = np.isfinite(straight), np.isfinite(straight + bend)
-    moved = np.where(bent, straight + bend, np.where(known, straight, beside))
-    uncertain = np.maximum(0.2 * np.abs(beside - straight), 0.02 * np.abs(straight))
-    error = np.where(bent, 0.5 * np.abs(bend), np.where(known, uncertain, nearby))
-    narrow = np.clip(width + (slope[1] - slope[0]) * step, 0.1 * width, width)
-    codes = np.asarray(column.codes)[inner + 1]
-    return Courses(codes, middle + moved, np.where(known, narrow, width), np.maximum(1.5 * width, 2.0 * error))
+    found = follow_trends(column.below, column.above, inner, column.trends[side], side, step, at, shift)
+    return Courses(column.regions[inner + 1], *found)
 
 
 def probes_for_lost_regions(
@@ -93,16 +78,15 @@ def probes_for_lost_regions(
 ) -> list[tuple[Column, Floats, tuple[float, int]]]:
     """Points at which regions that one of two columns lacks are looked for in it, and a key of the region."""
     found: list[tuple[Column, Floats, tuple[float, int]]] = []
-    matched = np.array(pairs, dtype=np.intp).reshape(-1, 2)
     for side, column, other in ((0, left, right), (1, right, left)):
         lost = np.ones(column.below.size, dtype=bool)
-        lost[matched[:, side]] = False
+        lost[pairs[:, side]] = False
         inner = np.flatnonzero(lost[:-1] & lost[1:])
         if not inner.size:
             continue
         step = other.log_omega - column.log_omega
-        at = column.middle[matched[:, side]]
-        shift = other.middle[matched[:, 1 - side]] - at
+        at = column.middle[pairs[:, side]]
+        shift = other.middle[pairs[:, 1 - side]] - at
         for points in courses_of(column, inner, side, step, at, shift).points():
             x = points[(points > other.bottom) & (points < other.top)]
             if x.size:

@@ -5,9 +5,9 @@ A point is 1/a, log omega and the restitution.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,13 @@ MOST_IMPACTS = 32
 
 UNCOUNTED = -1
 """Region code of overturning whose impacts are not counted, and the `impacts` of its curves."""
+
+LARGE_MARGIN = 10.0
+"""Margin beyond which its logarithm counts where points are interpolated [-].
+
+On the brackets of the cosine at 0 and 20 degrees the mean number of points differs by less than 5 % from 3 to 30, and
+from that without the logarithm, with which fewer brackets take more than 25 points: 8 in place of 10 %.
+"""
 
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
@@ -89,20 +96,35 @@ def without_layers(codes: Codes) -> Codes:
 
 
 class Work:
-    """Impacts that the solver has followed, and blocks, at each restitution: what the search for curves has cost."""
+    """Impacts that the solver has followed, and blocks, at each restitution: what the search for curves has cost.
 
-    def __init__(self) -> None:
-        self._done: Counter[float] = Counter()
+    Parameters
+    ----------
+    etas : float array (restitutions,)
+        Ascending, each once [-].
+    """
+
+    def __init__(self, etas: Floats) -> None:
+        self._etas = etas
+        self._done = np.zeros(etas.size)
 
     def add(self, eta: Floats, impacts: NDArray[np.int32]) -> None:
         """Count blocks and their impacts, arrays of one shape."""
-        values, which = np.unique(eta, return_inverse=True)
-        done = np.bincount(which.ravel(), 1.0 + impacts.ravel())
-        self._done.update({float(value): int(amount) for value, amount in zip(values, done, strict=True)})
+        which = np.searchsorted(self._etas, eta.ravel())
+        self._done += np.bincount(which, 1.0 + impacts.ravel(), self._etas.size)
 
-    def at(self, eta: float) -> int:
+    def at(self, eta: float) -> float:
         """Impacts and blocks at one restitution so far."""
-        return self._done[eta]
+        return float(self._done[np.searchsorted(self._etas, eta)])
+
+
+@dataclass(frozen=True)
+class Found:
+    """What the solver has found for some blocks, see `Outcomes`; arrays of one shape."""
+
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    chatter: NDArray[np.bool_]
 
 
 def classifier(
@@ -130,22 +152,83 @@ def classifier(
         groups = np.broadcast_arrays(slenderness, omega, eta, angle)
         cells = [contiguous_array(group).ravel() for group in groups]
         records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
-        found: Any = records.view(np.recarray).reshape(groups[0].shape)
         if work is not None:
-            work.add(groups[2], found.impacts)
-        return code_of(found), outcome_margin(found.end_rotation, found.end_velocity, groups[2], groups[3])
+            work.add(cells[2], records["impacts"])
+        codes = code_of(Found(*(records[name] for name in ("outcome", "impacts", "chatter"))))
+        margin = outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
+        return codes.reshape(groups[0].shape), margin.reshape(groups[0].shape)
 
     return classify
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Classified points on lines of the control space; arrays (nodes,).
+
+    Attributes
+    ----------
+    line : int array
+        Index of the line.
+    x : float array
+        Coordinate on it.
+    codes : int array
+        Outcome there.
+    margin : float array
+        Its margin to another outcome.
+    """
+
+    line: Index
+    x: Floats
+    codes: Codes
+    margin: Floats
+
+    def take(self, index: Index | NDArray[np.bool_] | slice) -> Nodes:
+        """The nodes of some indices."""
+        return Nodes(self.line[index], self.x[index], self.codes[index], self.margin[index])
+
+    @classmethod
+    def joined(cls, parts: Iterable[Nodes]) -> Nodes:
+        """The nodes of one part after the other."""
+        columns = ((part.line, part.x, part.codes, part.margin) for part in parts)
+        return cls(*map(np.concatenate, zip(*columns, strict=True)))
+
+    @classmethod
+    def merged(cls, parts: Iterable[Nodes]) -> Nodes:
+        """The nodes of all parts in ascending order of line, then coordinate, each once."""
+        together = cls.joined(parts)
+        nodes = together.take(np.lexsort((together.x, together.line)))
+        first = np.ones(nodes.x.size, dtype=bool)
+        first[1:] = (np.diff(nodes.line) != 0) | (np.diff(nodes.x) != 0.0)
+        return nodes.take(first)
+
+
+@dataclass(frozen=True)
+class Brackets:
+    """Brackets of changes of outcome: the outcome of each bracket holds at the first end only.
+
+    Attributes
+    ----------
+    ends, margins : float arrays (points, 2)
+        Coordinates of the two ends, and the margins there.
+    met : int array (points,)
+        Outcomes at the second end.
+    """
+
+    ends: Floats
+    margins: Floats
+    met: Codes
 
 
 def refine_brackets(
     axis: int,
     points: Floats,
     ends: Floats,
+    margins: Floats,
     code: Codes,
+    met: Codes,
     classify: Classify,
     resolution: Floats | float = RESOLUTION,
-) -> tuple[Floats, Floats]:
+) -> Brackets:
     """Shrink brackets along one axis of the control space.
 
     Parameters
@@ -156,7 +239,10 @@ def refine_brackets(
         1/a, log omega and eta of each bracket; the coordinate along the axis does not count.
     ends : float array (points, 2)
         Coordinates of the two ends; the outcome `code` holds at the first one only.
-    code : int array (points,)
+    margins : float array (points, 2)
+        Margins there.
+    code, met : int arrays (points,)
+        Outcomes there.
     classify : Classify
         The solver.
     resolution : float or float array (points,)
@@ -164,47 +250,49 @@ def refine_brackets(
 
     Returns
     -------
-    inside, outside : float arrays (points,)
-        Coordinates at most `resolution` apart: the outcome is `code` at `inside` only.
+    Brackets
+        Their ends at most `resolution` apart.
 
     Notes
     -----
     Chandrupatla's method: the outcome alone decides on which side a point lies; the margin in energy, which is
-    continuous through the change of outcome as a rule, makes it a third of the work of bisection.
+    continuous through the change of outcome as a rule, makes it a third of the work of bisection. The first point lies
+    halfway: there it shows regions between the two ends more often than near one of them.
     """
-
-    def side(x: Floats, which: Index) -> Floats:
-        """Positive where the outcome is `code`."""
-        place = points[which]
-        place[:, axis] = x
-        met, margin = classify(*place.T)
-        distance = 1.0 - 1.0 / (1.0 + np.abs(margin)) + 1e-300
-        return np.where(met == code[which], distance, -distance)
-
+    place, ends, margins, met = points.copy(), ends.copy(), margins.copy(), met.copy()
     # b is the newest end of the bracket, a the other one, c the point before them
     active = np.arange(len(code))
     b, a = ends.T.copy()
-    both = side(np.concatenate([b, a]), np.concatenate([active, active])) if len(code) else np.empty(0)
-    fb, fa = np.split(both, 2)
-    c, fc = a.copy(), fa.copy()
+    fb, fa = _distance(margins[:, 0]), -_distance(margins[:, 1])
+    c, fc = a, fa
     share = np.full(len(code), 0.5)
     least_width = np.broadcast_to(resolution, len(code))
-    found = ends.copy()
     while active.size:
         x = a + share * (b - a)
-        fx = side(x, active)
-        same = np.sign(fx) == np.sign(fa)
+        place[active, axis] = x
+        here, margin = classify(*place[active].T)
+        within = here == code[active]
+        end = np.where(within, 0, 1)
+        ends[active, end], margins[active, end] = x, margin
+        met[active[~within]] = here[~within]
+        fx = np.where(within, 1.0, -1.0) * _distance(margin)
+        same = within == (fa > 0.0)
         c, fc = np.where(same, a, b), np.where(same, fa, fb)
         b, fb = np.where(same, b, a), np.where(same, fb, fa)
         a, fa = x, fx
-        found[active] = np.where((fa > 0.0)[:, None], np.stack([a, b], axis=1), np.stack([b, a], axis=1))
         width = np.abs(b - a)
         left = width > least_width[active]
         active, a, b, c, fa, fb, fc, width = (each[left] for each in (active, a, b, c, fa, fb, fc, width))
         share = _next_share(a, b, c, fa, fb, fc)
         least = 0.5 * least_width[active] / width
         share = np.clip(share, least, 1.0 - least)
-    return found[:, 0], found[:, 1]
+    return Brackets(ends, margins, met)
+
+
+def _distance(margin: Floats) -> Floats:
+    """A positive measure of the distance from a change of outcome: the margin, its logarithm where it is large."""
+    distance: Floats = np.log1p(np.abs(margin) / LARGE_MARGIN) + 1e-300
+    return distance
 
 
 def _next_share(a: Floats, b: Floats, c: Floats, fa: Floats, fb: Floats, fc: Floats) -> Floats:
@@ -219,13 +307,11 @@ def _next_share(a: Floats, b: Floats, c: Floats, fa: Floats, fb: Floats, fc: Flo
 def refine_lines(
     axis: int,
     points: Floats,
-    line: Index,
-    x: Floats,
-    codes: Codes,
+    nodes: Nodes,
     classify: Classify,
     thinnest: float = RESOLUTION,
     layers: Floats | float = RESOLUTION,
-) -> tuple[Index, Floats, Codes]:
+) -> Nodes:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
 
     Parameters
@@ -234,8 +320,8 @@ def refine_lines(
         0 for lines along 1/a, 1 for lines along log omega.
     points : float array (lines, 3)
         1/a, log omega and eta of each line; the coordinate along the axis does not count.
-    line, x, codes : arrays (nodes,)
-        Line, coordinate and outcome of each node, in ascending order of line, then coordinate.
+    nodes : Nodes
+        On these lines, in ascending order of line, then coordinate.
     classify : Classify
         The solver.
     thinnest : float
@@ -245,45 +331,47 @@ def refine_lines(
 
     Returns
     -------
-    line, x, codes : arrays (nodes,)
-        The nodes and both ends of every bracket in which the outcome changes, in the same order.
+    Nodes
+        The nodes and both ends of every bracket in which the outcome changes.
     """
     layers = np.broadcast_to(layers, len(points))
+
+    def refined(inner: Nodes, outer: Nodes) -> tuple[Nodes, Nodes]:
+        """Where the outcome at the inner nodes ends before the outer ones: the last node within, the first beyond."""
+        resolution = _resolution(inner.codes, outer.codes, layers[inner.line])
+        ends, margins = (np.stack(each, axis=1) for each in ((inner.x, outer.x), (inner.margin, outer.margin)))
+        found = refine_brackets(axis, points[inner.line], ends, margins, inner.codes, outer.codes, classify, resolution)
+        (x, beyond), (margin, margin_beyond) = found.ends.T, found.margins.T
+        return Nodes(inner.line, x, inner.codes, margin), Nodes(inner.line, beyond, found.met, margin_beyond)
+
     for _ in range(ROUNDS):
-        change = (np.diff(codes) != 0) & (np.diff(line) == 0)
-        width = np.diff(x)
-        resolution = _resolution(codes[:-1], codes[1:], layers[line[:-1]])
+        change = (np.diff(nodes.codes) != 0) & (np.diff(nodes.line) == 0)
+        width = np.diff(nodes.x)
+        resolution = _resolution(nodes.codes[:-1], nodes.codes[1:], layers[nodes.line[:-1]])
         exact = np.concatenate([[False], change & (width <= 2 * resolution), [False]])  # where a region is known to end
         narrow = width <= thinnest
         edge = change & (width > 2 * resolution) & ~(narrow & exact[:-2] & exact[2:])
         if not edge.any():
             break
-        added = [(line, x, codes)]
 
         # where the region at the lower end stops ...
         first = np.flatnonzero(edge & ~(narrow & exact[:-2]))
-        own, on = codes[first], line[first]
-        ends = np.stack([x[first], x[first + 1]], 1)
-        inside, outside = refine_brackets(axis, points[on], ends, own, classify, resolution[first])
-        added.append((on, inside, own))
-        met = _codes_at(axis, points[on], outside, classify)
-        added.append((on, outside, met))
-        other = met != codes[first + 1]
+        upper = nodes.take(first + 1)
+        inside, outside = refined(nodes.take(first), upper)
         # ... and, where another one than that at the upper end begins there, where that at the upper end begins
+        other = outside.codes != upper.codes
         after = np.flatnonzero(edge & narrow & exact[:-2])
-        last = np.append(first[other], after) + 1
-        low, below = np.append(outside[other], x[after]), np.append(met[other], codes[after])
-        own, on = codes[last], line[last]
-        ends = np.stack([x[last], low], 1)
-        inside, outside = refine_brackets(axis, points[on], ends, own, classify, _resolution(below, own, layers[on]))
-        added.append((on, inside, own))
-        added.append((on, outside, _codes_at(axis, points[on], outside, classify)))
-        wide = outside - low > 2 * thinnest
-        on, low, outside = on[wide], low[wide], outside[wide]
-        between = (low + thinnest, 0.5 * (low + outside), outside - thinnest)
-        added += [(on, at, _codes_at(axis, points[on], at, classify)) for at in between]
-        line, x, codes = merge_nodes(*(np.concatenate(each) for each in zip(*added, strict=True)))
-    return line, x, codes
+        upper = Nodes.joined([upper.take(other), nodes.take(after + 1)])
+        lower = Nodes.joined([outside.take(other), nodes.take(after)])
+        last, before = refined(upper, lower)
+        wide = before.x - lower.x > 2 * thinnest
+        on, low, high = before.line[wide], lower.x[wide], before.x[wide]
+        between = [
+            Nodes(on, x, *_classify_at(axis, points[on], x, classify))
+            for x in (low + thinnest, 0.5 * (low + high), high - thinnest)
+        ]
+        nodes = Nodes.merged([nodes, inside, outside, last, before, *between])
+    return nodes
 
 
 def _resolution(below: Codes, above: Codes, layers: Floats) -> Floats:
@@ -291,20 +379,11 @@ def _resolution(below: Codes, above: Codes, layers: Floats) -> Floats:
     return np.where(without_layers(below) == without_layers(above), layers, RESOLUTION)
 
 
-def _codes_at(axis: int, points: Floats, x: Floats, classify: Classify) -> Codes:
-    """Codes at points whose coordinate along the axis is replaced."""
+def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tuple[Codes, Floats]:
+    """Codes and margins at points whose coordinate along the axis is replaced."""
     place = points.copy()
     place[:, axis] = x
-    return classify(*place.T)[0]
-
-
-def merge_nodes(line: Index, x: Floats, codes: Codes) -> tuple[Index, Floats, Codes]:
-    """Nodes in ascending order of line, then coordinate, each once."""
-    order = np.lexsort((x, line))
-    line, x, codes = line[order], x[order], codes[order]
-    first = np.ones(x.size, dtype=bool)
-    first[1:] = (np.diff(line) != 0) | (np.diff(x) != 0.0)
-    return line[first], x[first], codes[first]
+    return classify(*place.T)
 
 
 def outcomes_along(
@@ -330,8 +409,6 @@ def outcomes_along(
     """
     places = np.tile(point, (nodes.size, 1))
     places[:, axis] = nodes
-    codes, _ = classify(*places.T)
-    points = np.array([point])
-    line = np.zeros(nodes.size, dtype=np.intp)
-    _, grid, codes = refine_lines(axis, points, line, nodes, codes, classify)
-    return grid, codes
+    known = Nodes(np.zeros(nodes.size, dtype=np.intp), nodes, *classify(*places.T))
+    found = refine_lines(axis, np.array([point]), known, classify)
+    return found.x, found.codes

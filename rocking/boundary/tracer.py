@@ -2,8 +2,9 @@
 
 A column holds the regions along a line omega = const, see `Column`. Regions that one column has and its neighbour
 lacks are searched for where their slopes lead, so a thin region seen anywhere is followed as long as it is wider than
-`THINNEST`. Where two columns still differ, a region ends, divides or begins between them: the step is halved there
-until that place is known to `END`. The ends of equal regions in neighbouring columns, joined, are the boundary curves.
+`THINNEST`. Where two columns still differ, a region ends, divides or begins between them: further columns follow,
+halfway or near its predicted end, until that place is known to `END`. The ends of equal regions in neighbouring
+columns, joined, are the boundary curves.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from rocking.boundary.columns import THINNEST, Column, Lines
 from rocking.boundary.courses import probes_for_lost_regions
 from rocking.boundary.matching import Side, join_sides, learn_slopes, learn_smooth_slopes, match_thresholds
 from rocking.boundary.panels import Panel
-from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, Work, without_layers
+from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
 from rocking.model.outcome_code import impacts_of_code
 
 BATCH_SIZE = 500_000
@@ -129,25 +130,30 @@ class Tracer:
 
     def _classify_grid(self, rows: Floats) -> None:
         """Columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
+        log_omega, etas = self.points[: self.size, 1], self.points[:: self.size, 2]
         found = []
-        lines = np.arange(len(self.points))
-        for part in np.array_split(lines, math.ceil(rows.shape[0] * lines.size / BATCH_SIZE)):
-            nodes = rows[:, part % self.size]
-            codes = self.classify(nodes, *self.points[part, 1:].T)[0].T
+        for part in np.array_split(np.arange(self.size), math.ceil(rows.size * etas.size / BATCH_SIZE)):
+            # the restitution varies fastest: such blocks share the first flight
+            grid = rows.T[part, :, None], log_omega[part, None, None], etas
+            x, lines = (
+                each.transpose(2, 0, 1)
+                for each in np.broadcast_arrays(grid[0], part[:, None, None] + self.size * np.arange(etas.size))
+            )
+            codes, margin = (each.transpose(2, 0, 1) for each in self.classify(*grid))
             edge = np.diff(codes) != 0
-            ends = np.ones((part.size, 1), dtype=bool)
-            column, row = np.nonzero(np.concatenate([ends, edge], 1) | np.concatenate([edge, ends], 1))
-            found.append((part[column], nodes[row, column], codes[column, row]))
+            ends = np.ones((*edge.shape[:2], 1), dtype=bool)
+            kept = np.concatenate([ends, edge], 2) | np.concatenate([edge, ends], 2)
+            found.append(Nodes(lines[kept], x[kept], codes[kept], margin[kept]))
             many = (codes == UNCOUNTED) | (impacts_of_code(codes) >= 2)
-            column, row = np.nonzero(many[:, 1:] | many[:, :-1])
-            low, high = nodes[row, column], nodes[row + 1, column]
-            x = low + (high - low) * np.arange(1, FINER)[:, None] / FINER
-            met, _ = self.classify(x, *self.points[part[column], 1:].T)
-            found.append((np.tile(part[column], FINER - 1), x.ravel(), met.ravel()))
-        columns = self.lines.add(*(np.concatenate(each) for each in zip(*found, strict=True)))
-        self.columns = [columns[k] for k in lines.tolist()]
+            inner = many[..., 1:] | many[..., :-1]
+            line, low, high = lines[..., 1:][inner], x[..., :-1][inner], x[..., 1:][inner]
+            finer = (low + (high - low) * np.arange(1, FINER)[:, None] / FINER).ravel()
+            line = np.tile(line, FINER - 1)
+            found.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
+        columns = self.lines.add(Nodes.joined(found))
+        self.columns = [columns[k] for k in range(len(self.points))]
 
-    def _follow(self, panels: Iterable[int], most: dict[float, int]) -> set[int]:
+    def _follow(self, panels: Iterable[int], most: dict[float, float]) -> set[int]:
         """Look in each column for the regions of its neighbours; the panels whose columns changed."""
         changed: set[int] = set()
         todo = set(panels)
@@ -177,20 +183,20 @@ class Tracer:
             return set()
         line = np.repeat([*wanted], [sum(x.size for x in xs) for xs in wanted.values()])
         x = np.concatenate([x for xs in wanted.values() for x in xs])
-        codes, _ = self.classify(x, *self.points[line, 1:].T)
+        nodes = Nodes(line, x, *self.classify(x, *self.points[line, 1:].T))
         known = np.concatenate([self.columns[k].code_at(np.concatenate(xs)) for k, xs in wanted.items()])
-        new = np.isin(line, np.unique(line[without_layers(codes) != known]))
+        new = np.isin(line, np.unique(line[without_layers(nodes.codes) != known]))
         if not new.any():
             return set()
         before = {int(k): self.columns[k] for k in np.unique(line[new])}
         panels = set()
-        for k, column in self.lines.add(line[new], x[new], codes[new]).items():
+        for k, column in self.lines.add(nodes.take(new)).items():
             if column.codes != before[k].codes:
                 self.columns[k] = column
                 panels |= {k - 1, k}
         return panels & set(self.panels)
 
-    def _join(self, lines: set[int], most: dict[float, int]) -> list[Panel]:
+    def _join(self, lines: set[int], most: dict[float, float]) -> list[Panel]:
         """Join the regions of neighbouring columns; the panels, or parts of them, in which one ends."""
         todo: list[Panel] = []
         for k in sorted(lines):
@@ -214,38 +220,49 @@ class Tracer:
         return last
 
     def _halve(self, panels: list[Panel]) -> list[Panel]:
-        """A column halfway in each panel, and the two panels that it makes of it."""
+        """A column within each panel, and the two panels that it makes of it."""
         if not panels:
             return []
-        points = np.array([(0.0, panel.middle, panel.left.eta) for panel in panels])
-        expected = [panel.expected() for panel in panels]
-        nodes = [panel.nodes(courses) for panel, courses in zip(panels, expected, strict=True)]
-        codes = self._region_codes(points, nodes)
-        more = [
-            panel.inner(courses.missed(x, met))
-            for panel, courses, x, met in zip(panels, expected, nodes, codes, strict=True)
-        ]
-        codes += self._region_codes(points, more)
-        nodes += more
-        line = np.repeat(np.tile(np.arange(len(panels)), 2), [x.size for x in nodes])
-        thinnest = self.thinnest[[panel.line // self.size for panel in panels]]
-        columns = Lines(points, self.classify_regions, thinnest).add(line, np.concatenate(nodes), np.concatenate(codes))
+        shares = [panel.share(self._end_distance(panel)) for panel in panels]
+        points = np.array(
+            [
+                (0.0, panel.left.log_omega + share * panel.step, panel.left.eta)
+                for panel, share in zip(panels, shares, strict=True)
+            ]
+        )
+        expected = [panel.expected(share) for panel, share in zip(panels, shares, strict=True)]
+        nodes = [panel.nodes(courses, share) for panel, courses, share in zip(panels, expected, shares, strict=True)]
+        found, codes = self._classified(points, nodes)
+        more, _ = self._classified(
+            points,
+            [
+                panel.inner(courses.missed(x, met), share)
+                for panel, courses, share, x, met in zip(panels, expected, shares, nodes, codes, strict=True)
+            ],
+        )
+        thinnest = np.array([panel.left.thinnest for panel in panels])
+        made = Lines(points, self.classify_regions, thinnest).add(Nodes.joined([found, more]))
         halves: list[Panel] = []
         for i, panel in enumerate(panels):
-            column = panel.bounded(columns[i])
+            column = panel.bounded(made[i])
             if column is None:
                 self.joins[panel.line] += join_sides(panel.left, panel.right)
                 self._open[panel.line] += 1
             else:
-                halves += [Panel(panel.line, panel.left, column), Panel(panel.line, column, panel.right)]
+                predicted = panel.predicted + (shares[i] != 0.5)
+                halves += [
+                    Panel(panel.line, *columns, predicted) for columns in ((panel.left, column), (column, panel.right))
+                ]
         return halves
 
-    def _region_codes(self, points: Floats, nodes: list[Floats]) -> list[Codes]:
-        """Region codes at nodes of some lines."""
-        sizes = [x.size for x in nodes]
-        line = np.repeat(np.arange(len(nodes)), sizes)
-        codes, _ = self.classify_regions(np.concatenate(nodes), *points[line, 1:].T)
-        return [codes[end - size : end] for size, end in zip(sizes, np.cumsum(sizes).tolist(), strict=True)]
+    def _classified(self, points: Floats, x: list[Floats]) -> tuple[Nodes, list[Codes]]:
+        """Region codes at points of some lines: together, and line by line."""
+        sizes = [each.size for each in x]
+        line = np.repeat(np.arange(len(x)), sizes)
+        together = np.concatenate(x)
+        nodes = Nodes(line, together, *self.classify_regions(together, *points[line, 1:].T))
+        ends = np.cumsum(sizes).tolist()
+        return nodes, [nodes.codes[end - size : end] for size, end in zip(sizes, ends, strict=True)]
 
     def _end_distance(self, panel: Panel) -> float:
         """Distance in log omega within which the ends of regions in a panel are known [-]."""
