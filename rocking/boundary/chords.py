@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
 from rocking.boundary.columns import Index
-from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Codes, Floats, refine_brackets
+from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
-SCAN = 31
-"""Points by which a region is looked for at the middle of a chord [-]."""
+SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
+"""Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the
+distance at which it may lie [-]."""
 
 WIDENINGS = 4
 """Times that the distance at which the two sides of a curve are looked for is widened [-]."""
@@ -128,12 +129,17 @@ def _middles(
         met[lost] = codes[:, 1]
         found[lost] = (codes[:, 0] == one.own[lost]) & (codes[:, 1] != one.own[lost])
         near = np.minimum(8.0 * near, 0.4 * width)
-    lost = np.flatnonzero(~found)
-    if lost.size:
+    for shares in SCANS:
+        lost = np.flatnonzero(~found)
+        if not lost.size:
+            break
         reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
-        ends[lost], margins[lost], met[lost], found[lost] = _scan(
-            guess[lost], outward[lost], reach, one.own[lost], y[lost], one.eta[lost], classify
-        )
+        x = np.clip(guess[lost, None] + (outward[lost] * reach)[:, None] * shares, 1e-6, 1.0)
+        codes, at = classify(x, y[lost, None], one.eta[lost, None])
+        k, found[lost] = _nearest_end(codes == one.own[lost, None])
+        rows = np.arange(lost.size)
+        ends[lost], margins[lost] = (np.stack([each[rows, k], each[rows, k + 1]], axis=1) for each in (x, at))
+        met[lost] = codes[rows, k + 1]
     slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
     distance = np.abs(ends - chord[:, None]).max(axis=1) / np.hypot(1.0, slope)
     for resolution in (FINE * largest, np.full(y.size, RESOLUTION)):  # the second one for new vertices only
@@ -165,18 +171,8 @@ def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
     return bend, np.where(known.all(axis=0), np.abs(bends[0] - bends[1]), np.inf)
 
 
-def _scan(
-    guess: Floats, outward: Floats, reach: Floats, own: Codes, y: Floats, eta: Floats, classify: Classify
-) -> tuple[Floats, Floats, Codes, NDArray[np.bool_]]:
-    """Points within and beyond the region next to each other (points, 2), the margins there, the code beyond.
-
-    They are the nearest such pair to the guess among equally spaced points; last, whether there is one.
-    """
-    shares = np.linspace(-1.0, 1.0, SCAN)
-    x = np.clip(guess[:, None] + outward[:, None] * reach[:, None] * shares, 1e-6, 1.0)
-    codes, margins = classify(x, y[:, None], eta[:, None])
-    within = codes == own[:, None]
+def _nearest_end(within: NDArray[np.bool_]) -> tuple[Index, NDArray[np.bool_]]:
+    """The last point within a region nearest to the middle one of some points in a row, and whether there is one."""
     leaves = within[:, :-1] & ~within[:, 1:]
-    k = np.argmin(np.where(leaves, np.abs(shares[:-1]), np.inf), axis=1)
-    rows, pair = np.arange(guess.size)[:, None], k[:, None] + [0, 1]
-    return x[rows, pair], margins[rows, pair], codes[rows[:, 0], k + 1], leaves.any(axis=1)
+    distance = np.abs(np.arange(leaves.shape[1]) - leaves.shape[1] // 2)
+    return np.argmin(np.where(leaves, distance, np.inf), axis=1), np.asarray(leaves.any(axis=1))

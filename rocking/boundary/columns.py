@@ -30,6 +30,8 @@ class Column:
         Region codes, see `region_code`.
     bottom, top : float
         1/a at the two ends [-].
+    thinnest : float
+        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
     middle : float array (thresholds,)
         1/a of each threshold, halfway between its two regions [-].
     regions : int array (thresholds + 1,)
@@ -48,6 +50,7 @@ class Column:
     codes: list[int]
     bottom: float
     top: float
+    thinnest: float = THINNEST
     middle: Floats = field(init=False)
     regions: Codes = field(init=False)
     trends: Floats = field(init=False)
@@ -64,13 +67,25 @@ class Column:
         """Region code at points between the two ends."""
         return self.regions[np.searchsorted(self.middle, x)]
 
+    def least_width(self, inner: Index) -> Floats:
+        """Widths in 1/a below which the regions above some thresholds are not resolved [-]."""
+        below, own, above = (self.regions[inner + k] == UNCOUNTED for k in range(3))
+        return np.where(own | (below & above), self.thinnest, THINNEST)
+
     def between(self, first: int, last: int) -> Column:
         """The thresholds from `first` to before `last`, and the regions beside them."""
         bottom = self.above[first - 1] if first else self.bottom
         top = self.below[last] if last < self.below.size else self.top
         cut = slice(first, last)
         part = Column(
-            self.eta, self.log_omega, self.below[cut], self.above[cut], self.codes[first : last + 1], bottom, top
+            self.eta,
+            self.log_omega,
+            self.below[cut],
+            self.above[cut],
+            self.codes[first : last + 1],
+            bottom,
+            top,
+            self.thinnest,
         )
         part.trends = self.trends[:, cut]
         part.whole, part.offset = self.whole, self.offset + first
@@ -133,6 +148,7 @@ class Lines:
                 codes[a:b].tolist(),
                 float(low[a]),
                 float(high[b - 1]),
+                float(self.thinnest[line[a]]),
             )
             for a, b in zip(first, np.append(first[1:], line.size), strict=True)
         ]

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rocking.boundary.columns import THINNEST, Column
+from rocking.boundary.columns import Column
 from rocking.boundary.courses import Courses, courses_of
 from rocking.boundary.matching import Pairs, Side
 from rocking.boundary.search import UNCOUNTED, Floats
@@ -55,45 +55,23 @@ class Panel:
         """Whether all blocks that overturn in it do so after many impacts."""
         return {*self.left.codes, *self.right.codes} <= {SURVIVES, UNCOUNTED}
 
-    def share(self, thinnest: float, end: float) -> float:
-        """Where the next column shall lie, as a share of the step: near the end of a region, or halfway.
+    def share(self, end: float) -> float:
+        """Where the next column shall lie, as a share of the step: near the predicted end of a region, or halfway.
 
-        A region that ends between the two columns becomes narrower in proportion to the distance from its end, or to
-        the square root of it. Of both the one is chosen that fits the widths on the last three columns.
+        First it lies before the end, where the prediction becomes better, then just beyond it and just before it.
 
         Parameters
         ----------
-        thinnest : float
-            Width in 1/a at which a region of many impacts, or a safe band between two, ends [-].
         end : float
             Distance in log omega within which the end shall be known [-].
         """
         side = int(self.right.below.size > self.left.below.size)
         column, other = (self.right, self.left) if side else (self.left, self.right)
-        if (
-            self.predicted >= PREDICTED
-            or column.below.size != 2
-            or other.below.size > 1
-            or column.codes[::2] != [other.codes[0], other.codes[-1]]
-        ):
+        one_ends = column.below.size == 2 and column.codes[::2] == [other.codes[0], other.codes[-1]]
+        if not one_ends or other.below.size > 1 or self.predicted >= PREDICTED:
             return 0.5
-        coarse = column.codes[1] == UNCOUNTED or column.codes[::2] == [UNCOUNTED, UNCOUNTED]
-        least = thinnest if coarse else THINNEST
-        secant, step, curvature, span = (numbers.tolist() for numbers in column.trends[side].T)
-        sign = 1.0 - 2.0 * side
-        width = float(column.below[1] - column.above[0])
-        narrowing = sign * (secant[0] - secant[1])
-        if not (narrowing > 0.0 and width > least):
-            return 0.5
-        before = width + narrowing * step[0]
-        former = span[0] - step[0]
-        ahead = (before**2 - width**2) / step[0]
-        first = before + former * (narrowing - 0.5 * span[0] * (curvature[0] - curvature[1]))
-        root = column.codes[0] == column.codes[2]
-        if math.isfinite(first):
-            root = abs(math.sqrt(before**2 + ahead * former) - first) < abs(before + narrowing * former - first)
-        distance = (width**2 - least**2) / ahead if root else (width - least) / narrowing
-        if distance >= self.step:
+        distance = _distance_to_end(column, side)
+        if not distance < self.step:
             return 0.5
         margin = 0.45 * end
         if SHORT * distance > margin:
@@ -102,7 +80,7 @@ class Panel:
             distance += margin
         else:
             distance -= margin
-        share: float = min(max(distance, margin), self.step - margin) / self.step
+        share = min(max(distance, margin), self.step - margin) / self.step
         return 1.0 - share if side else share
 
     def expected(self, share: float) -> Courses:
@@ -173,3 +151,34 @@ class Panel:
             for side in (0, 1)
             if codes[m + side]
         ]
+
+
+def _distance_to_end(column: Column, side: int) -> float:
+    """Distance in log omega from a column with one region between two others to the end of it; nan if unknown.
+
+    A region that ends becomes narrower in proportion to the distance from its end, or to the square root of it. Of both
+    the one is chosen that fits the widths on the last three columns; if two are known only, the square root where the
+    regions on both sides are equal.
+
+    Parameters
+    ----------
+    column : Column
+        With two thresholds.
+    side : int
+        Side from which the slopes are known: 0 if the end lies to the right.
+    """
+    secant, step, curvature, span = column.trends[side].T.tolist()
+    least = float(column.least_width(np.array([0]))[0])
+    width = float(column.below[1] - column.above[0])
+    narrowing = (secant[0] - secant[1]) * (1.0 - 2.0 * side)
+    if not (narrowing > 0.0 and width > least):
+        return math.nan
+    before = width + narrowing * step[0]  # one chord away
+    of_squares = (before**2 - width**2) / step[0]
+    further = span[0] - step[0]
+    first = before + further * (narrowing - 0.5 * span[0] * (curvature[0] - curvature[1]))  # two chords away
+    as_root = column.codes[0] == column.codes[2]
+    if math.isfinite(first):
+        straight = before + narrowing * further
+        as_root = abs(math.sqrt(before**2 + of_squares * further) - first) < abs(straight - first)
+    return float((width**2 - least**2) / of_squares if as_root else (width - least) / narrowing)

@@ -40,11 +40,9 @@ UNCOUNTED = -1
 LARGE_MARGIN = 10.0
 """Margin beyond which its logarithm counts where points are interpolated [-].
 
-On the brackets of the cosine at 0 and 20 degrees the number of points is within 2 % of its minimum from 3 to 30.
+On the brackets of the cosine at 0 and 20 degrees the mean number of points differs by less than 5 % from 3 to 30, and
+from that without the logarithm, with which fewer brackets take more than 25 points: 8 in place of 10 %.
 """
-
-LEAST_SHARE = 0.05
-"""Least distance of the first point from both ends of a bracket, as a share of its width [-]."""
 
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
@@ -257,9 +255,9 @@ def refine_brackets(
 
     Notes
     -----
-    Chandrupatla's method, after a first linear interpolation: the outcome alone decides on which side a point lies; the
-    margin in energy, which is continuous through the change of outcome as a rule, makes it a third of the work of
-    bisection.
+    Chandrupatla's method: the outcome alone decides on which side a point lies; the margin in energy, which is
+    continuous through the change of outcome as a rule, makes it a third of the work of bisection. The first point lies
+    halfway: there it shows regions between the two ends more often than near one of them.
     """
     place, ends, margins, met = points.copy(), ends.copy(), margins.copy(), met.copy()
     # b is the newest end of the bracket, a the other one, c the point before them
@@ -267,7 +265,7 @@ def refine_brackets(
     b, a = ends.T.copy()
     fb, fa = _distance(margins[:, 0]), -_distance(margins[:, 1])
     c, fc = a, fa
-    share = np.clip(fa / (fa - fb), LEAST_SHARE, 1.0 - LEAST_SHARE)
+    share = np.full(len(code), 0.5)
     least_width = np.broadcast_to(resolution, len(code))
     while active.size:
         x = a + share * (b - a)

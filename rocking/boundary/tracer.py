@@ -2,8 +2,9 @@
 
 A column holds the regions along a line omega = const, see `Column`. Regions that one column has and its neighbour
 lacks are searched for where their slopes lead, so a thin region seen anywhere is followed as long as it is wider than
-`THINNEST`. Where two columns still differ, a region ends, divides or begins between them: the step is halved there
-until that place is known to `END`. The ends of equal regions in neighbouring columns, joined, are the boundary curves.
+`THINNEST`. Where two columns still differ, a region ends, divides or begins between them: further columns follow,
+halfway or near its predicted end, until that place is known to `END`. The ends of equal regions in neighbouring
+columns, joined, are the boundary curves.
 """
 
 from __future__ import annotations
@@ -219,14 +220,10 @@ class Tracer:
         return last
 
     def _halve(self, panels: list[Panel]) -> list[Panel]:
-        """A column halfway in each panel, and the two panels that it makes of it."""
+        """A column within each panel, and the two panels that it makes of it."""
         if not panels:
             return []
-        thinnest = self.thinnest[[panel.line // self.size for panel in panels]]
-        shares = [
-            panel.share(least, self._end_distance(panel))
-            for panel, least in zip(panels, thinnest.tolist(), strict=True)
-        ]
+        shares = [panel.share(self._end_distance(panel)) for panel in panels]
         points = np.array(
             [
                 (0.0, panel.left.log_omega + share * panel.step, panel.left.eta)
@@ -243,6 +240,7 @@ class Tracer:
                 for panel, courses, share, x, met in zip(panels, expected, shares, nodes, codes, strict=True)
             ],
         )
+        thinnest = np.array([panel.left.thinnest for panel in panels])
         made = Lines(points, self.classify_regions, thinnest).add(Nodes.joined([found, more]))
         halves: list[Panel] = []
         for i, panel in enumerate(panels):

@@ -34,7 +34,7 @@ def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     assert (own != neighbour).all()
     # a vertex lies inside its own region, and one step of the resolution along one of the axes beyond it
     here = region_code(rocking.peak_response(pulse, slenderness=s, frequency_ratio=omega, restitution=0.9, alpha=alpha))
-    assert (here == own).mean() > 0.98  # exp(log omega) rounds
+    assert (here == own).mean() > 0.998  # exp(log omega) rounds
     reach = 4 * RESOLUTION
     around = [(s + ds, omega * math.exp(dw)) for ds, dw in ((reach, 0), (-reach, 0), (0, reach), (0, -reach))]
     codes = [
@@ -44,7 +44,7 @@ def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     changes = np.any([code != here for code in codes], axis=0)
     # the region of many impacts consists of layers, of which the outermost one can be too thin to be resolved
     assert changes[own != UNCOUNTED].all()
-    assert changes.mean() > 0.99
+    assert changes.mean() > 0.998
     assert np.any([code == own for code in [here, *codes]], axis=0).all()
     # the neighbour is next to it, or beyond regions that are too thin to be resolved
     steps = np.array([1.0, -1.0])[:, None, None] * np.array([reach, 1e-9, 1e-8, 1e-7, 3e-7, 1.0e-6, 3e-6])[:, None]
@@ -55,7 +55,8 @@ def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     )
     # but for the point that a curve repeats where it continues an outline
     first = np.cumsum(boundary.row_size.values)[:-1][np.diff(boundary.outline.values) == 0]
-    assert np.delete((beside == neighbour).any(axis=(0, 1)), first).mean() > 0.98
+    known = np.delete((beside == neighbour).any(axis=(0, 1)), first)
+    assert known.mean() > (0.98 if pulse == "c1" else 0.998)  # c1: 0.983 and more, all others 1
 
 
 def test_sine_against_the_closed_forms():
@@ -119,7 +120,7 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
     case = {"restitution": restitution, "alpha": alpha}
     boundary = rocking.overturning_boundary(pulse, **case, nodes=201)
     assert 0.0 < boundary.chord_error <= CHORD
-    assert boundary.unmeasured_chords <= 0.01 * boundary.sizes["point"]
+    assert boundary.unmeasured_chords <= 2
     s, log_omega = boundary.slenderness.values, np.log(boundary.frequency_ratio.values)
     first = np.delete(np.arange(s.size), np.cumsum(boundary.row_size.values) - 1)  # of each chord
     to_safety = np.repeat(boundary.neighbour_outcome.values <= Outcome.SAFE, boundary.row_size.values)
@@ -146,11 +147,10 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
         wrong += int((~changes).sum())
         crossings += cut.size
     assert crossings > 60
-    # between regions of many impacts that lie side by side a chord can join two of them: 1 of 143 at the most
-    assert wrong <= 0.01 * crossings
-    # thresholds of regions that the nodes do not show, all after many impacts: 9 of 143 at the most up to a restitution
-    # of 0.9, many more above
-    assert restitution > 0.9 or unlisted <= 0.08 * crossings
+    # between regions of many impacts that lie side by side a chord can join two of them: 1 of 152 at the most
+    assert wrong <= 1
+    # thresholds of regions that the nodes do not show, all after many impacts: 6 of 152 at the most, 21 of 224 at 0.94
+    assert unlisted <= (0.05 if restitution < 0.9 else 0.12) * crossings
 
 
 def distances(x, y, s, log_omega, first):
