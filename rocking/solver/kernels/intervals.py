@@ -23,7 +23,11 @@ from rocking.solver.excitation import is_unit_sinusoid, shape_and_slope
 
 @kernel
 def find_crossing(level: float, left: float, right: float, rising: bool, flight: Record) -> float:
-    """The phase at which f, monotone on [left, right] with a crossing inside, equals `level`: bracketed Newton."""
+    """The phase at which f, monotone on [left, right] with a crossing inside, equals `level`: bracketed Newton.
+
+    The next step is at most the square of a step over the distance to the nearest extremum, which is an end.
+    """
+    start, end = left, right
     phi = 0.5 * (left + right)
     for _ in range(100):
         f, slope = shape_and_slope(phi, flight)
@@ -36,6 +40,8 @@ def find_crossing(level: float, left: float, right: float, rising: bool, flight:
         follow = phi - (f - level) / slope if slope != 0.0 else left
         if not left < follow < right:
             follow = 0.5 * (left + right)
+        elif (follow - phi) ** 2 <= 1e-17 * abs(phi) * min(follow - start, end - follow):
+            return follow
         if abs(follow - phi) <= 4.5e-16 * abs(
             phi
         ):  # otherwise the iteration may alternate between two adjacent doubles

@@ -18,7 +18,7 @@ from rocking.solver.stages.excitation import (
     expand_at_start,
     particular_increments,
     restoring_derivatives,
-    start_family_arcs,
+    start_particular_solution,
 )
 from rocking.solver.stages.state import AT_UPLIFT, OMEGA, SLENDERNESS, W0
 from rocking.solver.state import SERIES_LENGTH
@@ -30,7 +30,7 @@ def start_arcs(pulse: Record, group: Record, sign: float) -> None:
     a = 1.0 / load(group.columns, SLENDERNESS)
     store(group.a, 0, a)
     store(group.reciprocal_omega, 0, 1.0 / load(group.columns, OMEGA))
-    start_family_arcs(pulse, group, sign, a)
+    start_particular_solution(pulse, group, sign, a)
     at_uplift = load(group.columns, AT_UPLIFT) > 0.0
     store(group.q0, 0, select(at_uplift, splat(0.0), load(group.q0, 0)))
 
