@@ -34,7 +34,7 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	ruff check .
 	mypy
 	snakefmt --check Snakefile workflow
-	pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
+	pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 
 browser: .venv/project ## fetch Chromium for the tests of the web page if there is none (ROCKING_NO_BROWSER=1: skip them)
 	@test -n '$(ROCKING_NO_BROWSER)' || { python -m tests.api.explorer.chromium && python -m tests.api.explorer.axe; }

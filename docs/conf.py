@@ -62,6 +62,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "remove_config_comments": True,
     "show_signature": False,
+    "default_thumb_file": str(ROOT / "docs" / "_static" / "icon.svg"),
     "min_reported_time": 10,
     "write_computation_times": False,
 }
@@ -70,6 +71,7 @@ warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive") 
 html_theme = "furo"
 html_title = f"rocking {release}"
 html_static_path = ["_static"]
+html_favicon = "_static/icon.svg"
 html_css_files = ["guide.css"]
 html_show_sourcelink = False
 html_copy_source = False

@@ -40,4 +40,5 @@ print(peak([(0.4, np.log(5.0)), (0.2, np.log(2.0))]))  # the second one overturn
 # The default picture of xarray has names and units from the file.
 
 layer.plot(x="frequency_ratio", cmap="viridis_r", vmax=1.0)
+plt.title(f"sine, slender limit, restitution {float(cube.restitution):.2f}")
 plt.show()

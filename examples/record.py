@@ -34,16 +34,9 @@ for scale, above in zip(scales.scale[:6], scales.overturns_above[:6], strict=Tru
 # %%
 # The motion under 1.2 times the record, until the block has overturned.
 
-history = rocking.record_history(
-    motion,
-    frequency_parameter=block.frequency_parameter,
-    slenderness=response.slenderness,
-    restitution=response.restitution,
-    alpha=block.alpha,
-    duration=30.0,
-)
+history = block.history(motion, scale=1.2, duration=30.0)
 figure, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
-rocking.plot.history(history, axes[0])
+rocking.plot.history(history, axes[0]).set_xlabel("")
 rocking.plot.ground_acceleration(history, axes[1], linewidth=0.6)
 plt.show()
 

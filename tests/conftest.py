@@ -25,4 +25,4 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 
-pytest_plugins = ["tests.workflow_fixtures"]
+pytest_plugins = ["tests.wheel_fixtures", "tests.workflow_fixtures"]

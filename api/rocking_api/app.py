@@ -32,6 +32,7 @@ from rocking_api.routers import (
     guide,
     health,
     history,
+    metadata,
     metrics,
     overturning,
     pages,
@@ -40,6 +41,7 @@ from rocking_api.routers import (
     response,
     spectrum,
     subset,
+    suites,
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
@@ -48,7 +50,8 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
-    *(pulses, subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
+    *(pulses, metadata, suites),
+    *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 
 

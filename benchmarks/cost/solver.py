@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.measure import progress, save, spread, versions
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.excitation.pulses import PULSE_NAMES
 
 ROOT = Path(__file__).parents[2]
 
@@ -77,9 +77,8 @@ def cases(scale: float) -> Iterator[Case]:
             yield Case("sine", None, points(800), highest, order)
     yield Case("sine", None, points(150), 0.85, "eta")
     for pulse in PULSE_NAMES:
-        exact = get_pulse(pulse).series.has_exact_arcs
         for highest in (0.85, 0.95) if pulse != "sine" else ():
-            yield Case(pulse, None, points(300 if exact else 100), highest)
+            yield Case(pulse, None, points(300), highest)
     for pulse in ("sine", "cosine", "mavroeidis_papageorgiou", "ricker"):
         yield Case(pulse, 0.35, points(100), 0.85)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, ClassVar
 
 import typer
@@ -40,12 +41,17 @@ def cell(text: Any) -> str:
 
 
 class Routes(Generated):
-    """Every route of the service with its parameters, from the OpenAPI description."""
+    """Every route of the service with its parameters and the fields of its response, from the OpenAPI description.
+
+    A field that is an object, or a list of them, names its model; the models follow after the routes, once each.
+    """
 
     def lines(self) -> list[str]:
-
-        text: list[str] = []
+        """The text."""
         document = create_app(Settings()).openapi()
+        models = document["components"]["schemas"]
+        text: list[str] = []
+        used: list[str] = []
         for path, operations in document["paths"].items():
             for method, operation in operations.items():
                 text += [f"**{method.upper()} `{path}`**", "", operation.get("summary", ""), ""]
@@ -60,7 +66,50 @@ class Routes(Generated):
                 body = operation.get("requestBody", {}).get("content", {})
                 if body:
                     text += ["Body: " + ", ".join(f"`{kind}`" for kind in body) + ".", ""]
+                content = operation["responses"]["200"].get("content", {})
+                if content:
+                    text += ["Response: " + ", ".join(f"`{kind}`" for kind in content) + ".", ""]
+                text += self.fields(content.get("application/json", {}).get("schema", {}), models, used)
+        text += ["**Parts of responses**", ""]
+        for name in used:  # grows while models refer to others
+            table = self.fields(models[name], models, used)
+            text += [f"`{name}`: {cell(models[name].get('description', ''))}", "", *table]
         return text
+
+    def fields(self, schema: dict[str, Any], models: dict[str, Any], used: list[str]) -> list[str]:
+        """The table of the fields of a model; models that it refers to are added to `used`."""
+        model = models[_model_of(schema)[0]] if "$ref" in schema else schema
+        if "properties" not in model:
+            return []
+        rows = ["| field | type | unit | meaning |", "|---|---|---|---|"]
+        for name, one in model["properties"].items():
+            used += [part for part in dict.fromkeys(_model_of(one)) if part not in used]
+            meaning = one.get("description", "")
+            unit = re.search(r"\[([^\]]+)\]", meaning)
+            rows.append(f"| `{name}` | {_type_of(one)} | {cell(unit[1] if unit else '')} | {cell(meaning)} |")
+        return [*rows, ""]
+
+
+def _model_of(schema: Any) -> list[str]:
+    """Names of the models that a schema refers to, at any depth."""
+    if isinstance(schema, dict):
+        own = [schema["$ref"].rpartition("/")[2]] if "$ref" in schema else []
+        return own + [name for key, value in schema.items() if key != "$ref" for name in _model_of(value)]
+    return [name for one in schema for name in _model_of(one)] if isinstance(schema, list) else []
+
+
+def _type_of(schema: dict[str, Any]) -> str:
+    """The type in words: number, null, list of Threshold."""
+    if "$ref" in schema:
+        return f"`{_model_of(schema)[0]}`"
+    if "anyOf" in schema:
+        return " or ".join(_type_of(one) for one in schema["anyOf"])
+    kind = str(schema.get("type", "any"))
+    if kind == "array":
+        inner = schema.get("items", {})
+        each = _type_of(inner) if inner else "any"
+        return f"list of ({each})" if " or " in each else f"list of {each}"
+    return kind
 
 
 class ServiceSettings(Generated):

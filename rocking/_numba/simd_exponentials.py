@@ -1,4 +1,4 @@
-"""Hyperbolic functions and the arc cosine of a SIMD vector.
+"""Exponential and hyperbolic functions and the arc cosine of a SIMD vector.
 
 The functions of the C library take one number. All relative errors are below 6e-16.
 """
@@ -8,26 +8,24 @@ from __future__ import annotations
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
-from rocking._numba.simd import minimum, power_of_two, select, splat, square_root
+from rocking._numba.simd import maximum, minimum, power_of_two, select, splat, square_root
 from rocking._numba.simd_sines import HALF_PI, round_to_nearest
 
 MAX_EXPONENT = 350.0
 """e^350 determines the sign of any growing term that is not exactly zero, and its square does not overflow."""
+
+SMALLEST_EXPONENT = 700.0
+"""e^-700 is close to the smallest number with all digits."""
 
 LOG_2, LOG_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 """log(2) as the sum of two doubles; the first has 21 trailing zero bits."""
 
 
 @kernel
-def cosh_minus_one_and_sinh(h: SimdVector) -> Any:
-    """cosh(h) - 1 and sinh(h) for h >= 0, without cancellation; h is limited to `MAX_EXPONENT`.
-
-    With E = e^h - 1 and D = E/(1 + E) = 1 - e^-h they are E D/2 and (E + D)/2. E = 2^k (e^r - 1) + (2^k - 1) with
-    h = k log(2) + r, |r| <= log(2)/2, and the Taylor series of degree 13 of e^r - 1.
-    """
-    h = minimum(h, splat(MAX_EXPONENT))
-    whole = round_to_nearest(h * (1.0 / (LOG_2 + LOG_2_LOW)))
-    r = (h - whole * LOG_2) - whole * LOG_2_LOW
+def reduced_exponential(exponent: SimdVector) -> Any:
+    """2^k and e^r - 1 with `exponent` = k log(2) + r, |r| <= log(2)/2, by the Taylor series of degree 13."""
+    whole = round_to_nearest(exponent * (1.0 / (LOG_2 + LOG_2_LOW)))
+    r = (exponent - whole * LOG_2) - whole * LOG_2_LOW
     x = r * r
     even = x * (
         1 / 2 + x * (1 / 24 + x * (1 / 720 + x * (1 / 40320 + x * (1 / 3628800 + x * (1 / 479001600)))))
@@ -35,8 +33,24 @@ def cosh_minus_one_and_sinh(h: SimdVector) -> Any:
     odd = r * x * (
         1 / 6 + x * (1 / 120 + x * (1 / 5040 + x * (1 / 362880 + x * (1 / 39916800 + x * (1 / 6227020800)))))
     )  # fmt: skip
-    power = power_of_two(whole)
-    grown = power * (r + (even + odd)) + (power - 1.0)
+    return power_of_two(whole), r + (even + odd)
+
+
+@kernel
+def exponential(x: SimdVector) -> Any:
+    """e^x for x <= `MAX_EXPONENT`; x is limited to -`SMALLEST_EXPONENT` from below."""
+    power, grown = reduced_exponential(maximum(x, splat(-SMALLEST_EXPONENT)))
+    return power + power * grown
+
+
+@kernel
+def cosh_minus_one_and_sinh(h: SimdVector) -> Any:
+    """cosh(h) - 1 and sinh(h) for h >= 0, without cancellation; h is limited to `MAX_EXPONENT`.
+
+    With E = e^h - 1 and D = E/(1 + E) = 1 - e^-h they are E D/2 and (E + D)/2, with E = 2^k (e^r - 1) + (2^k - 1).
+    """
+    power, grown = reduced_exponential(minimum(h, splat(MAX_EXPONENT)))
+    grown = power * grown + (power - 1.0)
     decayed = grown / (1.0 + grown)
     return 0.5 * grown * decayed, 0.5 * (grown + decayed)
 

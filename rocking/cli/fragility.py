@@ -46,10 +46,11 @@ def fragility(configuration: Configuration, output: OutputOptions) -> None:
     if form == "json":
         printing.print_json({**about, "confidence": suite.confidence, "levels": levels, "curves": _finite(curves)})
         return
+    units = {name: unit for name in ("intensity", *curves) if "intensity" in name and unit != "1"}
     printing.print_text({**about, "records": len(about["records"])})
-    printing.print_table(_finite(levels))
+    printing.print_table(_finite(levels), units)
     typer.echo()
-    printing.print_table(_finite(curves))
+    printing.print_table(_finite(curves), units)
 
 
 def suite_fragility(configuration: str) -> tuple[xr.Dataset, SuiteConfiguration]:

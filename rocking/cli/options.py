@@ -81,6 +81,24 @@ class SpectrumOptions(WindowOptions):
     peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class RecordOptions(SizeOptions):
+    """A block, and what the file of a record does not state."""
+
+    restitution: Annotated[
+        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or housner: (2.4).")
+    ] = "housner"
+    scale: Annotated[float, typer.Option(help="Factor of the record.")] = 1.0
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.")
+    ] = None
+    time_step: Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")] = None
+    component: Annotated[str | None, typer.Option(help="Column or trace of a file with several.")] = None
+    baseline_order: Annotated[
+        int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
+    ] = None
+
+
 @dataclass(frozen=True)
 class OutputOptions:
     """Format of the output; text without."""

@@ -16,11 +16,13 @@ from rocking.cli.options import (
     FrequencyRatioMin,
     PictureOptions,
     ProblemOptions,
+    RecordOptions,
     SpectrumOptions,
     WindowOptions,
     with_options,
 )
 from rocking.cli.progress import progress
+from rocking.cli.record import File, file_errors, read_problem
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,9 +77,32 @@ def history(
 
             found = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
             data = found if params.problem is None else in_si_units(found, params.problem)
-            upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
-            pictures.history(data, upper).set_xlabel("")
-            pictures.ground_acceleration(data, lower)
+            _draw_history(pictures, figure, data)
+
+        draw(panels)
+
+
+@plot.command()
+@with_options
+def record(
+    file: File,
+    block: RecordOptions,
+    picture: PictureOptions,
+    duration: Annotated[
+        str | None, typer.Option(help="Length of time that is drawn, such as 20s; by default the record and some more.")
+    ] = None,
+) -> None:
+    """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
+    from rocking.dimensional.curves import block_record_history
+    from rocking.dimensional.units import si_value
+
+    with _picture(picture) as draw, file_errors():
+        motion, shape, restitution = read_problem(file, block)
+        length = None if duration is None else si_value("duration", duration, "s")
+
+        def panels(pictures: Any, figure: Any) -> None:
+            data = block_record_history(shape, motion, scale=block.scale, restitution=restitution, duration=length)
+            _draw_history(pictures, figure, data)
 
         draw(panels)
 
@@ -222,6 +247,12 @@ def _pictures() -> tuple[Any, Any]:
         typer.echo(f"rocking plot: {error}", err=True)
         raise typer.Exit(1) from error
     return pictures, output
+
+
+def _draw_history(pictures: Any, figure: Any, data: xr.Dataset) -> None:
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
+    pictures.history(data, upper).set_xlabel("")
+    pictures.ground_acceleration(data, lower)
 
 
 def _found(params: Params) -> Any:

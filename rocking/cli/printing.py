@@ -57,7 +57,7 @@ def response(params: Params, form: Form) -> None:
         warnings = result.pop("warnings", [])
         first = [name for name in _FIRST_LINES if name in result]
         ordered = {name: result[name] for name in (*first, *result)}  # what was asked in SI units first
-        print_text({_label(name): _words(value) for name, value in ordered.items()})
+        print_text({name: _words(value) for name, value in ordered.items()})
         for text in warnings:
             typer.echo(f"warning: {text}")
 
@@ -138,22 +138,19 @@ _FIRST_LINES = (
 
 _UNITS = {
     "alpha": "rad",
-    "peak_rotation_deg": "deg",
-    "alpha_deg": "deg",
     "frequency_parameter": "rad/s",
-    "pulse_period": "s",
-    "nearest_period": "s",
-    **dict.fromkeys(("top_displacement", "half_width", "half_height", "half_diagonal"), "m"),
-    **dict.fromkeys(
-        ("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "nearest_acceleration", "thresholds"),
-        "m/s2",
-    ),
+    "angular_velocity_deg": "deg/s",
+    "annual_rate": "1/year",
+    "gravity": "m/s2",
+    **dict.fromkeys(("peak_rotation_deg", "rotation_deg", "alpha_deg"), "deg"),
+    **dict.fromkeys(("pulse_period", "nearest_period", "period", "time", "impact_time_s"), "s"),
+    **dict.fromkeys(("time_step", "significant_duration", "mean_period"), "s"),
+    **dict.fromkeys(("top_displacement", "half_width", "half_height", "half_diagonal", "peak_displacement"), "m"),
+    **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
+    **dict.fromkeys(("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "acceleration"), "m/s2"),
+    **dict.fromkeys(("nearest_acceleration", "thresholds", "pulse_peak_acceleration"), "m/s2"),
 }
-"""Units that the text output names."""
-
-
-def _label(name: str) -> str:
-    return f"{name} [{_UNITS[name]}]" if name in _UNITS else name
+"""Units that the text output names beside a value or a column; others are dimensionless."""
 
 
 def _words(value: Any) -> Any:
@@ -333,19 +330,25 @@ def print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
 
 
 def print_text(result: Mapping[str, Any]) -> None:
-    """Print a name and a value a line."""
-    width = max(map(len, result))
+    """Print a name with its unit and a value a line."""
+    labels = {name: _label(name, _UNITS) for name in result}
+    width = max(map(len, labels.values()))
     for name, value in result.items():
         if value is not None:
-            typer.echo(f"{name:<{width}}  {_text(value)}")
+            typer.echo(f"{labels[name]:<{width}}  {_text(value)}")
 
 
-def print_table(columns: Mapping[str, Sequence[Any]]) -> None:
-    """Print aligned columns with their names."""
-    rows = [list(columns), *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
+def print_table(columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None) -> None:
+    """Print aligned columns with their names and units; `units` are those of columns that depend on the question."""
+    labels = [_label(name, _UNITS | dict(units or {})) for name in columns]
+    rows = [labels, *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
     widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
     for row in rows:
         typer.echo("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+
+
+def _label(name: str, units: Mapping[str, str]) -> str:
+    return f"{name} [{units[name]}]" if name in units else name
 
 
 def _text(value: Any) -> str:

@@ -9,6 +9,9 @@ from contextlib import contextmanager
 DELAY = 1.0
 """Time after which the indicator appears [s]."""
 
+LONG = 4.0
+"""Time after which the indicator says that first calls are longer [s]."""
+
 
 @contextmanager
 def progress(text: str) -> Iterator[None]:
@@ -30,7 +33,7 @@ def progress(text: str) -> Iterator[None]:
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     # the results go to stdout, which must not pass through the console of the indicator
     shown = Progress(*columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False)
-    shown.add_task(text, total=None)
+    task = shown.add_task(text, total=None)
     ended, lock = threading.Event(), threading.Lock()
 
     def start() -> None:
@@ -38,6 +41,8 @@ def progress(text: str) -> Iterator[None]:
             with lock:
                 if not ended.is_set():
                     shown.start()
+        if not ended.wait(LONG):
+            shown.update(task, description=f"{text} (the first calls compile parts of the solver)")
 
     waiting = threading.Thread(target=start, daemon=True)
     waiting.start()

@@ -3,29 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking.cli.options import OutputOptions, SizeOptions, with_options
-from rocking.model.parameters import RESTITUTION
+from rocking.cli.options import OutputOptions, RecordOptions, with_options
 
 if TYPE_CHECKING:
+    from rocking.excitation.records.record import Record
     from rocking.model.block import Block
 
 File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
-RecordRestitution = Annotated[str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or housner: (2.4).")]
-Scale = Annotated[float, typer.Option(help="Factor of the record.")]
-Unit = Annotated[
-    str | None, typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.")
-]
-TimeStep = Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")]
-Component = Annotated[str | None, typer.Option(help="Column or trace of a file with several.")]
-BaselineOrder = Annotated[
-    int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
-]
 Thresholds = Annotated[bool, typer.Option("--thresholds", help="Find all scales at which the outcome changes.")]
 Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.")]
 
@@ -33,30 +24,21 @@ Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how b
 @with_options
 def record(
     file: File,
-    size: SizeOptions,
+    block: RecordOptions,
     output: OutputOptions,
-    restitution: RecordRestitution = "housner",
-    scale: Scale = 1.0,
-    unit: Unit = None,
-    time_step: TimeStep = None,
-    component: Component = None,
-    baseline_order: BaselineOrder = None,
     thresholds: Thresholds = False,
     fit: Fit = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
     from rocking.cli import printing
-    from rocking.cli.arguments import option_errors, read_block
+    from rocking.cli.arguments import option_errors
     from rocking.cli.progress import progress
-    from rocking.dimensional.units import si_value
 
     with option_errors(), file_errors():
         form = printing.output_format(output)
-        step = None if time_step is None else si_value("time_step", time_step, "s")
-        block = read_block(size)
-        eta = restitution if restitution == "housner" else _number_of("restitution", restitution)
+        problem = read_problem(file, block)
         with progress("solving the block under the record"):
-            about, sentence = _solved(file, block, eta, scale, (unit, step, component, baseline_order), thresholds, fit)
+            about, sentence = _solved(*problem, block.scale, thresholds, fit)
     if form == "json":
         printing.print_json(about)
     elif form == "csv":
@@ -76,41 +58,63 @@ def file_errors() -> Iterator[None]:
     try:
         yield
     except RecordFileError as error:
-        raise typer.BadParameter(str(error), param_hint="FILE") from None
+        raise typer.BadParameter(_with_options_named(str(error)), param_hint="FILE") from None
     except InvalidArgumentError as error:
         if error.parameter != "path":
             raise
         raise typer.BadParameter(f"{error.value}: not {error.allowed}", param_hint="FILE") from None
 
 
-def _number_of(parameter: str, text: str) -> float:
+def _with_options_named(message: str) -> str:
+    """A message in which arguments of functions have the names of the options."""
+    return re.sub(r"(?:the )?argument `(\w+)`", lambda found: "--" + found[1].replace("_", "-"), message)
+
+
+def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | Literal["housner"]]:
+    """The record in a file, the block, and its restitution.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an option is missing, or a value is not allowed.
+    RecordFileError
+        If the file does not hold a record.
+    """
+    from rocking.cli.arguments import read_block
+    from rocking.dimensional.units import si_value
+    from rocking.excitation.records.readers.read_record import read_record
+
+    step = None if options.time_step is None else si_value("time_step", options.time_step, "s")
+    block = read_block(options)
+    eta: float | Literal["housner"] = "housner" if options.restitution == "housner" else _number_of(options.restitution)
+    motion = read_record(file, unit=options.unit, time_step=step, component=options.component)
+    if options.baseline_order is not None:
+        motion = motion.baseline_corrected(order=options.baseline_order)
+    return motion, block, eta
+
+
+def _number_of(text: str) -> float:
     from rocking.errors import InvalidArgumentError
 
     try:
         return float(text)
     except ValueError:
-        raise InvalidArgumentError(parameter, text, "a number, or housner") from None
+        raise InvalidArgumentError("restitution", text, "a number, or housner") from None
 
 
 def _solved(
-    file: str,
+    motion: Record,
     block: Block,
-    restitution: str | float,
+    restitution: float | Literal["housner"],
     scale: float,
-    reading: tuple[str | None, float | None, str | None, int | None],
     thresholds: bool,
     fit: bool,
 ) -> tuple[dict[str, Any], str]:
     """What is printed, by name, and the outcome in words."""
     from rocking.cli.printing import number
     from rocking.dimensional.record_response import respond_to_record
-    from rocking.excitation.records.readers.read_record import read_record
     from rocking.suites.pulse_fit import fit_pulse
 
-    unit, step, component, order = reading
-    motion = read_record(file, unit=unit, time_step=step, component=component)
-    if order is not None:
-        motion = motion.baseline_corrected(order=order)
     found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
     response, refined = found.dimensionless, found.resampled
     about: dict[str, Any] = {

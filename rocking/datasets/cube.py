@@ -27,13 +27,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from xarray.backends import NetCDF4DataStore
 
 from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
+from rocking.datasets.netcdf import open_netcdf, write_netcdf
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_number
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
@@ -189,7 +188,7 @@ def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str,
     os.close(handle)
     temporary = Path(name)
     try:
-        signed.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(signed, chunks or {}))
+        write_netcdf(signed, temporary, _encoding(signed, chunks or {}))
         append_checksum(temporary)
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
@@ -215,7 +214,7 @@ def read_slice(path: Path | str, **indexers: int) -> xr.Dataset:
 
     The file is closed again: the library keeps up to some megabytes of each variable of an open file.
     """
-    with xr.open_dataset(path, engine="netcdf4", decode_times=False, cache=False) as opened:
+    with open_netcdf(path, cache=False) as opened:
         return opened.isel(indexers).load()
 
 
@@ -257,8 +256,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
     """
     _raise_if_damaged(content, path)
     try:
-        store = NetCDF4DataStore(netCDF4.Dataset("in memory", memory=content))  # type: ignore[no-untyped-call]
-        with xr.open_dataset(store, decode_times=False) as opened:
+        with open_netcdf(content) as opened:
             dataset = opened.load()
         written = dataset.attrs.get("content_sha256")
         found = _content_digest(dataset)

@@ -11,7 +11,6 @@ import ast
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -19,47 +18,65 @@ PROJECT = Path(__file__).resolve().parents[2]
 """Folder of the package and, in a checkout, of `workflow/` and `environment.lock`."""
 
 
-def source_files(*paths: Path, root: Path = PROJECT) -> list[Path]:
-    """All files under `root` that the given files import, directly or indirectly, and these files; sorted.
-
-    `rocking/__init__.py` only loads names lazily. Importing a module through it does not add a dependency on every
-    public name; importing a name that is not a module does, and then all files of the package are included.
+class SourceTree:
+    """The Python files of a folder as they are now: each is read once, for any number of digests.
 
     Parameters
     ----------
-    *paths : Path
-        Python files under `root`.
     root : Path
-        Folder from which absolute imports are resolved.
+        Folder that holds the files and the lock, and from which absolute imports are resolved.
     """
-    seen: set[Path] = set()
-    waiting = [path.resolve() for path in paths]
-    while waiting:
-        path = waiting.pop()
-        if path not in seen:
-            seen.add(path)
-            waiting += _imported_files(path, root.resolve())
-    return sorted(seen)
+
+    def __init__(self, root: Path = PROJECT) -> None:
+        self.root = root.resolve()
+        self._contents: dict[Path, bytes] = {}
+        self._imported: dict[Path, list[Path]] = {}
+
+    def files(self, *paths: Path) -> list[Path]:
+        """All files under `root` that the given files import, directly or indirectly, and these files; sorted.
+
+        `rocking/__init__.py` only loads names lazily. Importing a module through it does not add a dependency on every
+        public name; importing a name that is not a module does, and then all files of the package are included.
+        """
+        seen: set[Path] = set()
+        waiting = [path.resolve() for path in paths]
+        while waiting:
+            path = waiting.pop()
+            if path not in seen:
+                seen.add(path)
+                waiting += self._imports(path)
+        return sorted(seen)
+
+    def digest(self, *paths: Path) -> str:
+        """sha256 (hex) of the `files` of `paths`, none: of the whole package, and of `environment.lock` if there."""
+        files = self.files(*(paths or _package(self.root)))
+        lock = self.root / "environment.lock"
+        digest = hashlib.sha256()
+        for path in [*files, *([lock] if lock.exists() else [])]:
+            content = self._content(path)
+            digest.update(f"{path.relative_to(self.root).as_posix()} {len(content)}\n".encode())
+            digest.update(content)
+        return digest.hexdigest()
+
+    def _content(self, path: Path) -> bytes:
+        if path not in self._contents:
+            self._contents[path] = path.read_bytes()
+        return self._contents[path]
+
+    def _imports(self, path: Path) -> list[Path]:
+        if path not in self._imported:
+            self._imported[path] = sorted({*_imported_files(path, self._content(path), self.root)})
+        return self._imported[path]
+
+
+def source_files(*paths: Path, root: Path = PROJECT) -> list[Path]:
+    """`SourceTree.files`, of the files as they are now."""
+    return SourceTree(root).files(*paths)
 
 
 def code_digest(*paths: Path, root: Path = PROJECT) -> str:
-    """sha256 (hex) of the `source_files` of `paths`, by default the whole package, and of `environment.lock` if there.
-
-    Parameters
-    ----------
-    *paths : Path
-        Python files under `root`; none means every module of `rocking`.
-    root : Path
-        Folder that holds them and the lock.
-    """
-    files = source_files(*(paths or _package(root)), root=root)
-    lock = root.resolve() / "environment.lock"
-    digest = hashlib.sha256()
-    for path in [*files, *([lock] if lock.exists() else [])]:
-        content = path.read_bytes()
-        digest.update(f"{path.relative_to(root.resolve()).as_posix()} {len(content)}\n".encode())
-        digest.update(content)
-    return digest.hexdigest()
+    """`SourceTree.digest`, of the files as they are now."""
+    return SourceTree(root).digest(*paths)
 
 
 def settings_digest(settings: Mapping[str, Any]) -> str:
@@ -71,23 +88,19 @@ def _package(root: Path) -> tuple[Path, ...]:
     return tuple((root / "rocking").rglob("*.py"))
 
 
-@lru_cache(maxsize=1024)
-def _imports(source: bytes) -> tuple[tuple[str, str | None, int], ...]:
-    """The names that a module imports, with the module of which each may be an attribute, and the relative level.
-
-    Kept by the content: every rule of the workflow asks for the digest of its code, and most share their modules.
-    """
-    found: list[tuple[str, str | None, int]] = []
+def _imported_names(source: bytes) -> Iterable[tuple[str, str | None, int]]:
+    """The names that a module imports, with the module of which each may be an attribute, and the relative level."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            found += [(alias.name, None, 0) for alias in node.names]
+            for alias in node.names:
+                yield alias.name, None, 0
         elif isinstance(node, ast.ImportFrom):
-            found += [(alias.name, node.module or "", node.level) for alias in node.names]
-    return tuple(found)
+            for alias in node.names:
+                yield alias.name, node.module or "", node.level
 
 
-def _imported_files(path: Path, root: Path) -> Iterable[Path]:
-    for name, base, level in _imports(path.read_bytes()):
+def _imported_files(path: Path, source: bytes, root: Path) -> Iterable[Path]:
+    for name, base, level in _imported_names(source):
         if base is None:
             yield from _module_files(name, root)
             continue

@@ -7,7 +7,7 @@ from typing import Literal, overload
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from rocking.dimensional.curves import block_history, block_spectrum
+from rocking.dimensional.curves import DEFAULT_SAMPLES, block_history, block_record_history, block_spectrum
 from rocking.dimensional.problem import BlockProblem
 from rocking.dimensional.record_response import BlockRecordResponse, respond_to_record
 from rocking.dimensional.response import BlockResponse, respond
@@ -89,20 +89,13 @@ class Block(geometry.Block):
         >>> Block(half_width=0.2, half_height=0.8).response("sine", peak_acceleration=4.0, period=0.5).overturned
         False
         """
-        of_pulse: dict[str, float | None] = {"peak_acceleration": peak_acceleration, "period": period}
-        if isinstance(excitation, Record):
-            for name, value in of_pulse.items():
-                if value is not None:
-                    raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
-            factor = 1.0 if scale is None else scale
-            return respond_to_record(self, excitation, scale=factor, restitution=restitution, thresholds=thresholds)
-        if scale is not None:
-            raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
-        if peak_acceleration is None or period is None:
-            missing = next(name for name, value in of_pulse.items() if value is None)
-            raise InvalidArgumentError(missing, None, "a number, for a pulse")
-        return respond(BlockProblem(self, excitation, peak_acceleration, period, restitution))
+        motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
+        if isinstance(motion, BlockProblem):
+            return respond(motion)
+        record, factor = motion
+        return respond_to_record(self, record, scale=factor, restitution=restitution, thresholds=thresholds)
 
+    @overload
     def history(
         self,
         excitation: str | AbstractPulse,
@@ -111,29 +104,60 @@ class Block(geometry.Block):
         period: float,
         restitution: Restitution = "housner",
         duration: float | None = None,
-        samples: int = 400,
+        samples: int | None = None,
+        contact: bool = False,
+    ) -> xr.Dataset: ...
+
+    @overload
+    def history(
+        self,
+        excitation: Record,
+        *,
+        scale: float = 1.0,
+        restitution: Restitution = "housner",
+        duration: float | None = None,
+        samples: int | None = None,
+        contact: bool = False,
+    ) -> xr.Dataset: ...
+
+    def history(
+        self,
+        excitation: str | AbstractPulse | Record,
+        *,
+        peak_acceleration: float | None = None,
+        period: float | None = None,
+        scale: float | None = None,
+        restitution: Restitution = "housner",
+        duration: float | None = None,
+        samples: int | None = None,
         contact: bool = False,
     ) -> xr.Dataset:
-        """Rotation against time, `rocking.dimensional.curves.block_history`.
+        """Rotation against time, `block_history` and `block_record_history` of `rocking.dimensional.curves`.
 
         Parameters
         ----------
-        excitation, peak_acceleration, period, restitution
+        excitation, peak_acceleration, period, scale, restitution
             As for `response`.
         duration : float, optional
-            Length [s], > 0; by default the pulse and 8/p after it.
-        samples : int
-            Uniform samples; the events are added.
+            Length [s], > 0; by default the pulse or the record, and 8/p after it.
+        samples : int, optional
+            Uniform samples; by default 400 under a pulse, and those of a record. The events are added.
         contact : bool
             Whether to add reactions and friction demand.
 
         Raises
         ------
         InvalidArgumentError
-            If a value is out of range.
+            If a value is out of range, missing, or has no meaning for the kind of excitation.
         """
-        problem = BlockProblem(self, excitation, peak_acceleration, period, restitution)
-        return block_history(problem, duration=duration, samples=samples, contact=contact)
+        motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
+        if isinstance(motion, BlockProblem):
+            count = DEFAULT_SAMPLES if samples is None else samples
+            return block_history(motion, duration=duration, samples=count, contact=contact)
+        record, factor = motion
+        return block_record_history(
+            self, record, scale=factor, restitution=restitution, duration=duration, samples=samples, contact=contact
+        )
 
     def spectrum(
         self,
@@ -160,3 +184,25 @@ class Block(geometry.Block):
         return block_spectrum(
             self, excitation, peak_acceleration=peak_acceleration, period=period, restitution=restitution
         )
+
+    def _motion(
+        self,
+        excitation: str | AbstractPulse | Record,
+        peak_acceleration: float | None,
+        period: float | None,
+        scale: float | None,
+        restitution: Restitution,
+    ) -> BlockProblem | tuple[Record, float]:
+        """The problem under a pulse, or the record and its factor."""
+        of_pulse: dict[str, float | None] = {"peak_acceleration": peak_acceleration, "period": period}
+        if isinstance(excitation, Record):
+            for name, value in of_pulse.items():
+                if value is not None:
+                    raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
+            return excitation, 1.0 if scale is None else scale
+        if scale is not None:
+            raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
+        if peak_acceleration is None or period is None:
+            missing = next(name for name, value in of_pulse.items() if value is None)
+            raise InvalidArgumentError(missing, None, "a number, for a pulse")
+        return BlockProblem(self, excitation, peak_acceleration, period, restitution)

@@ -11,19 +11,25 @@ from numpy.typing import ArrayLike
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.tracing import overturning_boundary
 from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
+from rocking.dimensional.record_scales import checked_scale
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import AbstractPulse
+from rocking.excitation.records.record import Record
+from rocking.history.record_history import record_history
 from rocking.history.time_history import time_history
 from rocking.model.block import Block
 from rocking.model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.solver.bounded_response import solve_with_bound
+
+DEFAULT_SAMPLES = 400
+"""Uniform samples of a history under a pulse, unless another number is given."""
 
 
 def block_history(
     problem: BlockProblem,
     *,
     duration: float | None = None,
-    samples: int = 400,
+    samples: int = DEFAULT_SAMPLES,
     contact: bool = False,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
@@ -68,22 +74,89 @@ def block_history(
 
 def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
     """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
-    block, p = problem.block, problem.block.frequency_parameter
+    p = problem.block.frequency_parameter
+    time = "time", found["tau"].values / p, {"units": "s", "long_name": "time from pulse start"}
+    impacts = found["impact_time"]
+    history = found.rename({"tau": "time"}).assign_coords(time=time)
+    history["impact_time"] = impacts.dims, impacts.values / p, {"units": "s", "long_name": "time of impact"}
+    about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
+    times = {"period": problem.period, "pulse_end": float(found.attrs["pulse_end"]) / p}
+    return _in_radians(history, problem.block).assign_attrs(about | times)
+
+
+def block_record_history(
+    block: Block,
+    record: Record,
+    *,
+    scale: float = 1.0,
+    restitution: str | float = "housner",
+    duration: float | None = None,
+    samples: int | None = None,
+    contact: bool = False,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Rotation of a block under a record against time in SI units, by (2.2).
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    record : Record
+        Ground motion.
+    scale : float
+        Factor of the record [-], (0, 1e6].
+    restitution : "housner" or float
+        (2.4), 0 where that is negative; or eta [-], [0, 1].
+    duration : float, optional
+        Length [s], > 0; by default that of `rocking.record_history`.
+    samples : int, optional
+        Uniform samples; by default those of the record. The events are added.
+    contact : bool
+        Whether to add reactions and friction demand, which are dimensionless.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of `block_history`, with the coordinate tau(time) [-] beside time(time) [s].
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    factor = checked_scale(scale)
+    eta = restitution_of(block, restitution)
+    found = record_history(
+        record,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=block.uplift_acceleration / (factor * record.peak_acceleration),
+        restitution=eta,
+        alpha=block.equation_alpha,
+        duration=duration,
+        samples=samples,
+        contact=contact,
+        stop=stop,
+    )
+    about = _description(block, factor * record.peak_acceleration, eta)
+    return _in_radians(found, block).assign_attrs(about | {"scale": factor})
+
+
+def _in_radians(history: xr.Dataset, block: Block) -> xr.Dataset:
+    """A history over time [s] with rotation [rad], velocity [rad/s] and ground acceleration [m/s2] for groups."""
     scales = {
         "rotation": (block.alpha, "rad", "rotation theta"),
-        "angular_velocity": (block.alpha * p, "rad s-1", "velocity theta'"),
+        "angular_velocity": (block.alpha * block.frequency_parameter, "rad s-1", "velocity theta'"),
         "ground_acceleration": (block.uplift_acceleration, "m s-2", "ground acceleration"),
-        "impact_time": (1.0 / p, "s", "time of impact"),
     }
-    history = found.rename({"tau": "time"}).assign_coords(
-        time=("time", found["tau"].values / p, {"units": "s", "long_name": "time from pulse start"})
-    )
-    for name, (scale, unit, meaning) in scales.items():
-        dims = history[name].dims
-        history[name] = (dims, scale * found[name].values, {"units": unit, "long_name": meaning})
-    moved = block.top_height * np.sin(history["rotation"].values)
-    history["top_displacement"] = "time", moved, {"units": "m", "long_name": "top corner displacement"}
-    return history.assign_attrs(_description(problem), pulse_end=float(found.attrs["pulse_end"]) / p)
+    scaled = {
+        name: (history[name].dims, scale * history[name].values, {"units": unit, "long_name": meaning})
+        for name, (scale, unit, meaning) in scales.items()
+    }
+    moved = block.top_height * np.sin(scaled["rotation"][1])
+    scaled["top_displacement"] = history["rotation"].dims, moved, {"units": "m", "long_name": "top corner displacement"}
+    return history.assign(scaled)
 
 
 def block_spectrum(
@@ -144,9 +217,9 @@ def block_spectrum(
         "period": ("period", periods, {"units": "s", "long_name": "period of the pulse"}),
         "frequency_ratio": ("period", ratio, {"units": "1", "long_name": "frequency ratio omega_g/p"}),
     }
-    about = _description(problem)
-    del about["period"]
-    return xr.Dataset(variables, coordinates, about)
+    return xr.Dataset(
+        variables, coordinates, _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
+    )
 
 
 def block_boundary(
@@ -208,15 +281,13 @@ def add_si_axes(curves: xr.Dataset, block: Block) -> xr.Dataset:
     )
 
 
-def _description(problem: BlockProblem) -> dict[str, float]:
+def _description(block: Block, peak_acceleration: float, restitution: float) -> dict[str, float]:
     """Attributes that name the problem, in SI units."""
-    block = problem.block
     return {
         "half_width": block.half_width,
         "half_height": block.half_height,
         "alpha": block.alpha,
         "gravity": block.gravity,
-        "peak_acceleration": problem.peak_acceleration,
-        "period": problem.period,
-        "restitution": problem.groups["restitution"],
+        "peak_acceleration": peak_acceleration,
+        "restitution": restitution,
     }

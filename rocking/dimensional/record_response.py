@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
-from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, scale_thresholds
+from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, checked_scale, scale_thresholds
 from rocking.dimensional.scalar_response import (
     BLOCK_FIELDS,
     DISPLACEMENT,
@@ -18,7 +18,6 @@ from rocking.dimensional.scalar_response import (
     ScalarResponse,
     count_of_impacts,
 )
-from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION, ResponseField
@@ -109,7 +108,7 @@ class BlockRecordResponse(ScalarResponse):
         return self.block.uplift_acceleration / self.peak_acceleration
 
     def _describe_motion(self) -> str:
-        return f"{self.record.name} scaled to {self.peak_acceleration:.4g} m/s2"
+        return f"{self.record.name or 'a record'} scaled to {self.peak_acceleration:.4g} m/s2"
 
     def _describe_impacts(self) -> str:
         return count_of_impacts(self.impacts)
@@ -146,9 +145,7 @@ def respond_to_record(
     InvalidArgumentError
         For an argument out of range.
     """
-    factor = in_range("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
-    if factor.ndim:
-        raise InvalidArgumentError("scale", scale, "one number")
+    factor = checked_scale(scale)
     eta = restitution_of(block, restitution)
     uplift = block.uplift_acceleration / record.peak_acceleration
 
@@ -156,7 +153,7 @@ def respond_to_record(
         return record_response(
             motion,
             frequency_parameter=block.frequency_parameter,
-            slenderness=block.uplift_acceleration / (float(factor) * motion.peak_acceleration),
+            slenderness=block.uplift_acceleration / (factor * motion.peak_acceleration),
             restitution=eta,
             alpha=block.equation_alpha,
             stop=stop,
@@ -168,12 +165,12 @@ def respond_to_record(
         refined = solve(record.resampled(record.time_step / REFINEMENT))
     searched = None
     if thresholds:
-        highest = min(max(10.0 * uplift, 2.0 * float(factor)), HIGHEST_SCALE)
+        highest = min(max(10.0 * uplift, 2.0 * factor), HIGHEST_SCALE)
         searched = scale_thresholds(record, block, restitution=eta, highest=highest, stop=stop)
     return BlockRecordResponse(
         block=block,
         record=record,
-        scale=float(factor),
+        scale=factor,
         restitution=eta,
         dimensionless=found,
         resampled=refined,
@@ -181,7 +178,7 @@ def respond_to_record(
         warnings=(
             *_of_record(record),
             *_of_sampling(found, refined),
-            *_of_thresholds(float(factor), searched),
+            *_of_thresholds(factor, searched),
         ),
     )
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
-from rocking.errors import in_range
+from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
 from rocking.solver.records.record_response import record_response
@@ -51,6 +51,20 @@ class ScaleThresholds:
     scale: Array
     overturns_above: NDArray[np.bool_]
     searched: tuple[float, float]
+
+
+def checked_scale(scale: float) -> float:
+    """The factor of a record [-].
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is not one number in (0, 1e6].
+    """
+    factor = in_range("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
+    if factor.ndim:
+        raise InvalidArgumentError("scale", scale, "one number")
+    return float(factor)
 
 
 def scale_thresholds(

@@ -63,7 +63,7 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     ----------
     text : str
         CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
-        may be `half_width` and `half_height`.
+        may be `half_width` and `half_height`. Columns may be separated by semicolons; numbers have decimal points.
     pulse : str
         The pulse.
     restitution : float or "housner"
@@ -74,7 +74,9 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     InvalidArgumentError
         If a column is missing, unknown or without a unit, or a value is not allowed; the line is named.
     """
-    rows = csv.reader(io.StringIO(text.removeprefix("\ufeff")))
+    text = text.removeprefix("\ufeff")
+    header = text.partition("\n")[0]
+    rows = csv.reader(io.StringIO(text), delimiter=";" if ";" in header and "," not in header else ",")
     names, factors = _read_header(next(rows, []))
     labels: list[str] = []
     problems: list[BlockProblem] = []
@@ -134,7 +136,7 @@ def _number(name: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise InvalidArgumentError(name, text, "a number") from None
+        raise InvalidArgumentError(name, text, "a number with a decimal point, such as 0.4") from None
 
 
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:

@@ -2,7 +2,7 @@
 
 The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; a positive one starts a
 rotation in the negative direction. There are two families: sums of sinusoids, for which the slender block has exact
-arcs (3.4), and wavelets, a polynomial times a Gaussian, for which the motion is expanded in Taylor series. To add a
+arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low frequencies. To add a
 pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time.
 """
 

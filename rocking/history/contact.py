@@ -155,8 +155,8 @@ class ContactExtremes:
             )
         if self.chatters:
             said.append(
-                "impacts accumulate to rest while the pulse acts: the motion hangs on the restitution of ever smaller "
-                "ones"
+                "impacts accumulate to rest while the ground moves: the motion depends on the restitution of ever "
+                "smaller ones"
             )
         return said
 

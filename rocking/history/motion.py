@@ -150,11 +150,12 @@ class Motion:
         record = pulse_state(self.pulse).copy()
         if self.pulse.series.has_exact_arcs and self.alpha == 0.0:
             written = sample_arcs(*groups, record, *rest)
-            self._set_response(record)
-            at_rest = tau <= record["uplift_time"]  # which differs from that of the arcs by rounding
-            rotation[at_rest] = velocity[at_rest] = 0.0
         else:
             written = solve_and_sample(*groups, record, step_state(record), *rest)
+        if self.alpha == 0.0:
+            self._set_response(record)
+            at_rest = tau <= record["uplift_time"]  # which differs from that of the flights by rounding
+            rotation[at_rest] = velocity[at_rest] = 0.0
         check_stop(self.stop)
         return record, int(written)
 

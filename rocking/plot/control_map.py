@@ -117,4 +117,6 @@ def _add_key(axes: list[Axes]) -> None:
         Patch(facecolor=colour, edgecolor="#808080", linewidth=0.5, label=meaning)
         for colour, meaning in _COLOURS.values()
     ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    # compact, so that it fits a figure of 5.6 inches
+    spacing = {"handlelength": 1.2, "handletextpad": 0.5, "columnspacing": 1.2}
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), **spacing)

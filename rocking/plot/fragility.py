@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 
 from rocking.errors import InvalidArgumentError
 from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, axes_of, label_of, plain_numbers
-from rocking.suites.fits import curve_probability
 
 POINTS = 300
 """Points of a fitted curve."""
@@ -32,6 +31,8 @@ def fragility(data: xr.Dataset, ax: Axes | None = None) -> Axes:
     InvalidArgumentError
         If `data` is no fragility, or of several blocks or limit states.
     """
+    from rocking.suites.curve import curve_probability  # noqa: PLC0415  # scipy.special: 0.2 s, only for this picture
+
     if "fraction" not in data or data["fraction"].dims != ("intensity",):
         raise InvalidArgumentError("data", dict(data.sizes), "the fragility of one block and one limit state")
     ax = axes_of(ax)

@@ -54,13 +54,15 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
         unit, angle = found.block.uplift_acceleration, np.degrees(found.block.alpha)
         labels = f"{LABELS['peak_acceleration']} [m/s$^2$]", "peak rotation [deg]"
         outcome = found.outcome
-    elif found.shape == () and found.pulse:
+    elif getattr(found, "shape", None) == () and found.pulse:
         pulse, groups = found.pulse, {name: value.item() for name, value in found.groups.items()}
         unit, angle = 1.0, 1.0
         labels = f"{LABELS['amplitude']} [-]", r"peak rotation $\theta_{\max}/\alpha$ [-]"
         outcome = Outcome(int(found.outcome))
     else:
-        raise InvalidArgumentError("found", repr(found), "the response of one block to a pulse")
+        raise InvalidArgumentError(
+            "found", repr(found), "the response of one block to a pulse (of a record: rocking.plot.history)"
+        )
     ax = axes_of(ax)
     groups["alpha"] = groups.get("alpha") or None
     slenderness = groups.pop("slenderness")

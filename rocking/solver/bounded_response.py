@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BoundedResponse:
     """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
 
@@ -56,6 +56,25 @@ class BoundedResponse:
     def overturned(self) -> Flags:
         """Whether the block overturns in the end."""
         return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
+
+    def __repr__(self) -> str:
+        """What happened, in words, with the error bound and the source."""
+        if self.outcome.ndim:
+            shape = " x ".join(str(size) for size in self.outcome.shape)
+            parts = (
+                f"{np.count_nonzero(~self.overturned)} survive",
+                f"{np.count_nonzero(self.overturned)} overturn",
+                f"{np.count_nonzero(self.source == 'cube')} from a cube",
+            )
+            return f"<rocking.BoundedResponse of {shape} blocks: {', '.join(parts)}>"
+        outcome = Outcome(int(self.outcome))
+        safe = outcome == Outcome.SAFE
+        peak = (
+            f": peak rotation {float(self.peak_rotation):.6g} alpha within {float(self.error_bound):.2g}"
+            if safe
+            else ""
+        )
+        return f"<rocking.BoundedResponse: {outcome.sentence}{peak}, from the {self.source.item()}>"
 
     @classmethod
     def empty(cls, shape: tuple[int, ...]) -> BoundedResponse:

@@ -12,8 +12,9 @@ import math
 
 import numpy as np
 
-from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import LANES, load, splat, store
+from rocking._numba.compilation import Record, Series, SimdVector, kernel
+from rocking._numba.simd import load, splat, store
+from rocking._numba.simd_exponentials import exponential
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking.excitation.series import ExcitationSeries, Family
 from rocking.excitation.shapes import MAX_POLYNOMIAL, MAX_SINUSOIDS
@@ -110,20 +111,39 @@ def expand_sinusoids(steps: Record) -> None:
 @kernel
 def expand_wavelet(steps: Record) -> None:
     """The same for a wavelet f = (sum polynomial[k] phi^k) exp(-phi^2/spread)."""
-    f, gauss, p, order = steps.f, steps.gauss, steps.polynomial, steps.order
-    for lane in range(LANES):
-        gauss[0, lane] = math.exp(-steps.phase[lane] * steps.phase[lane] / steps.spread)
-    phase, omega = load(steps.phase, 0), load(steps.omega, 0)
+    phase = load(steps.phase, 0)
+    gaussian = exponential(phase * phase * (-1.0 / steps.spread))
+    expand_gaussian_product(
+        steps, steps.f, steps.gauss, phase, gaussian, load(steps.omega, 0), load(steps.strength, 0), steps.order
+    )
+
+
+@kernel
+def expand_gaussian_product(
+    wavelet: Record,
+    f: Series,
+    gauss: Series,
+    phase: SimdVector,
+    gaussian: SimdVector,
+    omega: SimdVector,
+    strength: SimdVector,
+    order: int,
+) -> None:
+    """Fill `f` with the coefficients of `strength` f in powers of tau about `phase`, where the Gaussian is `gaussian`.
+
+    `gauss` becomes the coefficients of the Gaussian in powers of phi.
+    """
+    p = wavelet.polynomial
     # g = exp(-phi^2/spread): g' = -(2 phi/spread) g, so (n + 1) g_{n+1} = -(2/spread)(phi g_n + g_{n-1})
-    decay = -2.0 / steps.spread
-    before, here = splat(0.0), load(gauss, 0)
+    decay = -2.0 / wavelet.spread
+    before, here = splat(0.0), gaussian
     for n in range(order + 1):
         store(gauss, n, here)
         before, here = here, (phase * here + before) * (decay / (n + 1.0))
     constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
     linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
     square = p[2] + 3.0 * p[3] * phase
-    power = load(steps.strength, 0)
+    power = strength
     for n in range(order + 1):
         total = constant * load(gauss, n)
         if n > 0:

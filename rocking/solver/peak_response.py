@@ -22,7 +22,7 @@ from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.stages.batch import solve_by_arcs
+from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.state import StageState, stage_state
 from rocking.solver.state import FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
 
@@ -88,8 +88,8 @@ def peak_response(
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
     tolerance : float, optional
         Relative error of the peak allowed for speed [-], [1e-13, 1e-3]; by default rounding error only. Slender blocks
-        under sinusoids are exact in any case. No tolerance can be kept where the rounding of the arguments decides on
-        the outcome.
+        are exact in any case, under Ricker wavelets from a frequency ratio of 0.5 or 0.62 on. No tolerance can be kept
+        where the rounding of the arguments decides on the outcome.
     threads : int, optional
         Number of threads for large arrays, >= 1; by default all cores.
     stop : StopFlag, optional
@@ -165,12 +165,12 @@ def solve_cells(
     """
     size = cells[0].size
     records = np.empty(size, RESPONSE_RECORD)
-    sinusoids, rigid = pulse.series.has_exact_arcs, bool(cells[3].any())
-    if sinusoids and rigid and not cells[3].all():
-        for kind in (cells[3] > 0.0, cells[3] == 0.0):
+    exact = (cells[3] == 0.0) & (cells[1] >= pulse.series.least_arc_frequency)
+    by_arcs = bool(exact.all())
+    if not by_arcs and exact.any():
+        for kind in (exact, ~exact):
             records[kind] = solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
         return records
-    by_arcs = sinusoids and not rigid
     cores = int(threads) if threads else AVAILABLE_CORES
     fewest, most = (MIN_ARC_CHUNK, MAX_ARC_CHUNK) if by_arcs else (MIN_CHUNK, MAX_CHUNK)
     chunk_size = min(max(math.ceil(size / cores), fewest), most)
@@ -178,10 +178,24 @@ def solve_cells(
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
         chunk = [cell[part] for cell in cells]
         if by_arcs:
-            state, stages = solver_state.of_arcs(pulse)
-            solve_by_arcs(*chunk[:3], state, *stages, flag, records[part])
+            _fill_by_arcs(pulse, chunk, flag, records[part])
         else:
             solve_batch(*chunk, *solver_state.of_steps(pulse, precision), flag, records[part])
 
     fill_chunks(fill, size, chunk_size, cores, stop)
     return records
+
+
+def _fill_by_arcs(
+    pulse: AbstractPulse, cells: list[NDArray[np.float64]], flag: NDArray[np.uint8], records: NDArray[np.void]
+) -> None:
+    """Solve slender blocks in stages, and by Taylor steps those under a wavelet that no stage decides."""
+    state, stages = solver_state.of_arcs(pulse)
+    solve_by_arcs(*cells[:3], state, *stages, flag, records)
+    if pulse.series.has_exact_arcs:
+        return
+    left = np.flatnonzero(records["outcome"] == LEFT)
+    if left.size:
+        rest = np.empty(left.size, RESPONSE_RECORD)
+        solve_batch(*(cell[left] for cell in cells), *solver_state.of_steps(pulse, FULL_PRECISION), flag, rest)
+        records[left] = rest

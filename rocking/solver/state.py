@@ -13,12 +13,16 @@ import numpy as np
 
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
-from rocking.excitation.shapes import MAX_PIECES, MAX_SINUSOIDS, AbstractPulse
+from rocking.excitation.series import Family
+from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS, AbstractPulse
 from rocking.model.fields import RECORD_FIELDS, record_dtype
 from rocking.solver.excitation import EXCITATION_FIELDS, excitation_fields, fill_excitation
 
 SERIES_LENGTH = 17
 """Length of the series of the slender arcs: degree 16 in z."""
+
+WAVELET_SERIES_LENGTH = 23
+"""The same under wavelets."""
 
 MAX_ORDER = 22
 """Largest degree of the Taylor steps."""
@@ -48,6 +52,9 @@ def _flight_layout() -> np.dtype[np.void]:
                 ends,
             ),  # single sinusoid: phase at which the half period that holds the piece starts,
             ("half_period_cosine", np.float64, ends),  # and the cosine there, +1 or -1
+            ("derivatives", np.float64, (MAX_POLYNOMIAL,)),  # of a wavelet, see `ExcitationSeries`
+            ("growth_rate", np.float64),  # bound of the growth of its derivatives [1/rad]
+            ("series_length", np.int64),  # of the series at the start of a flight in `rocking.solver.stages`
             # the cell
             ("a", np.float64),  # 1/slenderness
             ("omega", np.float64),  # frequency ratio
@@ -182,6 +189,11 @@ def pulse_state(pulse: AbstractPulse) -> Record:
     """The record `FLIGHT_STATE` of a pulse, to be copied before use."""
     record: Record = np.zeros(1, FLIGHT_STATE)[0]
     fill_excitation(record, pulse.series)
+    record["series_length"] = SERIES_LENGTH
+    if pulse.series.family == Family.WAVELET:
+        record["series_length"] = WAVELET_SERIES_LENGTH
+        record["derivatives"] = pulse.series.derivatives
+        record["growth_rate"] = pulse.series.growth_rate(WAVELET_SERIES_LENGTH - 2)
     multiple, shift = (np.array(column) for column in zip(*(term[1:] for term in pulse.series.terms), strict=True))
     count = len(multiple)
     phases = np.array([pulse.start, *pulse.stationary, pulse.end])

@@ -1,13 +1,8 @@
 """Fragility curves fitted to outcomes by maximum likelihood, with intervals.
 
-A fragility curve gives the probability that a limit state is reached at an intensity x:
-
-- lognormal: P = Phi(ln(x/median)/beta), Phi the normal distribution (Baker 2015, eq. 1);
-- logistic: P = 1/(1 + exp(-ln(x/median)/s)).
-
 The outcomes at one level are taken as Bernoulli trials of the probability at that level, and the curve maximises their
-likelihood (Baker 2015, eq. 11). With z = a + b ln x, median = exp(-a/b) and 1/b = beta or s, its logarithm is concave
-in (a, b), so that the maximum is unique where it exists.
+likelihood (Baker 2015, eq. 11). With z = a + b ln x, median = exp(-a/b) and 1/b = beta or s of the curve, its logarithm
+is concave in (a, b), so that the maximum is unique where it exists.
 
 One record gives the outcomes of every level, and these depend on each other. The estimate remains consistent, but the
 usual standard errors, which take all outcomes as independent, are too small. The intervals here are those of
@@ -28,16 +23,16 @@ illustrated in the case of the binomial, Biometrika 26(4), 404-413.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
-from scipy.special import expit, log_expit, log_ndtr, ndtr
 from scipy.stats import beta, chi2
 from scipy.stats import t as student
+
+from rocking.suites.curve import LINKS, Link, curve_probability
 
 Array = NDArray[np.float64]
 
@@ -67,46 +62,6 @@ _SENTENCES = {
     FitStatus.ALL_REACH: "every record reaches the limit state at every level: the median is below the lowest level",
     FitStatus.NO_TREND: "the probability does not increase over the levels: there is no such curve",
 }
-
-
-@dataclass(frozen=True)
-class Link:
-    """A distribution, symmetric about 0, whose logarithm is concave.
-
-    Attributes
-    ----------
-    cdf, log_cdf : callable
-        F(z) and ln F(z).
-    slope : callable
-        d ln F/dz.
-    curvature : callable
-        -d2 ln F/dz2, >= 0, from z and the slope at z.
-    deviation : float
-        Its standard deviation [-].
-    """
-
-    cdf: Callable[[Array], Array]
-    log_cdf: Callable[[Array], Array]
-    slope: Callable[[Array], Array]
-    curvature: Callable[[Array, Array], Array]
-    deviation: float
-
-
-def _normal_slope(z: Array) -> Array:
-    return np.asarray(np.exp(-0.5 * z * z - 0.5 * math.log(2.0 * math.pi) - log_ndtr(z)))
-
-
-LINKS = {
-    "lognormal": Link(ndtr, log_ndtr, _normal_slope, lambda z, slope: slope * (z + slope), 1.0),
-    "logistic": Link(
-        expit,
-        log_expit,
-        lambda z: np.asarray(expit(-z)),
-        lambda _, slope: slope * (1.0 - slope),
-        math.pi / math.sqrt(3.0),
-    ),
-}
-"""The curves by name."""
 
 
 @dataclass(frozen=True)
@@ -143,19 +98,6 @@ class CurveFit:
     log_likelihood: float
     deviance: float
     largest_deviation: float
-
-
-def curve_probability(model: str, intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
-    """The probability of a fitted curve [-]; arguments as in `CurveFit`, which broadcast; nan without a curve.
-
-    A dispersion of 0 is a step, 1/2 at the median; a negative one a curve that falls.
-    """
-    link = LINKS[model]
-    distance = np.log(np.asarray(intensity, dtype=np.float64)) - np.log(np.asarray(median, dtype=np.float64))
-    width = np.asarray(dispersion, dtype=np.float64) / link.deviation
-    with np.errstate(divide="ignore", invalid="ignore"):
-        z = np.where((width == 0.0) & (distance == 0.0), 0.0, distance / width)
-    return np.asarray(link.cdf(z))
 
 
 def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple[Array, Array]:

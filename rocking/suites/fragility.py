@@ -19,8 +19,9 @@ from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
+from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
-from rocking.suites.fits import LINKS, CurveFit, FitStatus, binomial_interval, curve_probability, fit_curve
+from rocking.suites.fits import CurveFit, FitStatus, binomial_interval, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
 

@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.errors import InvalidArgumentError
-from rocking.suites.fits import curve_probability
+from rocking.suites.curve import curve_probability
 from rocking.suites.hazard_curve import check_hazard_curve
 
 Array = NDArray[np.float64]

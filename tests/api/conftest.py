@@ -8,16 +8,25 @@ from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
+import rocking
 from rocking.boundary.tracing import overturning_boundary
 from rocking.datasets.cube import describe, scalar_coordinates, write_dataset
 from rocking.spectra.cubes import spectrum
+from rocking.suites.fragility import fragility_of_outcomes
+from rocking.suites.hazard import annual_rate
+from rocking.suites.outcomes import check_suite, suite_outcomes
+from tests.suites.motions import noise
 
 CUBES = {("sine", 0.85), ("cosine", 0.90)}
+NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
+    "overturning/sine/eta-0.85", "suites/demonstration/fragility", "suites/demonstration/outcomes",
+}  # fmt: skip
+"""Names of the data sets in the results."""
 
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory):
-    """Two cubes and one set of boundary curves, as the workflow writes them."""
+    """Two cubes, one set of boundary curves, and a suite of four made-up records, as the workflow writes them."""
     folder = tmp_path_factory.mktemp("results")
     for pulse, eta in CUBES:
         cube = spectrum(
@@ -31,6 +40,14 @@ def results(tmp_path_factory):
     curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))
     write_dataset(describe(curves), folder / "overturning" / "sine" / "eta-0.85.nc")
+    motions, blocks = [noise(seed) for seed in range(4)], [rocking.Block(0.25, 1.0), rocking.Block(0.4, 2.0)]
+    suite = check_suite(motions, blocks, np.geomspace(1.0, 40.0, 12), "pga", "housner")
+    outcomes = suite_outcomes(suite)
+    fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
+    rate = annual_rate(fragility, ([1.0, 10.0], [1e-2, 1e-4]))
+    fragility = fragility.assign(rate.data_vars).assign_attrs(title="Fragility under noise", confidence=0.95)
+    for name, dataset in (("outcomes", outcomes), ("fragility", fragility)):
+        write_dataset(describe(dataset), folder / "suites" / "demonstration" / f"{name}.nc")
     return folder
 
 

@@ -76,7 +76,7 @@ def test_traced_curves_are_cached(client, monkeypatch):
 
 def test_overturning_reads_the_curves_of_the_workflow(client, results):
     result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
-    stored = xr.load_dataset(results / "overturning" / "sine" / "eta-0.85.nc")
+    stored = read_dataset(results / "overturning" / "sine" / "eta-0.85.nc")
     assert result["source"] == "dataset"
     assert result["data_version"] == client.get("/v1/datasets/overturning/sine/eta-0.85").json()["sha256"]
     assert [len(curve["slenderness"]) for curve in result["curves"]] == stored["row_size"].values.tolist()

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
-from tests.api.conftest import assert_problem, client_of
+from tests.api.conftest import NAMES, assert_problem, client_of
 
 STATIC = Path(rocking_api.__file__).parent / "static"
 QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
@@ -30,7 +30,7 @@ def test_healthy(client):
     assert health_of(client) | {"version": ""} == {
         "status": "ok",
         "version": "",
-        "datasets": 3,
+        "datasets": len(NAMES),
         "unchecked": 0,
         "problems": {},
     }
@@ -116,6 +116,9 @@ def test_openapi_describes_every_route(client):
         "/v1/records/scales",
         "/v1/records/pulse",
         "/v1/pulses",
+        "/v1/metadata",
+        "/v1/suites",
+        "/v1/suites/{name}",
         "/v1/datasets/{name}/subset",
         "/v1/critical_amplitude",
         "/v1/datasets",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from rocking.datasets.cube import read_dataset
 from tests.api.conftest import assert_problem, client_of
 
 NAME = "spectra/sine/eta-0.85"
@@ -15,7 +16,7 @@ RANGES = {"slenderness_min": 0.5, "slenderness_max": 0.6, "frequency_ratio_min":
 
 @pytest.fixture(scope="module")
 def expected(results):
-    cube = xr.load_dataset(results / f"{NAME}.nc", engine="netcdf4")
+    cube = read_dataset(results / f"{NAME}.nc")
     return cube.sel(slenderness=slice(0.5 - 1e-9, 0.6 + 1e-9), frequency_ratio=slice(2.0, 3.0))
 
 

@@ -49,6 +49,26 @@ def test_the_service_names_its_license_contact_and_server(description):
     assert description["servers"][0]["url"] == "/"
 
 
+def test_every_answer_states_its_model_or_where_it_is_stated(client, description):
+    lists = {"/v1/pulses", "/v1/metadata", "/v1/suites", "/v1/datasets", "/v1/datasets/{name}"}
+    found = {}
+    for path, _, operation in operations(description):
+        schema = operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
+        if path.startswith("/v1/") and path not in lists and schema:
+            fields = description["components"]["schemas"][schema["$ref"].rpartition("/")[2]]["properties"]
+            found.setdefault(tuple(sorted({"metadata", "metadata_url"} & set(fields))), set()).add(path)
+    assert set(found) == {("metadata",), ("metadata_url",)}
+    assert found[("metadata",)] == {
+        path for path in description["paths"] if path.startswith(("/v1/blocks", "/v1/records"))
+    } | {"/v1/suites/{name}"}
+    point = {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+    answers = [client.get("/v1/response", params=point).json(), client.post("/v1/response", json=point).json()]
+    for answer in answers:
+        stated = client.get(answer["metadata_url"]).json()
+        assert [one["number"] for one in stated["equations"]] == ["2.1", "2.2", "2.3", "2.4", "3.1"]
+        assert stated["disclaimer"]
+
+
 def example_of(parameter):
     """What a documentation page fills in: the example, the default, or the first of the allowed values."""
     schema = parameter["schema"]

@@ -189,12 +189,13 @@ def test_a_process_without_a_cache_folder_gives_results_after_one_warning(tmp_pa
 import warnings
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
-    import rocking
-    found = rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
-print(len([one for one in said if "NUMBA_CACHE_DIR" in str(one.message)]), found.outcome)
+    import numpy
+    from rocking.interpolation.stencils import lagrange_weight
+weight = lagrange_weight(numpy.array([0.0, 1.0]), 0, 2, 0, 0.25)
+print(len([one for one in said if "NUMBA_CACHE_DIR" in str(one.message)]), weight)
 """
     closed(tmp_path / "file")
-    assert script(code, NUMBA_CACHE_DIR=str(tmp_path / "file")).split() == ["1", "1"]
+    assert script(code, NUMBA_CACHE_DIR=str(tmp_path / "file")).split() == ["1", "0.75"]
 
 
 def test_kernels_release_the_interpreter_and_do_not_reorder_sums():

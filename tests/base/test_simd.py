@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import scipy.special
 
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
-from rocking._numba.simd_exponentials import arccosine, cosh_minus_one_and_sinh
+from rocking._numba.simd_error_function import scaled_erfc
+from rocking._numba.simd_exponentials import arccosine, cosh_minus_one_and_sinh, exponential
 from rocking._numba.simd_sines import sine_and_cosine
 
 
@@ -18,20 +20,24 @@ def evaluate(x, found):
     store(found, 2, sine)
     store(found, 3, cosine)
     store(found, 4, arccosine(load(x, 2)))
+    store(found, 5, exponential(load(x, 3)))
+    store(found, 6, scaled_erfc(load(x, 4)))
 
 
 def test_functions_are_accurate_to_rounding():
     rng = np.random.default_rng(3)
     for _ in range(300):
-        x = np.zeros((3, LANES))
+        x = np.zeros((5, LANES))
         x[0], x[1] = np.exp(rng.uniform(-20, 5.8, LANES)), rng.uniform(-1000, 1000, LANES)
         x[2] = 1.0 - np.exp(rng.uniform(-35, 0, LANES))
-        found, exact = np.zeros((5, LANES)), x.astype(np.longdouble)
+        x[3], x[4] = rng.uniform(-699, 300, LANES), np.exp(rng.uniform(-8, 12, LANES))
+        found, exact = np.zeros((7, LANES)), x.astype(np.longdouble)
         evaluate(x, found)
         expected = 2 * np.sinh(exact[0] / 2) ** 2, np.sinh(exact[0]), np.sin(exact[1]), np.cos(exact[1])
-        for k, value in enumerate((*expected, np.arccos(exact[2]))):
+        for k, value in enumerate((*expected, np.arccos(exact[2]), np.exp(exact[3]))):
             scale = 1.0 if k in (2, 3) else np.abs(value)
             assert np.max(np.abs(found[k] - value) / scale) < 6e-16
+        assert np.max(np.abs(found[6] / scipy.special.erfcx(x[4]) - 1.0)) < 1.5e-15  # scipy's share: 7e-16
 
 
 @kernel

@@ -151,15 +151,13 @@ def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path
 
 @pytest.mark.slow
 def test_growth_finds_the_same_outcomes_for_any_number_of_threads(tmp_path: Path) -> None:
-    record, _ = run("cost.growth", tmp_path / "a.json", "--largest", "10000")
+    record, _ = run("cost.growth", tmp_path / "a.json", "--largest", "1024")
     counts = {(one["kind"], one["cells"]): set() for one in record["sizes"]}
     for one in record["sizes"]:
         counts[one["kind"], one["cells"]].add(one["overturned"])
     assert counts == {
         ("slender", 1024): {666},
-        ("slender", 10_000): {6529},
         ("rigid", 1024): {672},
-        ("rigid", 10_000): {6576},
     }
     assert (tmp_path / "a.svg").exists()
 

@@ -198,7 +198,7 @@ def test_table_of_blocks(tmp_path):
     assert (rows[1]["overturned"], rows[1]["peak_rotation_deg"], rows[1]["restitution"]) == ("true", "", "0.9")
     as_json = json.loads(run("response", "--pulse", "sine", "--blocks", str(path), "--json"))
     assert as_json["outcome"] == [row["outcome"] for row in rows]
-    piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE)
+    piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE.replace(",", ";"))
     assert read_csv(piped.stdout) == rows
     path.write_text(TABLE.splitlines()[0])
     assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []

@@ -9,6 +9,7 @@ from tests.cli.test_cli import GROUPS, UNITS, refused, run
 
 BLOCK = UNITS[:6]
 SUITE = Path(__file__).parents[2] / "workflow/config/suite.yaml"
+NAPA = str(Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv")
 AMPLITUDE = ["--peak-acceleration", "0.5g"]
 
 
@@ -25,6 +26,7 @@ AMPLITUDE = ["--peak-acceleration", "0.5g"]
         ["map", *BLOCK],
         ["map", "--pulse", "sine", "--restitution", "0.85"],
         ["fragility", str(SUITE)],
+        ["record", NAPA, *BLOCK[2:], "--scale", "1.2", "--duration", "8s"],
     ],
     ids=lambda command: f"{command[0]} {'units' if '--half-width' in command else 'groups'}",
 )
@@ -53,5 +55,6 @@ def test_errors_name_the_option_or_the_file(tmp_path):
     missing = str(tmp_path / "no" / "folder.png")
     assert "a file that can be written" in refused("plot", "response", *GROUPS, "-o", missing)
     assert "--slenderness" in refused("plot", "map", *GROUPS, "-o", "picture.png")
+    assert "FILE" in refused("plot", "record", missing, *BLOCK[2:], "-o", "picture.png")
     assert "FILE" in refused("plot", "cube", str(tmp_path / "none.nc"), "-o", "picture.png")
     assert "missing unit: write 3s" in refused("plot", "history", *UNITS, "--duration", "3", "-o", "picture.png")

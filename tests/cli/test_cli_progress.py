@@ -29,6 +29,14 @@ def test_shown_on_a_terminal_while_the_block_runs_long(capsys):
 
 
 @pytest.mark.usefixtures("terminal")
+def test_long_work_is_explained(monkeypatch, capsys):
+    monkeypatch.setattr(module, "LONG", 0.05)
+    with progress("solving"):
+        time.sleep(0.4)
+    assert "solving (the first calls compile parts of the solver)" in capsys.readouterr().err.replace("\n", " ")
+
+
+@pytest.mark.usefixtures("terminal")
 def test_nothing_for_short_work_and_after_an_error(capsys):
     with pytest.raises(ValueError, match="refused"), progress("solving"):
         raise ValueError("refused")

@@ -90,6 +90,7 @@ def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
     )
     assert "no unit of acceleration" in refused("record", str(path), *SIZES, "--time-step", "5 ms")
     assert "no time step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")
+    assert "or --time-step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")  # not the name in Python
 
 
 def test_baseline_is_removed_on_request_only():

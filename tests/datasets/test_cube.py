@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -219,3 +221,21 @@ def lagrange(t: np.ndarray) -> list[np.ndarray]:
 def test_spectrum_refuses_invalid_arguments() -> None:
     with pytest.raises(InvalidArgumentError, match="frequency_ratio"):
         spectrum("sine", restitution=0.85, slenderness=SLENDERNESS, frequency_ratio=[0.0, 1.0, 2.0, 3.0])
+
+
+def test_threads_read_files_at_the_same_time(written: Path) -> None:
+    # In another process: without the lock, the netCDF library ends the process within a second.
+    program = (
+        "import sys, threading\n"
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "from rocking.datasets.cube import decode_dataset, read_content, read_slice\n"
+        "path = sys.argv[1]\n"
+        "content = read_content(path)\n"
+        "def read(number):\n"
+        "    return decode_dataset(content, path) if number % 2 else read_slice(path, slenderness=number % 29)\n"
+        "with ThreadPoolExecutor(8) as pool:\n"
+        "    read_by_all = list(pool.map(read, range(200)))\n"
+        "print(len(read_by_all))"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(written)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "200\n"), done.stderr

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking.datasets.provenance import code_digest, settings_digest, source_files
+from rocking.datasets.provenance import SourceTree, code_digest, settings_digest, source_files
 
 TREE = {
     "rocking/__init__.py": "import lazy_loader",
@@ -62,6 +62,15 @@ def test_digest_is_independent_of_the_folder(tree: Path, tmp_path: Path) -> None
         (moved / name).parent.mkdir(parents=True, exist_ok=True)
         (moved / name).write_text(text)
     assert code_digest(moved / "script.py", root=moved) == code_digest(tree / "script.py", root=tree)
+
+
+def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
+    sources = SourceTree(tree)
+    first = sources.digest(tree / "script.py")
+    (tree / "rocking/b.py").write_text("changed = 1")
+    assert sources.digest(tree / "script.py") == first
+    assert sources.digest(tree / "nested.py") == code_digest(tree / "nested.py", root=tree)
+    assert SourceTree(tree).digest(tree / "script.py") != first
 
 
 def test_package_digest_covers_every_module() -> None:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import rocking
 from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of
@@ -132,6 +133,33 @@ def test_history_is_that_of_the_groups_in_si_units():
     fine = BLOCK.history("sine", **MOTION, samples=4000)  # rad/s over s is rad
     turned = np.trapezoid(fine["angular_velocity"], fine["time"])
     assert turned == pytest.approx(float(fine["rotation"][-1]), abs=1e-4)
+
+
+def test_history_under_a_record_is_that_of_the_groups_in_si_units():
+    motion = rocking.Record(3.0 * np.sin(8.0 * np.arange(0.0, 2.0, 0.01)), 0.01, unit="m/s2")
+    found = BLOCK.history(motion, scale=1.2, restitution=0.8, contact=True)
+    expected = rocking.record_history(
+        motion,
+        frequency_parameter=BLOCK.frequency_parameter,
+        slenderness=BLOCK.uplift_acceleration / (1.2 * motion.peak_acceleration),
+        restitution=0.8,
+        alpha=BLOCK.alpha,
+        contact=True,
+    )
+    for name in ("impact_time", "friction_demand"):
+        xr.testing.assert_identical(found[name], expected[name])
+    np.testing.assert_allclose(found["rotation"], expected["rotation"] * BLOCK.alpha, rtol=1e-13)
+    inside = found.sel(time=slice(0.0, 1.99))
+    ground = np.interp(inside["time"], 0.01 * np.arange(motion.samples), 1.2 * motion.acceleration)
+    np.testing.assert_allclose(inside["ground_acceleration"], ground, atol=1e-12)
+    response = BLOCK.response(motion, scale=1.2, restitution=0.8)
+    assert float(abs(found["rotation"]).max()) == pytest.approx(response.rotation, rel=1e-3)
+    assert "under a record scaled to" in repr(response)  # without a name
+    assert float(BLOCK.history(motion, duration=1.5)["time"][-1]) == pytest.approx(1.5)
+    with pytest.raises(InvalidArgumentError, match=r"^`period` = 0.5"):
+        BLOCK.history(motion, period=0.5)
+    with pytest.raises(InvalidArgumentError, match=r"^`scale` = 0"):
+        BLOCK.history(motion, scale=0.0)
 
 
 def test_duration_of_a_history_is_in_seconds():

@@ -15,7 +15,7 @@ from rocking.model import fields
 from rocking.model.fields import BOUNDED_FIELDS, COLUMN_FIELDS, CUBE_FIELDS, RESPONSE_FIELDS
 from rocking.model.outcome import Outcome
 from rocking.model.outcome_code import SURVIVES, decode_outcomes, outcome_codes
-from rocking.solver.bounded_response import BoundedResponse
+from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
 from rocking.solver.peak_response import peak_response
 from rocking.solver.state import RESPONSE_RECORD
 
@@ -143,4 +143,18 @@ def test_repr_describes_the_outcome(groups, words):
     shown = repr(peak_response("sine", **GROUPS | groups))
     assert words in shown
     assert len(shown) < 200
+    assert not re.search(r"array|nan", shown)
+
+
+@pytest.mark.parametrize(
+    ("slenderness", "words"),
+    [
+        (0.4, "BoundedResponse: rocks and comes to rest: peak rotation 0.553569 alpha within "),
+        (0.05, "BoundedResponse: overturns without impact, from the solver"),
+        ([1.2, 0.4, 0.05], "of 3 blocks: 2 survive, 1 overturn, 0 from a cube"),
+    ],
+)
+def test_repr_of_a_bounded_response_describes_outcome_and_source(slenderness, words):
+    shown = repr(solve_with_bound("sine", **GROUPS | {"slenderness": slenderness}, alpha=None))
+    assert words in shown
     assert not re.search(r"array|nan", shown)

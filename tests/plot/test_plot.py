@@ -69,6 +69,22 @@ def test_history_of_a_record_and_in_groups(ax):
     assert plot.history(history, color="k").get_xlabel() == r"time $\tau=p\,t$ [-]"
 
 
+def test_key_of_a_map_is_inside_its_figure():
+    grid = {"slenderness": np.linspace(0.1, 1.2, 20)[:, None], "frequency_ratio": np.linspace(1.0, 8.0, 20)}
+    figure = Figure(figsize=(5.6, 3.4), layout="constrained")  # that of the guide
+    plot.control_map(rocking.peak_response("sine", **GROUPS | grid).to_xarray(), figure.add_subplot())
+    figure.canvas.draw()
+    (key,) = figure.legends
+    box = key.get_window_extent()
+    assert box.x0 >= 0.0
+    assert box.x1 <= figure.bbox.width
+
+
+def test_response_to_a_record_is_refused_as_a_curve_over_the_amplitude():
+    with pytest.raises(InvalidArgumentError, match=r"rocking\.plot\.history"):
+        plot.response(BLOCK.response(noise(3)))
+
+
 def test_response_between_its_thresholds(ax):
     found = BLOCK.response("sine", **PULSE)
     plot.response(found, ax)

@@ -134,6 +134,8 @@ def test_guide_builds_without_warning(tmp_path):
     )
     for text in ("/v1/blocks/response", "ROCKING_MAX_POINTS", "rocking plot fragility", "--peak-acceleration"):
         assert text in index, text
+    assert "largest_safe_acceleration number or null m/s2 peak acceleration below which" in " ".join(index.split())
+    assert "surviving_from_half_diagonal" in index  # of a part of a response
     assert "restitution_error" in (target / "reference/files.html").read_text()
     assert (target / "reference/generated/rocking.peak_response.html").exists()
     loaded = [

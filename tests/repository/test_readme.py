@@ -141,7 +141,7 @@ def test_data_set_block(
 ) -> None:
     monkeypatch.chdir(smoke_results.parent)
     exec(PYTHON_BLOCKS[2], {})
-    assert "peak_rotation" in capsys.readouterr().out
+    assert "peak rotation 0.5" in capsys.readouterr().out
 
 
 @pytest.mark.slow

@@ -1,9 +1,8 @@
 """The wheel: it holds `rocking` and `rocking_api` and nothing else, requires no service or plotting package without an
-extra, and its commands work from an installation outside of the checkout.
+extra. `tests/api/test_api_kernels.py` asks the service of an installed wheel.
 """
 
 import re
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -11,14 +10,11 @@ from email.message import Message
 from email.parser import Parser
 from pathlib import Path
 
-import httpx2
 import pytest
 from packaging.requirements import Requirement
 
-from tests.api.servers import serving
+from tests.wheel_fixtures import PACKAGES
 
-ROOT = Path(__file__).parents[2]
-PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
 REQUIRED = {
     "lazy-loader",
     "llvmlite",
@@ -36,26 +32,6 @@ REQUIRED = {
 
 OPTIONAL = {"service": {"fastapi", "prometheus-client", "uvicorn", "zarr"}, "plot": {"matplotlib"}}
 """Distributions that only an extra brings."""
-
-
-@pytest.fixture(scope="module")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy to build from, because the build writes files next to its sources."""
-    source = tmp_path_factory.mktemp("source")
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, source)
-    for folder in PACKAGES.values():
-        shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    return source
-
-
-@pytest.fixture(scope="module")
-def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("wheel")
-    build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index", "--quiet"]
-    subprocess.run([*build, "--wheel-dir", str(folder), str(source)], check=True)
-    (wheel,) = folder.glob("rocking-*.whl")
-    return wheel
 
 
 @pytest.fixture(scope="module")
@@ -111,21 +87,3 @@ def test_serve_without_its_packages_names_the_extra(wheel: Path, tmp_path: Path)
     assert done.returncode == 1
     assert "rocking serve needs the extra `service`, pip install 'rocking[service]'" in done.stderr
     assert "Traceback" not in done.stderr
-
-
-@pytest.mark.slow
-def test_the_service_answers_from_the_wheel(wheel: Path, tmp_path: Path) -> None:
-    """Outside of the checkout; the required packages are those of this environment."""
-    installed = tmp_path / "installed"
-    install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--quiet", "--target"]
-    subprocess.run([*install, str(installed), str(wheel)], check=True)
-    program = "import rocking, sys; print(rocking.__file__); from rocking.cli.app import app; app()"
-    path = {"PYTHONPATH": str(installed), "ROCKING_MAX_SECONDS": "600"}
-    with serving(tmp_path, tmp_path / "log", (sys.executable, "-c", program), cwd=tmp_path, **path) as server:
-        assert str(installed) in server.log.read_text()
-        for page in ("/", "/docs", "/openapi.json", "/health", "/metrics", "/static/docs.js"):
-            assert httpx2.get(server.address + page).status_code == 200, page
-        request = "/v1/response?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=0.85"
-        response = httpx2.get(server.address + request, timeout=600).json()  # compiled anew, in a folder of its own
-        assert response["outcome"] == "SAFE"
-        assert server.stop() in (0, -15)

@@ -1,4 +1,4 @@
-"""The stages for slender blocks under sinusoids: the same responses as the general solver, whatever the company."""
+"""The stages for slender blocks: the same responses as the general solver, whatever the company."""
 
 import math
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._numba.compilation import kernel
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.solver.kernels.batch import write_response
 from rocking.solver.kernels.event_loop import advance_by_arc, init_state
@@ -33,14 +34,19 @@ def by_stages(pulse, s, w, eta):
     return found
 
 
-def by_event_loop(pulse, s, w, eta):
+@kernel
+def follow_cells(s, w, eta, flight, found):
     """One cell after another, from event to event."""
-    found, flight = np.zeros(s.size, RESPONSE_RECORD), pulse_state(pulse).copy()
     for i in range(s.size):
         init_state(s[i], w[i], 0.0, flight)
         while advance_by_arc(flight, eta[i]):
             pass
         write_response(flight, found[i])
+
+
+def by_event_loop(pulse, s, w, eta):
+    found = np.zeros(s.size, RESPONSE_RECORD)
+    follow_cells(s, w, eta, pulse_state(pulse).copy(), found)
     return found
 
 
@@ -49,16 +55,13 @@ def assert_equal(first, second):
         np.testing.assert_array_equal(first[name], second[name], err_msg=name)
 
 
-@pytest.mark.parametrize("name", SIGNED)
-def test_stages_and_event_loop_agree(name):
-    pulse = rocking.get_pulse(name)
-    s, w, eta = cells(500, SIGNED.index(name))
-    stages, loop = by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta)
+def assert_agree(stages, loop, s, eta):
+    """Equal events and modes; values equal to rounding where the problem is well conditioned."""
     # where the peaks of two uplifts differ by rounding only, which 1/(1 - s) amplifies, either may be the first
     tie = (stages["peak_mode"] - loop["peak_mode"]) % 65536 == 0
     rounding = 1e-10 + 1e-15 / np.maximum(1.0 - s, 1e-13)
     tie &= np.abs(stages["peak_rotation"] - loop["peak_rotation"]) <= rounding * loop["peak_rotation"]
-    assert np.count_nonzero(stages["peak_mode"] != loop["peak_mode"]) <= 20
+    assert np.count_nonzero(stages["peak_mode"] != loop["peak_mode"]) <= 0.01 * s.size
     for field in WHOLE:
         decided = ~tie if field == "peak_mode" else slice(None)
         np.testing.assert_array_equal(stages[field][decided], loop[field][decided], err_msg=field)
@@ -71,7 +74,14 @@ def test_stages_and_event_loop_agree(name):
         assert error[plain].max(initial=0.0) < 1e-9, field
 
 
-@pytest.mark.parametrize("name", ["sine", "-c1", "mavroeidis_papageorgiou"])
+@pytest.mark.parametrize("name", SIGNED)
+def test_stages_and_event_loop_agree(name):
+    pulse = rocking.get_pulse(name)
+    s, w, eta = cells(4000, SIGNED.index(name))
+    assert_agree(by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta), s, eta)
+
+
+@pytest.mark.parametrize("name", ["sine", "-c1", "mavroeidis_papageorgiou", "ricker"])
 def test_a_cell_does_not_depend_on_its_company(name):
     pulse = rocking.get_pulse(name)
     s, w, eta = cells(BLOCK_SIZE + 300, 5)
@@ -82,7 +92,7 @@ def test_a_cell_does_not_depend_on_its_company(name):
         assert_equal(by_stages(pulse, s[i : i + 1], w[i : i + 1], eta[i : i + 1]), together[i : i + 1])
 
 
-@pytest.mark.parametrize("name", ["sine", "c2", "-mavroeidis_papageorgiou"])
+@pytest.mark.parametrize("name", ["sine", "c2", "-mavroeidis_papageorgiou", "-ricker_antisymmetric"])
 def test_cells_that_differ_in_restitution_share_the_first_flight(name):
     """In blocks of every size, some of which end at the end of a block of the solver."""
     pulse = rocking.get_pulse(name)
@@ -102,7 +112,7 @@ def test_a_start_above_the_level_and_pieces_without_a_cut():
     terms = ((1.0, 1.0, -math.pi / 2), (0.6, 2.0, 0.3), (0.3, 3.0, 1.0))
     for start, end in ((0.2, 7.0), (-3.0, 4.0), (1.0, 12.0)):
         pulse = SinusoidalPulse.of_unit_peak("sum", start, end, terms)
-        s, w, eta = cells(800, 9)
+        s, w, eta = cells(4000, 9)
         stages, loop = by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta)
         for field in ("outcome", "impacts", "chatter"):
             np.testing.assert_array_equal(stages[field], loop[field], err_msg=field)

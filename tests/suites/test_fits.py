@@ -7,7 +7,8 @@ import pytest
 from scipy.optimize import minimize
 from scipy.stats import binomtest, logistic, norm
 
-from rocking.suites.fits import FitStatus, binomial_interval, curve_probability, fit_curve
+from rocking.suites.curve import curve_probability
+from rocking.suites.fits import FitStatus, binomial_interval, fit_curve
 
 LEVELS = np.geomspace(0.3, 10.0, 15)
 

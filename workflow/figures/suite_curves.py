@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from rocking.datasets.cube import read_dataset
 from rocking.plot.fragility import CURVES, POINTS, draw_fractions
 from rocking.plot.style import WIDTH
-from rocking.suites.fits import curve_probability
+from rocking.suites.curve import curve_probability
 from workflow.figures.style import panel_letters, plotted
 from workflow.figures.suite_outcomes import block_title, intensity_label
 

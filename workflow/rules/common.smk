@@ -10,7 +10,7 @@ PROJECT = Path(str(workflow.basedir))
 sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
-from rocking.datasets.provenance import code_digest, settings_digest
+from rocking.datasets.provenance import SourceTree, settings_digest
 from rocking.suites.configuration import suite_configuration
 from workflow import parts, records
 from workflow.configuration import (
@@ -27,6 +27,8 @@ from workflow.run_lock import RUN_ID, RunningError, acquire
 from snakemake.exceptions import WorkflowError
 
 os.environ[RUN_ID] = str(os.getpid())  # the jobs end with this process
+
+SOURCES = SourceTree(PROJECT)
 
 CONFIG_FOLDER = Path(workflow.configfiles[0]).parent  # folders in a configuration are relative to it
 
@@ -73,7 +75,7 @@ def provenance(rule_name, scripts, settings, products):
     of all files that they import is therefore a parameter of the rule.
     """
     digests = {
-        "code_sha256": code_digest(*(PROJECT / "workflow" / script for script in scripts)),
+        "code_sha256": SOURCES.digest(*(PROJECT / "workflow" / script for script in scripts)),
         "settings_sha256": settings_digest(settings),
     }
     for path in products:
@@ -83,7 +85,7 @@ def provenance(rule_name, scripts, settings, products):
 
 def benchmark_code(*names):
     """Digest of benchmarks and of all that they import, computed when a job needs it."""
-    return lambda wildcards: code_digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
+    return lambda wildcards: SOURCES.digest(*(PROJECT / f"benchmarks/{name}.py" for name in names))
 
 
 def installed_baselines(wildcards):

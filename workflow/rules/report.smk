@@ -38,8 +38,8 @@ RECORDS = [
     *FIGURE_RECORDS,
     rules.claims.output.record,
 ]
-MANIFEST_CODE = code_digest(PROJECT / "workflow/scripts/manifest.py")
-CHECKS_CODE = code_digest(*(PROJECT / "workflow/checks").glob("*.py"))
+MANIFEST_CODE = SOURCES.digest(PROJECT / "workflow/scripts/manifest.py")
+CHECKS_CODE = SOURCES.digest(*(PROJECT / "workflow/checks").glob("*.py"))
 
 
 rule manifest:

@@ -107,7 +107,7 @@ for _figure, _source in SUITE_FIGURES.items():
             "../scripts/figure.py"
 
 
-SUITE_MANIFEST_CODE = code_digest(PROJECT / "workflow/scripts/manifest.py")
+SUITE_MANIFEST_CODE = SOURCES.digest(PROJECT / "workflow/scripts/manifest.py")
 
 
 rule suite_manifest:

@@ -23,6 +23,7 @@ from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_stream, dataset_of,
 from rocking_api.http.errors import SlowBodyError, TooLargeError, UnsupportedBodyError
 from rocking_api.http.memory_budget import Reservation
 from rocking_api.http.number_columns import GROUPS, Columns, check_columns, cut_arrays, parse_array, parse_csv
+from rocking_api.models.metadata import METADATA_URL
 from rocking_api.models.params import BatchParams, LookupOptions, check_value
 from rocking_api.models.responses import VERSION, columns_of
 
@@ -204,4 +205,5 @@ def batch_response(batch: Batch, result: BatchResult, form: Form) -> Response:
     columns = columns_of(result)
     if form == "csv":
         return csv_stream(batch.groups | columns, "response")
-    return json_stream({"data_versions": result.versions, "version": VERSION, "query": query}, columns)
+    fields = {"data_versions": result.versions, "version": VERSION, "metadata_url": METADATA_URL, "query": query}
+    return json_stream(fields, columns)

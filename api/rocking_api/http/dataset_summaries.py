@@ -10,6 +10,7 @@ import xarray as xr
 
 from rocking.datasets.catalogue import Catalogue, DatasetFile, VersionCache
 from rocking.datasets.cube import DIMENSIONS
+from rocking.datasets.netcdf import open_netcdf
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class DatasetSummaries:
 def _read(product: DatasetFile, path: Path) -> Summary:
     """The summary from the head and the axes of a file: reading all variables of fifty files takes half a minute."""
     try:
-        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
+        with open_netcdf(path) as dataset:
             return _summary(product, dataset)
     except (OSError, ValueError, RuntimeError, KeyError):  # whatever the libraries meet in a damaged file
         return Summary(product, product.name, None, None, {})

@@ -67,4 +67,24 @@ METADATA = Metadata(
 )
 """That of every response in SI units."""
 
+GROUPS_METADATA = METADATA.model_copy(
+    update={
+        "model": "free-standing rigid block on rigid ground that rocks about its corners, in dimensionless groups: "
+        "equation (2.2) with a slenderness angle, its slender limit (3.1) without",
+        "equations": [
+            *EQUATIONS,
+            Equation(
+                number="3.1",
+                formula="d2y/dtau2 = y - sgn(y) - u_g''/(g tan(alpha))",
+                meaning="rocking in the slender limit, y = theta/alpha, tau = p t",
+            ),
+        ],
+    }
+)
+"""That of every response in groups, under `/v1/metadata`: it is longer than most of these responses."""
+
+METADATA_URL = "/v1/metadata"
+
+METADATA_URL_FIELD = Field(METADATA_URL, description="path of model, assumptions and limits of use")
+
 METADATA_FIELD = Field(METADATA, description="model, assumptions and limits of use")

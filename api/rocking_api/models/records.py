@@ -221,6 +221,7 @@ class RecordHistoryResponse(Motion):
     query: RecordHistoryParams = QUERY
     record: RecordDescription = _RECORD
     time: list[float] = Field(description="from the first sample [s]")
+    metadata: Metadata = METADATA_FIELD
 
 
 class RecordScalesResponse(BaseModel):
@@ -240,6 +241,7 @@ class RecordScalesResponse(BaseModel):
         "ranges of one outcome than 0.2 % can be missed"
     )
     source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
     version: str = VERSION_FIELD
 
 
@@ -256,4 +258,5 @@ class RecordPulseResponse(BaseModel):
     pulse_velocity: list[float] = Field(description="of the pulse, factor included [m/s]")
     caution: str = Field(CAUTION, description="why the pulse does not replace the record")
     source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
     version: str = VERSION_FIELD

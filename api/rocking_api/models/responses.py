@@ -24,6 +24,7 @@ from rocking.model.fields import (
 from rocking.model.response import Outcome
 from rocking_api.execution.evaluation import BatchResult, PointResult
 from rocking_api.http.encoding import Column
+from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import HistoryParams, OverturningParams, ResponseParams
 
 VERSION = version("rocking")
@@ -60,6 +61,7 @@ class PointResponse(BaseModel):
     source: str = _SOURCE
     data_version: str | None = _DATA
     version: str = VERSION_FIELD
+    metadata_url: str = METADATA_URL_FIELD
 
 
 class Columns(BaseModel):
@@ -74,6 +76,7 @@ class Columns(BaseModel):
     source: list[str] = _SOURCE
     data_versions: list[str] = Field(description="sha256 of each data set used")
     version: str = VERSION_FIELD
+    metadata_url: str = METADATA_URL_FIELD
 
 
 class BatchResponse(Columns):
@@ -106,6 +109,7 @@ class OverturningResponse(BaseModel):
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
     version: str = VERSION_FIELD
+    metadata_url: str = METADATA_URL_FIELD
 
 
 class ContactResponse(BaseModel):
@@ -146,6 +150,7 @@ class HistoryResponse(Motion):
 
     query: HistoryParams = QUERY
     tau: list[float] = Field(description="time p t from the start of the pulse [-]")
+    metadata_url: str = METADATA_URL_FIELD
 
 
 class Link(BaseModel):

@@ -21,6 +21,7 @@ from rocking_api.http.caching import not_modified
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import (
     FREQUENCY_RATIO,
     SLENDERNESS,
@@ -73,6 +74,7 @@ class MapResponse(BaseModel):
     outcomes: list[str] = Field(description="names of the outcomes")
     source: str = BY_SOLVER
     version: str = VERSION_FIELD
+    metadata_url: str = METADATA_URL_FIELD
 
 
 @router.get(

@@ -11,6 +11,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.boundary.amplitude import Thresholds, critical_amplitude
 from rocking.model.response import Outcome
 from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD
 from rocking_api.service import ServiceDep
@@ -55,6 +56,7 @@ class AmplitudeResponse(BaseModel):
     )
     source: str = BY_SOLVER
     version: str = VERSION_FIELD
+    metadata_url: str = METADATA_URL_FIELD
 
 
 @router.get("/critical_amplitude", summary="Amplitudes at which the outcome of a block changes")

@@ -1,4 +1,4 @@
-"""The pages `/`, `/records`, `/datasets`, `/state` and `/docs`, which load nothing from other hosts."""
+"""The pages `/`, `/records`, `/suites`, `/datasets`, `/state` and `/docs`, which load nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -33,6 +33,12 @@ async def get_explorer() -> FileResponse:
 async def get_records() -> FileResponse:
     """A block under the record of a file."""
     return _page("records.html", _EXPLORER_POLICY)
+
+
+@router.get("/suites")
+async def get_suites_page() -> FileResponse:
+    """Blocks under a suite of records, as a report to print."""
+    return _page("suites.html", _EXPLORER_POLICY)
 
 
 @router.get("/datasets")

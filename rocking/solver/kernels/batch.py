@@ -1,7 +1,7 @@
 """Many blocks by Taylor steps, `LANES` at a time.
 
 A SIMD lane takes the next cell as soon as its cell is finished. Consecutive cells that differ in eta only share the
-first flight, which is computed once. Slender blocks under sinusoids are solved in `rocking.solver.stages`.
+first flight, which is computed once. Slender blocks are solved in `rocking.solver.stages` where they have exact arcs.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def solve_batch(
     stop: FloatArray,
     responses: Record,
 ) -> None:
-    """Follow blocks from rest to their final outcome, rigid ones or under wavelets.
+    """Follow blocks from rest to their final outcome, by Taylor steps.
 
     Parameters
     ----------

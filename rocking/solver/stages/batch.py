@@ -1,9 +1,9 @@
-"""Slender blocks under sinusoids: all flights of a block of cells in stages over compacted lists.
+"""Slender blocks by exact arcs: all flights of a block of cells in stages over compacted lists.
 
 A cell waits in the list of its next flight: long or short, with negative or positive rotation. `LANES` cells of a list
 are followed at a time, and each is put into the list of the flight after that. The arithmetic of a cell depends neither
 on its lane nor on the other cells. What no stage decides is left to the general solver, from rest
-(`rocking.solver.kernels.event_loop`): possible hidden peaks, and very many impacts.
+(`rocking.solver.kernels.event_loop`, under wavelets by Taylor steps): possible hidden peaks, and very many impacts.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ import math
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES, any_lane, gather_rows, load, scatter_rows, select, splat, store
+from rocking.solver.excitation import WAVELET
 from rocking.solver.kernels.batch import write_response
 from rocking.solver.kernels.event_loop import NO_UPLIFT, advance_by_arc, init_state
-from rocking.solver.stages.cuts import cut_phases, init_cuts
+from rocking.solver.stages.cuts import cut_phases, init_cuts, init_nodes
 from rocking.solver.stages.events import end_flights
 from rocking.solver.stages.flight import follow_flights
 from rocking.solver.stages.short_flights import follow_short_flights
@@ -43,6 +44,9 @@ from rocking.solver.stages.state import (
     UPLIFTS,
     W0,
 )
+
+LEFT = -1
+"""Outcome of a cell under a wavelet that no stage decides: it is left to the caller."""
 
 LONG_LISTS, SHORT_LISTS, GENERAL_LIST = 0, 2, 4
 """Lists of cells: two for each kind of flight, with negative and positive rotation, and one for the general solver."""
@@ -292,7 +296,7 @@ def solve_by_arcs(
     stop: FloatArray,
     responses: Record,
 ) -> None:
-    """Follow slender blocks under a sum of sinusoids from rest to their final outcome.
+    """Follow slender blocks from rest to their final outcome, under sinusoids or a wavelet.
 
     Parameters
     ----------
@@ -303,8 +307,9 @@ def solve_by_arcs(
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight; responses are missing.
     responses : array (cells,) of `rocking.solver.state.RESPONSE_RECORD`
-        Filled.
+        Filled; of cells under a wavelet that no stage decides only the outcome, with `LEFT`.
     """
+    init_nodes(pulse, group)
     rows, lists, counts, members = cells.rows, cells.lists, cells.counts, cells.members
     for first in range(0, len(slenderness), BLOCK_SIZE):
         last = min(first + BLOCK_SIZE, len(slenderness))
@@ -322,6 +327,9 @@ def solve_by_arcs(
             follow_group(fullest, shared, eta[first:last], pulse, group, cells, block)
         for i in range(counts[GENERAL_LIST]):
             cell = first + lists[GENERAL_LIST, i]
+            if pulse.family == WAVELET:
+                responses[cell].outcome = LEFT
+                continue
             solve_generally(pulse, slenderness[cell], omega[cell], eta[cell], stop, responses[cell])
             row = rows[lists[GENERAL_LIST, i]]
             if row[IMPACTS] > 0.0:  # the same bits for each eta

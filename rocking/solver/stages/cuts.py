@@ -11,10 +11,11 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, store
+from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, store
 from rocking._numba.simd_exponentials import arccosine
-from rocking._numba.simd_sines import sine_and_cosine
 from rocking.solver.excitation import is_unit_sinusoid
+from rocking.solver.stages.excitation import shapes_and_slopes
+from rocking.solver.stages.hermite import hermite_roots
 from rocking.solver.stages.state import SLENDERNESS
 
 MAX_NEWTON_STEPS = 100
@@ -47,29 +48,61 @@ def cut_phases(pulse: Record, group: Record, piece: int, sign: float) -> Any:
         distance = half_width if peak_at_left else math.pi - half_width
         found = minimum(maximum(pulse.half_period_phase[piece] + distance, splat(left)), splat(right))
     else:
-        found = cuts_by_newton(pulse, s * -sign, left, right, rising == (sign < 0.0))
+        found = cuts_by_newton(pulse, group, piece, s * -sign, rising == (sign < 0.0), inside)
     return select(inside, found, ends)
 
 
 @kernel
-def cuts_by_newton(pulse: Record, level: SimdVector, left: float, right: float, rising: bool) -> Any:
-    """The phases at which f, monotone on [left, right], equals `level`; any phase where it does not."""
-    low, high = splat(left), splat(right)
-    phase = 0.5 * (low + high)
-    going = low < high
+def init_nodes(pulse: Record, group: Record) -> None:
+    """Set f and its slope at `LANES` equidistant phases of each piece of the pulse, for `cuts_by_newton`."""
+    if is_unit_sinusoid(pulse):
+        return
+    for lane in range(LANES):
+        group.node_share[lane] = lane / (LANES - 1.0)
+    share = load(group.node_share, 0)
+    for piece in range(pulse.pieces):
+        left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
+        f, slope = shapes_and_slopes(pulse, left + (right - left) * share)
+        store(group.node_shape, piece, f)
+        store(group.node_slope, piece, slope)
+
+
+@kernel
+def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, rising: bool, wanted: Any) -> Any:
+    """The phases at which f, monotone on a piece of the pulse, equals `level`, where the mask `wanted` is true.
+
+    The two nodes beside the level give the bracket, and the cubic through both the first guess. The last step of
+    the bracketed Newton iteration is the one after which the next, at most its square over the distance to the nearest
+    extremum, is below rounding.
+    """
+    left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
+    spacing = (right - left) / (LANES - 1.0)
+    shapes, slopes = group.node_shape[piece], group.node_slope[piece]
+    low = splat(left)
+    f_low, slope_low = splat(shapes[0]), splat(slopes[0])
+    f_high, slope_high = splat(shapes[1]), splat(slopes[1])
+    for node in range(1, LANES - 1):
+        beyond = (level > shapes[node]) if rising else (level < shapes[node])
+        low = select(beyond, splat(left + node * spacing), low)
+        f_low, slope_low = select(beyond, splat(shapes[node]), f_low), select(beyond, splat(slopes[node]), slope_low)
+        f_high = select(beyond, splat(shapes[node + 1]), f_high)
+        slope_high = select(beyond, splat(slopes[node + 1]), slope_high)
+    high = minimum(low + spacing, splat(right))
+    phase = low + hermite_roots(f_low - level, slope_low, f_high - level, slope_high, high - low)
+    phase = select((phase > low) & (phase < high), phase, 0.5 * (low + high))
+    going = wanted
     for _ in range(MAX_NEWTON_STEPS):
-        f, slope = splat(0.0), splat(0.0)
-        for k in range(pulse.terms):
-            sine, cosine = sine_and_cosine(phase * pulse.multiple[k] + pulse.shift[k])
-            f += pulse.amplitude[k] * cosine
-            slope -= pulse.amplitude[k] * pulse.multiple[k] * sine
+        f, slope = shapes_and_slopes(pulse, phase)
         above = (f >= level) if rising else (f <= level)
         high, low = select(going & above, phase, high), select(going & ~above, phase, low)
         following = phase - (f - level) / slope
-        following = select((following > low) & (following < high), following, 0.5 * (low + high))
+        inside = (following >= low) & (following <= high)
+        following = select(inside, following, 0.5 * (low + high))
         moved = absolute(following - phase)
+        edge = minimum(following - left, right - following)
         phase = select(going, following, phase)
-        going = going & (moved > 4.5e-16 * absolute(phase))
+        arrived = inside & (moved * moved <= 1e-17 * absolute(phase) * edge)
+        going = going & ~arrived & (high - low > 4.5e-16 * absolute(phase))
         if not any_lane(going):
             break
     return phase

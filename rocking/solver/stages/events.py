@@ -10,9 +10,8 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
-from rocking.solver.arcs.arc import SERIES_RADIUS
 from rocking.solver.kernels.event_loop import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, SAFE
-from rocking.solver.stages.arcs import excitation_at_angles, set_angles
+from rocking.solver.stages.excitation import excitation_at_angles, set_angles
 from rocking.solver.stages.state import (
     AT_UPLIFT,
     CHATTER,
@@ -125,7 +124,7 @@ def on_impacts(pulse: Record, group: Record, sign: float, hits: Any) -> None:
     chatters = quiet & ~still & chatter_ends_in_rest(pulse, group, u, w0, phase)
     # next flight
     q0 = 1.0 - sign * u
-    short = (q0 > 0.0) & (2.5 * w0 * load(group.max_rate, 0) <= SERIES_RADIUS * q0)
+    short = (q0 > 0.0) & (2.5 * w0 <= load(group.reach, 0) * q0)
     following = select(short, splat(float(SHORT)), splat(float(LONG)))
     # eta = 0 where the ground acceleration exceeds the level: immediate uplift
     same = sign * u < 0.0

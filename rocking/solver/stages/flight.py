@@ -19,11 +19,16 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
-from rocking.solver.stages.arcs import restoring_acceleration, set_angles, set_end_angles, start_arcs, states_at
+from rocking.solver.stages.arcs import start_arcs, states_at
 from rocking.solver.stages.cuts import cut_phases, init_cuts
-from rocking.solver.stages.roots import hermite_roots, locate_impacts, locate_peaks
+from rocking.solver.stages.excitation import restoring_acceleration, set_angles, set_end_angles
+from rocking.solver.stages.hermite import hermite_roots
+from rocking.solver.stages.roots import locate_impacts, locate_peaks
 from rocking.solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
 from rocking.solver.state import IMPACT, IN_FLIGHT, PULSE_END
+
+MAX_DIP_ARCS = 8
+"""States at which the tangents decide on a minimum of z; nearly all need one or two."""
 
 UPLIFT_SLACK = 1e-13
 """A flight from an uplift starts at a cut; parts that end closer to it than this [rad] lie before it. The part that
@@ -137,13 +142,17 @@ def follow_part(
             known = known | unknown
         left_slope, slope = left_z - left_q, z - q
         duration = h - left_h
-        # tangents of w at both ends, which meet on the other side of w = 0 if there is no zero
-        apart = absolute(left_w * slope) + absolute(w * left_slope) > duration * absolute(left_slope * slope)
         if rising:
             turns = (left_w > 0.0) & (w >= 0.0) & (left_slope < 0.0) & (slope > 0.0)
         else:
             turns = (left_w <= 0.0) & (w < 0.0) & (left_slope > 0.0) & (slope < 0.0)
-        undecided = inside & known & turns & ~apart
+        undecided = inside & known & turns & ~are_apart(left_w, left_slope, w, slope, duration)
+        if any_lane(undecided):
+            up = 1.0 if rising else -1.0
+            undecided, dips = find_dips(
+                pulse, group, up, undecided, left_h, left_w * up, left_slope * up, h, w * up, slope * up
+            )
+            undecided = undecided | dips
         peaks = inside & known & (left_w > 0.0) & (w < 0.0)
         hits = inside & (z <= 0.0)
         undecided = undecided | (hits & (w >= 0.0))
@@ -159,17 +168,20 @@ def follow_part(
     else:
         hits = falling_back & (z <= 0.0)
         turns = falling_back & (z > 0.0) & (w > 0.0)
-        apart = absolute(left_z * w) + absolute(z * left_w) > (h - left_h) * absolute(left_w * w)
-        undecided = turns & ~apart
+        undecided = turns & ~are_apart(left_z, left_w, z, w, h - left_h)
+        if any_lane(undecided):
+            undecided, dips = find_dips(pulse, group, 0.0, undecided, left_h, left_z, left_w, h, z, w)
+            hits = hits | dips
         store(group.impact_after_peak, 0, select(hits, zero, load(group.impact_after_peak, 0)))
         escapes = fill_mask(False)
     if any_lane(hits):
         store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
         store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
         store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
-        store(group.impact_high, 0, select(hits, h, load(group.impact_high, 0)))
-        store(group.impact_high_z, 0, select(hits, z, load(group.impact_high_z, 0)))
-        store(group.impact_high_w, 0, select(hits, w, load(group.impact_high_w, 0)))
+        at_end = hits & (z <= 0.0)  # otherwise at the dip
+        store(group.impact_high, 0, select(at_end, h, load(group.impact_high, 0)))
+        store(group.impact_high_z, 0, select(at_end, z, load(group.impact_high_z, 0)))
+        store(group.impact_high_w, 0, select(at_end, w, load(group.impact_high_w, 0)))
         ended = select(hits, splat(float(IMPACT)), ended)
     store(group.undecided, 0, select(undecided, one, load(group.undecided, 0)))
     stays = followed & ~hits & ~undecided & ~escapes
@@ -188,6 +200,58 @@ def follow_part(
     store(group.left_z, 0, z)
     store(group.left_w, 0, w)
     store(group.left_q, 0, select(inside, q, load(group.left_q, 0)))
+
+
+@kernel
+def find_dips(
+    pulse: Record,
+    group: Record,
+    of_w: float,
+    wanted: Any,
+    low: SimdVector,
+    v_low: SimdVector,
+    slope_low: SimdVector,
+    high: SimdVector,
+    v_high: SimdVector,
+    slope_high: SimdVector,
+) -> Any:
+    """Whether v has a zero between the times `low` and `high`, with v > 0 at both and slopes < 0 and > 0.
+
+    v is z if `of_w` is 0, otherwise `of_w` w, which are convex where they keep their sign. The state is computed where
+    the tangents at both ends meet, which becomes the next end, until the tangents exclude a zero or v <= 0. Returns the
+    masks of the cells that remain undecided, and of those with a zero, whose `impact_high` is set to the time with
+    v <= 0.
+    """
+    todo, dips = wanted, fill_mask(False)
+    for _ in range(MAX_DIP_ARCS):
+        h = (v_high - v_low + slope_low * low - slope_high * high) / (slope_low - slope_high)
+        h = select(todo, h, splat(FAR))
+        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        z, w = states_at(pulse, group, h)
+        v, slope = z, w
+        if of_w != 0.0:
+            v, slope = w * of_w, (z - restoring_acceleration(pulse, group)) * of_w
+        found = todo & (v <= 0.0)
+        dips = dips | found
+        store(group.impact_high, 0, select(found, h, load(group.impact_high, 0)))
+        store(group.impact_high_z, 0, select(found, z, load(group.impact_high_z, 0)))
+        store(group.impact_high_w, 0, select(found, w, load(group.impact_high_w, 0)))
+        falls = slope < 0.0
+        low, high = select(falls, h, low), select(falls, high, h)
+        v_low, v_high = select(falls, v, v_low), select(falls, v_high, v)
+        slope_low, slope_high = select(falls, slope, slope_low), select(falls, slope_high, slope)
+        todo = todo & ~found & ~are_apart(v_low, slope_low, v_high, slope_high, high - low)
+        if not any_lane(todo):
+            break
+    return todo, dips
+
+
+@kernel
+def are_apart(
+    left: SimdVector, left_slope: SimdVector, right: SimdVector, right_slope: SimdVector, duration: SimdVector
+) -> Any:
+    """Whether the tangents at both ends of a part, with slopes of opposite sign, meet before they cross zero."""
+    return absolute(left * right_slope) + absolute(right * left_slope) > duration * absolute(left_slope * right_slope)
 
 
 @kernel

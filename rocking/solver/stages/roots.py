@@ -10,32 +10,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from rocking._numba.compilation import Record, SimdVector, kernel
+from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, any_lane, load, maximum, select, splat, store
-from rocking.solver.arcs.arc import SERIES_RADIUS
-from rocking.solver.stages.arcs import motions_at, set_angles
+from rocking.solver.stages.arcs import motions_at
+from rocking.solver.stages.excitation import set_angles
+from rocking.solver.stages.hermite import hermite_roots
 from rocking.solver.stages.state import FAR, OMEGA, PHASE
 
 MAX_ARCS = 24
 """Evaluations of the arc after which a search gives up and leaves the cell to the general solver. Nearly all need two
 or three."""
-
-
-@kernel
-def hermite_roots(f0: SimdVector, d0: SimdVector, f1: SimdVector, d1: SimdVector, length: SimdVector) -> Any:
-    """Guess of the zero in [0, length] of the cubic through two values of opposite sign with their slopes.
-
-    Two Newton steps from the secant.
-    """
-    d0 = d0 * length
-    d1 = d1 * length
-    c2 = 3.0 * (f1 - f0) - 2.0 * d0 - d1
-    c3 = 2.0 * (f0 - f1) + d0 + d1
-    x = f0 / (f0 - f1)
-    for _ in range(2):
-        better = x - (f0 + x * (d0 + x * (c2 + x * c3))) / (d0 + x * (2.0 * c2 + x * 3.0 * c3))
-        x = select((better > 0.0) & (better < 1.0), better, x)
-    return x * length
 
 
 @kernel
@@ -111,7 +95,7 @@ def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
         fourth_power = ratio * ratio * (ratio * ratio)
         done = todo & inside & (fourth_power * absolute(y) <= 4e-18 * h) & (ratio < 1e-3)
         # an expansion far from the start loses the first part of a flight by cancellation
-        reach = SERIES_RADIUS / max_rate
+        reach = load(group.reach, 0)
         done = done & ((h <= reach) | (root > reach))
         tight = todo & (high - low <= slack)  # no double remains between
         step = select(tight, splat(0.0), step)

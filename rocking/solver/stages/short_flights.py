@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
-from rocking.solver.arcs.arc import SERIES_RADIUS
-from rocking.solver.stages.arcs import expand_start, restoring_acceleration, series_states, set_angles, start_arcs
+from rocking.solver.stages.arcs import expand_start, series_states, start_arcs
 from rocking.solver.stages.events import piece_ends
+from rocking.solver.stages.excitation import restoring_acceleration, set_angles
 from rocking.solver.stages.state import OMEGA, PEAK, PHASE, W0
 from rocking.solver.state import IMPACT, IN_FLIGHT
 
@@ -27,11 +27,11 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     start_arcs(pulse, group, sign)
     expand_start(pulse, group)
     phase, w0, q0 = load(group.columns, PHASE), load(group.columns, W0), load(group.q0, 0)
-    reach = SERIES_RADIUS / load(group.max_rate, 0)
+    reach = load(group.reach, 0)
     h = 2.0 * w0 / q0
     todo, done = fill_mask(True), fill_mask(False)
     for _ in range(MAX_STEPS):
-        z, w = series_states(group, h)
+        z, w = series_states(pulse, group, h)
         over_h = z / h
         step = z / (w - over_h)
         h = select(todo, h - step, h)
@@ -40,7 +40,7 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
         done, todo = done | arrived, todo & ~arrived
         if not any_lane(todo):
             break
-    z, w = series_states(group, h)
+    z, w = series_states(pulse, group, h)
     end = phase + load(group.columns, OMEGA) * h
     set_angles(pulse, group, end)
     done = done & (end <= piece_ends(pulse, phase)) & (restoring_acceleration(pulse, group) > 0.0)
@@ -49,10 +49,10 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     if any_lane(higher):
         time, tenth = 0.5 * h, 1e-4 * h
         for _ in range(PEAK_STEPS):
-            _, here = series_states(group, time)
-            _, beside = series_states(group, time + tenth)
+            _, here = series_states(pulse, group, time)
+            _, beside = series_states(pulse, group, time + tenth)
             time = time - here * tenth / (beside - here)
-        peak, _ = series_states(group, time)
+        peak, _ = series_states(pulse, group, time)
         top = select(higher, peak, top)
     store(group.length, 0, h)
     store(group.end_w, 0, w)

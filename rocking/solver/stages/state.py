@@ -8,8 +8,8 @@ import numpy as np
 
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
-from rocking.excitation.shapes import MAX_SINUSOIDS
-from rocking.solver.state import SERIES_LENGTH
+from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+from rocking.solver.state import WAVELET_SERIES_LENGTH
 
 BLOCK_SIZE = 1024
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
@@ -41,13 +41,21 @@ _LANE_FIELDS = (
     "a",
     "reciprocal_omega",
     "max_rate",  # largest of 1 and the rates Omega
+    "reach",  # time [tau] up to which the series at the start of the flight is exact to rounding
     "half_width",  # arccos(1/a) [rad]
+    "node_share",  # of the nodes of a piece, 0 to 1
     # the arc of the flight, as in `rocking.solver.state.FLIGHT_STATE`
     "q0",
     "x0",
     "y0",
     "offset_z",
     "offset_w",
+    # of a wavelet: sgn(theta) a; phase and exp(-phase^2/spread) at the phase of the last `set_angles`, and at the start
+    "strength",
+    "phase",
+    "gaussian",
+    "gaussian0",
+    "decay",  # sqrt(spread)/(2 omega), see `rocking.solver.stages.wavelets`
     # progress of the flight
     "followed",  # 1 where it is still followed, else 0
     "undecided",  # 1 where it is left to the general solver, else 0
@@ -86,7 +94,7 @@ _LANE_FIELDS = (
 
 
 def _group_layout() -> np.dtype[np.void]:
-    lanes, rows, terms = (LANES,), (LANES, LANES), (MAX_SINUSOIDS, LANES)
+    lanes, rows, terms, pieces = (LANES,), (LANES, LANES), (MAX_SINUSOIDS, LANES), (MAX_PIECES, LANES)
     return np.dtype(
         [
             ("columns", np.float64, rows),  # of the rows of the cells
@@ -94,7 +102,16 @@ def _group_layout() -> np.dtype[np.void]:
             *((name, np.float64, lanes) for name in _LANE_FIELDS),
             *((name, np.float64, terms) for name in ("force", "rate", "particular")),
             *((name, np.float64, terms) for name in ("cosine0", "sine0", "cosine", "sine")),
-            ("series", np.float64, (SERIES_LENGTH, LANES)),  # Taylor coefficients of z about the start of the flight
+            (
+                "series",
+                np.float64,
+                (WAVELET_SERIES_LENGTH, LANES),
+            ),  # Taylor coefficients of z about the start of the flight
+            ("excitation", np.float64, (WAVELET_SERIES_LENGTH, LANES)),  # of F for a wavelet
+            ("gauss", np.float64, (WAVELET_SERIES_LENGTH, LANES)),  # of its Gaussian, in powers of phi
+            ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
+            ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
+            ("node_slope", np.float64, pieces),
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
             ("leader", np.int64, lanes),  # row of the first cell that shares its flight
         ]

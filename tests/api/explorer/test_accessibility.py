@@ -44,7 +44,7 @@ def test_the_page_of_a_record_is_accessible(open_page):
     assert axe.violations(page) == []
 
 
-@pytest.mark.parametrize("path", ["/datasets", "/state"])
+@pytest.mark.parametrize("path", ["/datasets", "/state", "/suites"])
 def test_other_pages_are_accessible(open_page, path):
     page = open_page(path, color_scheme="dark")
     expect(page.locator("#status")).not_to_have_text("")

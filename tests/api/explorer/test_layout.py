@@ -1,14 +1,16 @@
-"""No control overlaps another one or lies outside the page, at any width."""
+"""No control, text or picture overlaps another one or lies outside the page, at any width."""
 
 import pytest
+from playwright.sync_api import expect
 
 from tests.api.explorer.reading import BLOCK, POINT, settle
+from tests.api.explorer.test_records import choose, short_record
 
 OVERLAPS = """() => {
-    const controls = "input, select, button, a, label, output, #map-marks, #legend span";
-    const boxes = [...document.querySelectorAll(controls)]
-        .filter((one) => one.checkVisibility())
-        .map((one) => ({ one, box: one.getBoundingClientRect() }))
+    const parts = "input, select, button, a, label, output, #map-marks, #legend span, h1, h2, h3, p, dt, dd, canvas";
+    const boxes = [...document.querySelectorAll(parts)]
+        .filter((one) => one.checkVisibility() && !one.closest(".map, .table"))
+        .flatMap((one) => [...one.getClientRects()].map((box) => ({ one, box })))  // a link may take two lines
         .filter(({ box }) => box.width && box.height);
     const name = (one) => one.id || one.name || one.textContent;
     const found = [];
@@ -28,16 +30,37 @@ NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAni
 
 
 @pytest.mark.parametrize("path", [POINT, BLOCK])
-def test_no_control_overlaps_another(open_page, path):
+def test_nothing_overlaps_on_the_explorer(open_page, path):
     page = open_page(path, viewport={"width": 320, "height": 900})
     settle(page)
     page.locator("#spectrum-chart canvas").wait_for()
     page.wait_for_function("() => document.querySelectorAll('.downloads a[href]').length >= 7")
+    assert overlaps_by_width(page) == {}
+
+
+@pytest.mark.parametrize("path", ["/records", "/suites", "/datasets", "/state"])
+def test_nothing_overlaps_on_the_other_pages(open_page, path):
+    page = open_page(path, viewport={"width": 320, "height": 900})
+    if path == "/records":
+        page.locator("#more summary").click()
+        choose(page, "short.csv", short_record())
+        expect(page.locator("#scales-caption")).to_contain_text("Hatched")
+    elif path == "/suites":
+        expect(page.locator("#status")).to_contain_text("4 records")
+    else:
+        expect(page.locator("#status")).not_to_contain_text("…")
+    assert overlaps_by_width(page) == {}
+
+
+def overlaps_by_width(page):
+    """Boxes over each other or outside, by width of the window; nothing is wider than the window."""
     found = {}
     for width in range(320, 1441, 40):
         page.set_viewport_size({"width": width, "height": 900})
         page.evaluate("() => scrollTo(0, 0)")
         page.evaluate(NEXT_FRAME)
-        found[width] = page.evaluate(OVERLAPS)
+        overlaps = page.evaluate(OVERLAPS)
+        if overlaps:
+            found[width] = overlaps
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-    assert {width: overlaps for width, overlaps in found.items() if overlaps} == {}
+    return found

@@ -1,6 +1,7 @@
 """The animation agrees with the time history of the package; downloads work."""
 
 import io
+from urllib.parse import parse_qs
 
 import numpy as np
 import pytest
@@ -84,9 +85,15 @@ def test_downloads_have_content(open_page):
             locator.click()
         return waiting.value.suggested_filename, waiting.value.path().read_bytes()
 
-    name, content = arrived(page.locator("[data-links=motion] a[data-form=nc]"))
-    truth = rocking.time_history("sine", frequency_ratio=4.0, slenderness=0.7, restitution=0.85, samples=800)
-    np.testing.assert_array_equal(xr.load_dataset(io.BytesIO(content), engine="scipy").rotation, truth.rotation)
+    link = page.locator("[data-links=motion] a[data-form=nc]")
+    name, content = arrived(link)
+    duration = float(parse_qs(link.get_attribute("href"))["duration"][0])
+    truth = rocking.time_history(
+        "sine", frequency_ratio=4.0, slenderness=0.7, restitution=0.85, samples=800, duration=duration
+    )
+    rotation = xr.load_dataset(io.BytesIO(content), engine="scipy").rotation
+    np.testing.assert_array_equal(rotation, truth.rotation)
+    assert rotation[-1] == 0.0  # as on the page, until the block is at rest
     assert name == "history.nc"
     for part in ("map", "spectrum"):
         name, content = arrived(page.locator(f"[data-links={part}] a[data-form=csv]"))

@@ -10,9 +10,9 @@ from playwright.sync_api import expect
 def test_data_sets_are_listed_and_filtered(open_page):
     page = open_page("/datasets")
     status = page.locator("#status")
-    expect(status).to_have_text("3 of 3 data sets")
+    expect(status).to_have_text("5 of 5 data sets")
     page.locator("#filter").fill("cosine")
-    expect(status).to_have_text("1 of 3 data sets")
+    expect(status).to_have_text("1 of 5 data sets")
     row = page.locator("#rows tr:visible")
     expect(row).to_contain_text("spectra/cosine/eta-0.90")
     expect(row).to_contain_text("ω 0.5 to 12")
@@ -30,7 +30,28 @@ def test_the_state_is_told(open_page):
     expect(page.locator("#problems")).to_be_hidden()
 
 
-@pytest.mark.parametrize("path", ["/datasets", "/state", "/records"])
+def test_a_suite_is_reported_for_each_limit_state(open_page):
+    page = open_page("/suites")
+    report = page.locator("#suite-report")
+    expect(page.locator("#status")).to_have_text("4 records, 2 blocks, 12 levels.")
+    expect(report).to_contain_text("Block of 50 cm by 2 m")
+    expect(report).to_contain_text("Margin of each record")
+    expect(report).to_contain_text("neither slides nor leaves the ground")
+    assert report.locator("canvas").count() == 2
+    found = page.request.get("/v1/suites/demonstration").json()
+    curve = found["blocks"][0]["limit_states"][0]["curves"][0]
+    expect(report).to_contain_text(f"{curve['median_intensity']:.3g} (")
+    page.locator("#demand").select_option("0.5 alpha")
+    expect(report).to_contain_text("the block rocks beyond 0.5 α")
+    expect(report).not_to_contain_text("Margin of each record")
+    assert page.url.endswith("demand=0.5+alpha")
+    page.emulate_media(media="print")
+    expect(page.locator("nav")).to_be_hidden()
+    expect(page.locator("#choice")).to_be_hidden()
+    expect(report).to_be_visible()
+
+
+@pytest.mark.parametrize("path", ["/datasets", "/state", "/records", "/suites"])
 def test_they_fit_a_phone(open_page, path):
     page = open_page(path, viewport={"width": 320, "height": 640})
     expect(page.locator("h1")).to_be_visible()

@@ -56,6 +56,7 @@ export function chart(place, options, data) {
     place,
   );
   live.set(place, made);
+  sizes.observe(place); // once more has no effect
   return made;
 }
 
@@ -80,12 +81,11 @@ export function canvasOf(place) {
   return place.querySelector("canvas");
 }
 
-const watch = new ResizeObserver((entries) => {
+const sizes = new ResizeObserver((entries) => {
   for (const { target } of entries) {
     const made = live.get(target);
     if (made && target.clientWidth) made.setSize({ width: target.clientWidth, height: made.height });
   }
 });
-for (const place of document.querySelectorAll(".chart")) watch.observe(place);
 
 onTheme(() => live.forEach((made) => made.redraw(false)));

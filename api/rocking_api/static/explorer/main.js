@@ -7,7 +7,7 @@ import { setLinks, wireDownloads } from "./downloads.js";
 import { curvesUrl, mapParams, showMap } from "./map.js";
 import { wireGestures } from "./map_gestures.js";
 import { showReadout, wireMap } from "./map_pointer.js";
-import { motionUrl, showMotion } from "./motion.js";
+import { showMotion } from "./motion.js";
 import { clearErrors } from "./page.js";
 import { once, pane } from "./pane.js";
 import { showPreview } from "./pulse_preview.js";
@@ -95,12 +95,10 @@ function set(parts, keep = true) {
 
 function link(found) {
   const map = (format) => urlOf("/v1/map", { ...mapParams(), format });
-  const motion = (format) => motionUrl(found, format);
   const spectrum = (format) => spectrumUrl(found, view, format);
   setLinks("map", found ? { csv: map("csv"), nc: map("nc"), curves: `${curvesUrl()}&format=csv` } : {});
   setLinks("block", found?.answer ? { json: urlOf("/v1/blocks/response", blockParams(state())) } : {});
   document.getElementById("open-report").disabled = !found?.answer;
-  setLinks("motion", found?.point ? { csv: motion("csv"), nc: motion("nc") } : {});
   setLinks("spectrum", found?.point ? { csv: spectrum("csv"), nc: spectrum("nc") } : {});
 }
 

@@ -2,6 +2,7 @@
 
 import { ask, urlOf } from "./api.js";
 import { chartsReady } from "./chart.js";
+import { setLinks } from "./downloads.js";
 import { drawMotion } from "./motion_charts.js";
 import { pane } from "./pane.js";
 import { unload } from "./player.js";
@@ -23,13 +24,17 @@ const motion = pane({
 });
 
 /** Show the motion at the point of a scenario; nothing without a point; null: the scenario is unknown. */
-export function showMotion(scenario, lasting) {
+export async function showMotion(scenario, lasting) {
+  setLinks("motion", {});
   if (!scenario) return motion.wait({ lasting });
   section.classList.toggle("empty", !scenario.point);
   if (!scenario.point) return motion.nothing();
   current = scenario;
   const params = motionParams(scenario);
-  return motion.show(JSON.stringify([params, scenario.size]), (signal) => untilRest(params, signal));
+  const found = await motion.show(JSON.stringify([params, scenario.size]), (signal) => untilRest(params, signal));
+  const url = (format) => urlOf("/v1/history", { ...found.query, format }); // of what is shown, which lasts until rest
+  if (found) setLinks("motion", { csv: url("csv"), nc: url("nc") });
+  return found;
 }
 
 /** The history of a block until it is at rest; how long that takes is asked for first, with few samples. */
@@ -51,12 +56,6 @@ function isMoving({ outcome, rotation }) {
   return outcome === "SAFE" && rotation.at(-1) !== 0;
 }
 
-/** Parameters of the charts, for a download. */
-export function motionParams({ pulse, restitution, alpha_deg, point }) {
+function motionParams({ pulse, restitution, alpha_deg, point }) {
   return { pulse, restitution, alpha_deg, ...point, samples: 800 };
-}
-
-/** The URL of the time history in a format. */
-export function motionUrl(scenario, format) {
-  return urlOf("/v1/history", { ...motionParams(scenario), format });
 }

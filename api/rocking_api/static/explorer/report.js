@@ -32,7 +32,8 @@ function hide() {
   document.body.classList.remove("reporting");
 }
 
-function section({ heading, pairs, lines, text }) {
+/** A section of a report: `heading`, and `pairs`, `lines` or `text`. */
+export function section({ heading, pairs, lines, text }) {
   const parts = [element("h2", heading)];
   if (text) parts.push(element("p", text));
   if (pairs) parts.push(facts(pairs));

@@ -1,0 +1,51 @@
+"""netCDF-4 files, opened by one thread at a time.
+
+The HDF5 library is not safe for threads, and the package netCDF4 releases the interpreter lock while it runs: two
+threads that read files at the same time can end the process. The locks of xarray cover neither attributes nor data sets
+in memory. This package therefore opens netCDF-4 files with the functions of this module only.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import xarray as xr
+from xarray.backends import NetCDF4DataStore
+
+_LOCK = threading.RLock()
+
+
+@contextmanager
+def open_netcdf(source: Path | str | bytes, *, cache: bool = True) -> Iterator[xr.Dataset]:
+    """A data set, open inside of the `with` block; other threads that call this function wait until it is closed.
+
+    Parameters
+    ----------
+    source : path or bytes
+        A file, or its content.
+    cache : bool, optional
+        Whether xarray keeps the values of variables that are read.
+
+    Raises
+    ------
+    OSError, RuntimeError, ValueError, KeyError
+        Whatever the libraries raise for a damaged file.
+    """
+    with _LOCK:
+        opened: Any = (  # closed here and not by the garbage collector, which runs in any thread
+            netCDF4.Dataset("in memory", memory=source) if isinstance(source, bytes) else netCDF4.Dataset(source)
+        )
+        with closing(opened):
+            store = NetCDF4DataStore(opened)  # type: ignore[no-untyped-call]
+            yield xr.open_dataset(store, decode_times=False, cache=cache)
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path, encoding: Mapping[str, Mapping[str, Any]]) -> None:
+    """Write a file, with xarray's encoding of its variables."""
+    with _LOCK:
+        dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)

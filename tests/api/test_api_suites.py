@@ -1,0 +1,109 @@
+"""/v1/suites: the numbers are those of the data sets of the workflow."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from rocking.datasets.cube import read_dataset, write_dataset
+from rocking.suites.summary import record_margins
+from tests.api.conftest import assert_problem, client_of
+
+NAME = "/v1/suites/demonstration"
+
+
+@pytest.fixture(scope="module")
+def suite(client):
+    return client.get(NAME).json()
+
+
+@pytest.fixture(scope="module")
+def files(results):
+    folder = results / "suites" / "demonstration"
+    return read_dataset(folder / "fragility.nc"), read_dataset(folder / "outcomes.nc")
+
+
+def test_catalogue_lists_suites_with_their_files(client):
+    (one,) = client.get("/v1/suites").json()["suites"]
+    assert (one["name"], one["measure"], one["unit"], one["records"], one["blocks"]) == (
+        "demonstration", "pga", "m s-2", 4, 2,
+    )  # fmt: skip
+    assert one["demands"] == ["overturning", "0.5 alpha"]
+    own, *data = one["links"]
+    assert own == {"rel": "self", "href": NAME, "type": "application/json"}
+    assert [link["href"].rpartition("/")[2] for link in data] == ["fragility.nc", "outcomes.nc"]
+    for link in one["links"]:
+        assert client.head(link["href"]).status_code in (200, 405)
+        assert client.get(link["href"]).status_code == 200
+
+
+def test_counts_and_curves_are_those_of_the_data_set(suite, files):
+    fragility, _ = files
+    assert suite["intensity"] == fragility["intensity"].values.tolist()
+    assert suite["confidence"] == 0.95
+    assert [one["name"] for one in suite["records"]] == [f"noise {seed}" for seed in range(4)]
+    assert "rigid" in suite["metadata"]["model"]
+    for k, block in enumerate(suite["blocks"]):
+        assert block["alpha_deg"] == pytest.approx(np.degrees(float(fragility["alpha"][k])))
+        for n, state in enumerate(block["limit_states"]):
+            found = fragility.isel(block=k, demand=n)
+            assert state["demand"] == str(found["demand"].item())
+            for name in ("exceedances", "fraction", "fraction_lower", "fraction_upper", "first_exceedances"):
+                assert state[name] == found[name].values.tolist()
+            for curve in state["curves"]:
+                one = found.sel(model=curve["model"])
+                assert curve["fit_status"] == fragility["fit_status"].attrs["flag_meanings"].split()[
+                    int(one["fit_status"])
+                ].upper()  # fmt: skip
+                assert curve["fit_meaning"]
+                for name in ("median_intensity", "dispersion", "dispersion_upper", "annual_rate"):
+                    expected = float(one[name])
+                    assert curve[name] == (expected if np.isfinite(expected) else None)
+
+
+def test_margins_and_quantiles_follow_from_the_outcomes(suite, files):
+    _, outcomes = files
+    levels = outcomes["intensity"].values
+    for k, block in enumerate(suite["blocks"]):
+        overturned = outcomes["overturned"].isel(block=k).transpose("record", "intensity").values.astype(bool)
+        for own, margin in zip(overturned, block["margins"], strict=True):
+            first = levels[own].min() if own.any() else None
+            assert margin["overturning_intensity"] == first
+            assert margin["levels_survived_above"] == (0 if first is None else int((~own & (levels > first)).sum()))
+            if first is not None:
+                # every record has a peak of 3 m/s2, and the measure is the PGA
+                assert margin["overturning_scale"] == pytest.approx(first / 3.0)
+        low, median, high = block["rotation_quantiles"]
+        assert (low["quantile"], median["quantile"], high["quantile"]) == (0.16, 0.5, 0.84)
+        for n in range(levels.size):
+            peaks = outcomes["peak_rotation"].isel(block=k, intensity=n).values
+            known = np.sort(np.where(overturned[:, n], np.inf, peaks))  # of four: the first, the second, the last
+            for one, expected in zip((low, median, high), known[[0, 1, 3]], strict=True):
+                assert one["peak_rotation"][n] == (expected if np.isfinite(expected) else None)
+
+
+def test_unknown_and_damaged_suites_are_refused(client, own_results):
+    for name in ("none", "%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
+        assert client.get(f"/v1/suites/{name}").status_code == 404
+    assert_problem(client.get("/v1/suites/none"), 404, "name")
+    path = own_results / "suites" / "demonstration" / "fragility.nc"
+    path.unlink()
+    write_dataset(xr.Dataset({"other": ("x", [1.0])}), path)
+    with client_of(own_results) as own:
+        assert_problem(own.get(NAME), 503)
+        assert own.get("/v1/suites").json()["suites"] == []
+
+
+@pytest.mark.parametrize("name", ["pga", "frequency_ratio"])
+def test_margins_count_from_the_mildest_level(name):
+    overturned = np.array([[0, 1, 0, 1, 0]], dtype=np.int8)[..., None]  # (block, intensity, record)
+    scale = np.array([[1.0, 2.0, 3.0, 4.0, 5.0]])[..., None]
+    dims = ("block", "intensity", "record")
+    outcomes = xr.Dataset(
+        {"overturned": (dims, overturned), "scale": (dims, scale)},
+        {"intensity": [1.0, 2.0, 3.0, 4.0, 5.0], "record": ["a"]},
+        {"measure": name},
+    )
+    found = record_margins(outcomes).isel(block=0, record=0)
+    first, above = (2.0, 2) if name == "pga" else (4.0, 2)  # blocks of larger omega_p/p are larger and safer
+    assert found["overturning_intensity"] == found["overturning_scale"] == first
+    assert found["levels_survived_above"] == above

@@ -1,0 +1,135 @@
+"""Exact arcs of the slender block under wavelets, against integrals by quadrature and against Taylor steps."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+import rocking
+from rocking.excitation.pulses import WaveletPulse
+from rocking.solver.kernels.batch import solve_batch
+from rocking.solver.peak_response import solve_cells, solver_state
+from rocking.solver.stages.batch import LEFT
+from rocking.solver.state import FULL_PRECISION, RESPONSE_RECORD, WAVELET_SERIES_LENGTH
+from tests.solver.test_stages import assert_agree, assert_equal, by_stages, cells
+
+NAMES = ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"]
+
+
+def cubic_wavelet():
+    """A wavelet without symmetry, with all four coefficients and another spread, on a window that cuts its flanks."""
+    shape, start, end, spread = np.polynomial.Polynomial([0.4, -1.0, -0.7, 0.5]), -4.0, 6.0, 5.3
+    turns = (shape.deriv() - shape * np.polynomial.Polynomial([0.0, 2.0 / spread])).roots().real
+    phases = np.array([start, *turns, end])
+    peak = np.abs(shape(phases) * np.exp(-phases * phases / spread)).max()
+    return WaveletPulse("cubic", start, end, (), tuple(shape.coef / peak), spread)
+
+
+PULSES = {name: rocking.get_pulse(name) for name in NAMES} | {"cubic": cubic_wavelet()}
+
+
+def frequencies(pulse, s, w):
+    """The cells with exact arcs."""
+    return s, np.maximum(w, pulse.series.least_arc_frequency)
+
+
+def by_steps(pulse, s, w, eta):
+    found = np.zeros(s.size, RESPONSE_RECORD)
+    solve_batch(
+        s, w, eta, np.zeros(s.size), *solver_state.of_steps(pulse, FULL_PRECISION), np.zeros(1, np.uint8), found
+    )
+    return found
+
+
+@pytest.mark.parametrize("name", PULSES)
+def test_first_impact_satisfies_the_equation_of_motion(name):
+    """z = -integral of sinh(h - t) (1 + F(t)) dt vanishes at the first impact, and its velocity is that with cosh."""
+    pulse = PULSES[name]
+    s, w, _ = cells(60, 1)
+    s = np.where(s < 0.97, s, 0.3)
+    s, w = frequencies(pulse, s, w)
+    found = solve_cells(pulse, [s, w, np.zeros(s.size), np.zeros(s.size)], FULL_PRECISION, 1, None)
+    hit = np.flatnonzero(np.isfinite(found["first_impact_time"]))[:8]
+    assert hit.size == 8
+    with mpmath.workdps(25):
+        spread = mpmath.mpf(pulse.spread)
+        for i in hit:
+            start, h = float(found["uplift_time"][i]), mpmath.mpf(float(found["first_impact_time"][i]))
+            first = mpmath.mpf(pulse.start) + mpmath.mpf(w[i]) * start
+            sign = -np.sign(pulse.shape(float(first) + 1e-12))
+
+            def q(tau, first=first, sign=sign, i=i):
+                phi = first + mpmath.mpf(w[i]) * tau
+                factor = mpmath.polyval(pulse.polynomial, phi, asc=True)
+                return 1 + sign / mpmath.mpf(s[i]) * factor * mpmath.exp(-phi * phi / spread)
+
+            nodes = mpmath.linspace(0, h, 2 + int(w[i] * h))
+            z = -mpmath.quad(lambda tau: mpmath.sinh(h - tau) * q(tau), nodes)  # noqa: B023
+            velocity = -mpmath.quad(lambda tau: mpmath.cosh(h - tau) * q(tau), nodes)  # noqa: B023
+            # the uplift time is rounded, which the growing exponential amplifies
+            slack = 3e-14 * math.exp(float(h)) * (1.0 + w[i])
+            impact = abs(float(found["first_impact_velocity"][i]))
+            assert abs(float(z)) < slack * impact
+            assert abs(float(velocity) + impact) < slack * (1.0 + impact)
+
+
+@pytest.mark.parametrize("name", PULSES)
+def test_arcs_and_taylor_steps_agree(name):
+    pulse = PULSES[name]
+    s, w, eta = cells(1000, list(PULSES).index(name))
+    s, w = frequencies(pulse, s, w)
+    arcs, steps = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None), by_steps(pulse, s, w, eta)
+    assert_agree(arcs, steps, s, eta)
+
+
+@pytest.mark.parametrize("name", PULSES)
+def test_few_cells_are_left_to_taylor_steps(name):
+    """The tangents decide on nearly all cells; what they leave has the bits of the Taylor steps."""
+    pulse = PULSES[name]
+    s, w, eta = cells(3000, 3)
+    s, w = frequencies(pulse, s, w)
+    eta = np.minimum(eta, 0.95)  # above, many impacts are left to the Taylor steps
+    left = by_stages(pulse, s, w, eta)["outcome"] == LEFT
+    assert np.count_nonzero(left) < 0.02 * s.size
+    found = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None)
+    assert (found["outcome"] >= 0).all()
+    assert_equal(found[left], by_steps(pulse, s[left], w[left], eta[left]))
+
+
+@pytest.mark.parametrize("name", ["ricker", "ricker_antisymmetric"])
+def test_low_frequencies_are_solved_by_taylor_steps(name):
+    pulse = PULSES[name]
+    least = pulse.series.least_arc_frequency
+    s, w, eta = np.full(40, 0.37), least * np.linspace(0.9, 1.1, 40), np.full(40, 0.8)
+    found, steps = (
+        rocking.peak_response(pulse, slenderness=s, frequency_ratio=w, restitution=eta),
+        by_steps(pulse, s, w, eta),
+    )
+    below = w < least
+    assert 0 < np.count_nonzero(below) < 40
+    np.testing.assert_array_equal(found.peak_rotation[below], steps["peak_rotation"][below])
+    assert (found.peak_rotation[~below] != steps["peak_rotation"][~below]).any()
+    np.testing.assert_allclose(found.peak_rotation, steps["peak_rotation"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", PULSES)
+def test_derivatives_and_their_bound(name):
+    """f is the sum of h_k times the derivatives of the Gaussian; its n-th derivative is at most growth_rate^n."""
+    pulse = PULSES[name]
+    series = pulse.series
+    phi = np.linspace(-8.0, 8.0, 2001)
+    factor = np.polynomial.Polynomial([0.0, -2.0 / pulse.spread])
+    gaussian = np.exp(-phi * phi / pulse.spread)
+    term, total = np.polynomial.Polynomial([1.0]), np.zeros(phi.size)
+    for h in series.derivatives:
+        total += h * term(phi) * gaussian
+        term = term.deriv() + factor * term
+    np.testing.assert_allclose(total, pulse.shape(phi), atol=1e-14)
+    order = WAVELET_SERIES_LENGTH - 2
+    shape = np.polynomial.Polynomial(pulse.polynomial)
+    for _ in range(order):
+        shape = shape.deriv() + factor * shape
+    largest = np.abs(shape(phi) * gaussian).max()
+    rate = series.growth_rate(order)
+    assert 0.7 * rate < largest ** (1.0 / order) <= rate
