@@ -85,8 +85,8 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         title="rocking",
         version=VERSION,
         summary="Does the block overturn, and how far does it rock?",
-        description="Response of the free-standing rigid block to pulse ground motion, each number with its error "
-        "bound and its source. Errors are problem+json (RFC 9457).",
+        description="Response of the free-standing rigid block to pulses and to recorded ground motions, each number "
+        "with its source, of pulses with its error bound. Errors are problem+json (RFC 9457).",
         contact={"name": "The rocking developers"},
         license_info={"name": "BSD-3-Clause", "identifier": "BSD-3-Clause"},
         servers=[{"url": "/", "description": "this service"}],

@@ -46,11 +46,11 @@ def fragility(configuration: Configuration, output: OutputOptions) -> None:
     if form == "json":
         printing.print_json({**about, "confidence": suite.confidence, "levels": levels, "curves": _finite(curves)})
         return
-    units = {name: unit for name in ("intensity", *curves) if "intensity" in name and unit != "1"}
+    units = dict.fromkeys(("intensity", "median_intensity"), unit) if unit != "1" else {}
     printing.print_text({**about, "records": len(about["records"])})
     printing.print_table(_finite(levels), units)
     typer.echo()
-    printing.print_table(_finite(curves), units)
+    printing.print_table(_with_intervals(_finite(curves)), units)
 
 
 def suite_fragility(configuration: str) -> tuple[xr.Dataset, SuiteConfiguration]:
@@ -120,6 +120,21 @@ def _yaml(text: str) -> Any:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:
         raise ValueError(" ".join(str(error).split())) from None
+
+
+def _with_intervals(curves: dict[str, list[Any]]) -> dict[str, list[Any]]:
+    """The columns of the table of curves that fit a screen, intervals beside their values; JSON has all of them."""
+    shown = ("demand", "half_width", "half_height", "model", "fit_status", "median_intensity", "dispersion")
+
+    def column(name: str) -> list[Any]:
+        if name not in ("median_intensity", "dispersion"):
+            return curves[name]
+        ends = zip(*(curves[name + end] for end in ("", "_lower", "_upper")), strict=True)
+        texts = [["-" if value is None else f"{value:.4g}" for value in row] for row in ends]
+        return [f"{value} ({low} to {high})" for value, low, high in texts]
+
+    last = [name for name in ("annual_rate", "records_surviving_above_first") if name in curves]
+    return {name: column(name) for name in (*shown, *last)}
 
 
 def _finite(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:

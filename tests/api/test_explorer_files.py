@@ -8,7 +8,7 @@ import pytest
 import rocking_api
 
 STATIC = Path(rocking_api.__file__).parent / "static"
-PAGES = [STATIC / f"{name}.html" for name in ("index", "records", "datasets", "state")]
+PAGES = [STATIC / f"{name}.html" for name in ("index", "records", "suites", "datasets", "state")]
 SHARED = {"page.js"}  # looks for a form that only one page has
 SCRIPTS = sorted((STATIC / "explorer").glob("*.js"))
 

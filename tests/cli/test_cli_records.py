@@ -139,7 +139,12 @@ def test_fragility_in_three_formats(small):
     assert {row["demand"] for row in rows} == {"overturning", "alpha", "0.5 alpha"}
     text = run("fragility", str(small))
     assert "measure  pga" in text
-    assert "lognormal" in text
+    curve = expected.sel(model="lognormal")
+    ends = [float(curve[f"median_intensity{end}"]) for end in ("", "_lower", "_upper")]
+    value, low, high = ("-" if not math.isfinite(end) else f"{end:.4g}" for end in ends)
+    (line,) = (line for line in text.splitlines() if "overturning" in line and "lognormal" in line)
+    assert f"{value} ({low} to {high})" in line
+    assert len(line) < 180
 
 
 def test_configuration_may_be_yaml_or_toml(small, tmp_path):

@@ -51,6 +51,14 @@ def test_a_suite_is_reported_for_each_limit_state(open_page):
     expect(report).to_be_visible()
 
 
+def test_without_a_suite_the_page_says_how_to_make_one(open_page):
+    page = open_page("/state")
+    page.route("**/v1/suites?", lambda route: route.fulfill(json={"suites": [], "version": "0"}))
+    page.goto("/suites")
+    expect(page.locator("#status")).to_contain_text("make reproduce CONFIG=workflow/config/suite.yaml")
+    expect(page.locator("#suite")).to_be_hidden()
+
+
 @pytest.mark.parametrize("path", ["/datasets", "/state", "/records", "/suites"])
 def test_they_fit_a_phone(open_page, path):
     page = open_page(path, viewport={"width": 320, "height": 640})

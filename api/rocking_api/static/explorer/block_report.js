@@ -2,7 +2,7 @@
 
 import { canvasOf } from "./chart.js";
 import { distinct, inG, length, number, PULSES } from "./labels.js";
-import { geometryOf, modelSections, warningSection } from "./report.js";
+import { geometryOf, modelSections, warningSection } from "./report_sections.js";
 
 /** The report of a response of /v1/blocks/response. */
 export function blockReport(found) {

@@ -3,7 +3,7 @@
 import { canvasOf } from "./chart.js";
 import { length, number } from "./labels.js";
 import { ofBlock, ofRecord, verdict } from "./record_answer.js";
-import { geometryOf, modelSections, warningSection } from "./report.js";
+import { geometryOf, modelSections, warningSection } from "./report_sections.js";
 
 /** The report of a response of /v1/records/response; `changes` says at which factors the outcome changes. */
 export function recordReport(found, changes) {

@@ -3,8 +3,8 @@
 import { ask } from "./api.js";
 import { chartsReady } from "./chart.js";
 import { length, number } from "./labels.js";
-import { element, facts, setStatus } from "./page.js";
-import { modelSections, section } from "./report.js";
+import { element, setStatus } from "./page.js";
+import { modelSections, section } from "./report_sections.js";
 import { drawFragility } from "./suite_chart.js";
 
 const form = document.getElementById("suite");
