@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking._numba.compilation import cache_folder
-from rocking.boundary.tracing import overturning_boundary
+from rocking.boundary.trends import load_entries
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.excitation.records.record import Record
 from rocking.history.record_history import record_history
@@ -46,7 +46,7 @@ def load_kernels() -> None:
     time_history("sine", **block, alpha=0.3, samples=2)
     axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}
     slices = [slice_of(cube) for cube in spectra("sine", restitution=[0.84, 0.86], **axes, threads=1)]
-    overturning_boundary("sine", restitution=0.85, nodes=16)
+    load_entries()
     cube = Cube("sine", np.array([one.restitution for one in slices]), slices.__getitem__)
     cube.response(**block)
 

@@ -1,19 +1,10 @@
 """Solver states for tests that call single kernels."""
 
-import subprocess
-import sys
-
-from rocking import precompile
 from rocking._numba.compilation import Record
 from rocking.excitation.pulses import AbstractPulse, get_pulse
 from rocking.solver.arcs.flight import set_angles
 from rocking.solver.kernels.event_loop import init_state, start_flight
 from rocking.solver.state import pulse_state
-
-if precompile.is_missing():
-    # numba crashes if a kernel that was compiled in this process as a part of an entry is also called from Python:
-    # fill the cache in another process, so that entries are loaded and not compiled here
-    subprocess.run([sys.executable, "-m", "rocking.precompile"], check=True)
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:

@@ -60,12 +60,19 @@ _UNCOUNTED: dict[str, Any] = {**_OPTIONS, "_nrt": False}
 
 
 class _SingleModuleLibrary(JITCodeLibrary):
-    """A library in which the copies of other kernels have internal linkage."""
+    """A library in which the copies of other kernels have internal linkage and names of their own.
+
+    The linker of numba finds internal functions by name, too: the first one that it has loaded. The copy of a kernel in
+    an entry is compiled for the calls of the entry, perhaps with fewer arguments. Under its own name it would be called
+    by any kernel that Python calls; names agree within a process, and by chance between the processes that compile and
+    load an entry, since they contain a running number.
+    """
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if function.linkage.name == "linkonce_odr":
                 function.linkage = "internal"
+                function.name = f"{self.name}.{function.name}"
         super()._optimize_final_module()
 
 

@@ -291,3 +291,11 @@ def follow_trends(
         found[1, k] = narrow
         found[2, k] = max(1.5 * width, 2.0 * error)
     return found
+
+
+def load_entries() -> None:
+    """Load the compiled loops from the cache, or compile them, by a small call of each."""
+    x, codes, trends = np.array([0.5]), np.zeros(2, dtype=np.int64), np.full((1, 4), np.nan)
+    pairs = match_trends(x, x, codes, codes, 1, trends, trends, 0.1)
+    learn_trends(pairs, x, x, trends, trends.copy(), trends.copy(), trends, 0.1)
+    follow_trends(x, x, np.empty(0, dtype=np.int64), trends, 0, 0.1, np.empty(0), np.empty(0))

@@ -1,5 +1,6 @@
 """Compiled kernels: one signature for all arguments, equal results in every process, cache on disk."""
 
+import math
 import os
 import shutil
 import subprocess
@@ -14,6 +15,7 @@ import rocking
 import rocking._numba.compilation
 from rocking import precompile
 from rocking._numba.compilation import contiguous_array, entry, kernel
+from rocking.boundary import trends
 from rocking.datasets.cube import write_dataset
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import SinusoidalPulse
@@ -39,6 +41,7 @@ ENTRIES = (
     ),
     *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
     *(lookup_kernel.group_points, lookup_kernel.interpolate_many),
+    *(trends.match_trends, trends.learn_trends, trends.follow_trends),
 )
 
 
@@ -59,6 +62,7 @@ def test_each_entry_has_one_signature_for_all_arguments(tmp_path):
                 rocking.peak_response(pulse, frequency_ratio=np.ones((4, 4))[::2, ::2], tolerance=1e-6, **groups)
             rocking.time_history(pulse, slenderness=0.4, frequency_ratio=3, restitution=1, alpha=0.3, contact=True)
             rocking.time_history(pulse, slenderness=0.4, frequency_ratio=3, restitution=0, samples=2)
+    rocking.overturning_boundary("cosine", restitution=0.85, nodes=16)
     axes = {"slenderness": np.linspace(0.1, 0.9, 9), "frequency_ratio": np.geomspace(1, 5, 9), "alpha": [0.0, 0.3]}
     for cube in spectra("sine", restitution=[0.85, 0.9], **axes):
         write_dataset(cube, tmp_path / f"eta-{float(cube['restitution']):.2f}.nc")
@@ -181,6 +185,42 @@ def test_kernels_without_a_cache_folder_give_one_warning(folder, tmp_path, monke
             return 2.0 * x
 
         assert twice(1.5) == 3.0
+
+
+def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypatch):
+    """That copy is compiled for the arguments of the entry: another caller gets wrong numbers, or the process ends."""
+    monkeypatch.setattr(rocking._numba.compilation, "cache_folder", lambda: None)
+
+    @kernel
+    def weighted_sum(values, first, weight):
+        total = 0.0
+        for i in range(first, len(values)):  # long enough that it is not inlined
+            x = values[i]
+            total += math.sin(x) + math.cos(weight * x) + math.tan(x) + math.atan(weight * x) + math.asin(0.1 * x)
+            total += math.sinh(x) + math.cosh(weight * x) + math.tanh(x) + math.exp(-weight * x) + math.acos(0.1 * x)
+            total += math.erf(x) + math.erfc(weight * x) + math.gamma(x) + math.log1p(weight * x) + math.expm1(x)
+        return total
+
+    @entry
+    def with_one_weight(values):
+        end = len(values)
+        first, second = weighted_sum(values, end - 4, 2.0), weighted_sum(values, end - 3, 2.0)
+        return first + second - weighted_sum(values, end - 2, 2.0)
+
+    @kernel
+    def with_any_weight(values, weight):
+        n = len(values)
+        return (
+            weighted_sum(values, n - 4, weight)
+            + weighted_sum(values, n - 3, weight)
+            - weighted_sum(values, n - 2, weight)
+        )
+
+    values = np.linspace(0.1, 1.0, 4)
+    sums = [[weighted_sum.py_func(values, first, weight) for first in (0, 1, 2)] for weight in (2.0, 5.0)]
+    expected = [a + b - c for a, b, c in sums]
+    found = [with_one_weight(values), with_any_weight(values, 5.0)]
+    assert found == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.slow

@@ -11,7 +11,6 @@ from scipy.integrate import solve_ivp
 import rocking
 from rocking.errors import InvalidArgumentError
 from rocking.model.linkage import VelocityField, restitution_of_impact
-from tests import kernels  # noqa: F401  fills the cache of the kernels
 
 COLUMN = rocking.Block(half_width=0.3, half_height=2.0)
 ARCH = {"radius": 10.0, "thickness": 1.5, "embrace": math.radians(157.5), "voussoirs": 7}

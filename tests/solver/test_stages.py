@@ -13,7 +13,6 @@ from rocking.solver.kernels.event_loop import advance_by_arc, init_state
 from rocking.solver.stages.batch import solve_by_arcs
 from rocking.solver.stages.state import BLOCK_SIZE, stage_state
 from rocking.solver.state import RESPONSE_RECORD, pulse_state
-from tests import kernels  # noqa: F401  fills the cache of the kernels
 
 SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.get_pulse(name).series.has_exact_arcs]
 SIGNED = [sign + name for name in SINUSOIDS for sign in ("", "-")]

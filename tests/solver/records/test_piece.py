@@ -4,7 +4,6 @@ import mpmath
 import numpy as np
 import pytest
 
-import tests.kernels  # noqa: F401  # fills the cache of the entries first
 from rocking.solver.records.piece import follow_piece, hyperbolic, piece_state
 
 
