@@ -10,7 +10,7 @@ Terms = tuple[tuple[float, float, float], ...]
 """Sinusoids c cos(w phi + d): c [-], w [-], d [rad]."""
 
 
-MAX_WAVELET_DECAY = 2.0
+MAX_WAVELET_DECAY = 1.25
 """Largest sqrt(spread)/(2 omega) [-] at which the arcs under a wavelet are accurate to rounding."""
 
 

@@ -88,7 +88,7 @@ def peak_response(
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
     tolerance : float, optional
         Relative error of the peak allowed for speed [-], [1e-13, 1e-3]; by default rounding error only. Slender blocks
-        are exact in any case, under Ricker wavelets from a frequency ratio of 0.5 or 0.62 on. No tolerance can be kept
+        are exact in any case, under Ricker wavelets from a frequency ratio of 0.8 or 0.98 on. No tolerance can be kept
         where the rounding of the arguments decides on the outcome.
     threads : int, optional
         Number of threads for large arrays, >= 1; by default all cores.
