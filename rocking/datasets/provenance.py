@@ -69,16 +69,6 @@ class SourceTree:
         return self._imported[path]
 
 
-def source_files(*paths: Path, root: Path = PROJECT) -> list[Path]:
-    """`SourceTree.files`, of the files as they are now."""
-    return SourceTree(root).files(*paths)
-
-
-def code_digest(*paths: Path, root: Path = PROJECT) -> str:
-    """`SourceTree.digest`, of the files as they are now."""
-    return SourceTree(root).digest(*paths)
-
-
 def settings_digest(settings: Mapping[str, Any]) -> str:
     """sha256 (hex) of settings (numbers, strings, lists, mappings), independent of the order of their keys."""
     return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()

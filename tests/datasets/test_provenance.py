@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking.datasets.provenance import SourceTree, code_digest, settings_digest, source_files
+from rocking.datasets.provenance import SourceTree, settings_digest
 
 TREE = {
     "rocking/__init__.py": "import lazy_loader",
@@ -41,19 +41,19 @@ def tree(tmp_path: Path) -> Path:
     ],
 )  # fmt: skip
 def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> None:
-    found = source_files(tree / script, root=tree)
+    found = SourceTree(tree).files(tree / script)
     assert {path.relative_to(tree).as_posix() for path in found} == expected
 
 
 def test_digest_depends_on_imported_files_and_the_lock_only(tree: Path) -> None:
-    first = code_digest(tree / "script.py", root=tree)
+    first = SourceTree(tree).digest(tree / "script.py")
     (tree / "rocking/c.py").write_text("unrelated = 1")
-    assert code_digest(tree / "script.py", root=tree) == first
+    assert SourceTree(tree).digest(tree / "script.py") == first
     (tree / "rocking/group/inner.py").write_text("y = 2")
-    second = code_digest(tree / "script.py", root=tree)
+    second = SourceTree(tree).digest(tree / "script.py")
     assert second != first
     (tree / "environment.lock").write_text("numpy==2.4.6")
-    assert code_digest(tree / "script.py", root=tree) != second
+    assert SourceTree(tree).digest(tree / "script.py") != second
 
 
 def test_digest_is_independent_of_the_folder(tree: Path, tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_digest_is_independent_of_the_folder(tree: Path, tmp_path: Path) -> None
     for name, text in TREE.items():
         (moved / name).parent.mkdir(parents=True, exist_ok=True)
         (moved / name).write_text(text)
-    assert code_digest(moved / "script.py", root=moved) == code_digest(tree / "script.py", root=tree)
+    assert SourceTree(moved).digest(moved / "script.py") == SourceTree(tree).digest(tree / "script.py")
 
 
 def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
@@ -69,13 +69,13 @@ def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
     first = sources.digest(tree / "script.py")
     (tree / "rocking/b.py").write_text("changed = 1")
     assert sources.digest(tree / "script.py") == first
-    assert sources.digest(tree / "nested.py") == code_digest(tree / "nested.py", root=tree)
+    assert sources.digest(tree / "nested.py") == SourceTree(tree).digest(tree / "nested.py")
     assert SourceTree(tree).digest(tree / "script.py") != first
 
 
 def test_package_digest_covers_every_module() -> None:
-    assert len(code_digest()) == 64
-    assert code_digest() == code_digest()
+    assert len(SourceTree().digest()) == 64
+    assert SourceTree().digest() == SourceTree().digest()
 
 
 def test_settings_digest_ignores_order() -> None:
