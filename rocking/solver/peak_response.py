@@ -124,7 +124,8 @@ def peak_response(
     records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
         margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], cells[3])
-        near = np.flatnonzero(np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted)
+        near = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
+        near = np.flatnonzero(near & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
     peak = found[PEAK_ROTATION.name]
@@ -135,6 +136,12 @@ def peak_response(
         groups=dict(zip(given, checked, strict=True)),
         dims=dimensions_of(*given.values()),
     )
+
+
+def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:
+    """Return the cells (size,) that are solved by exact arcs, whatever the precision."""
+    mask: NDArray[np.bool_] = (cells[3] == 0.0) & (cells[1] >= pulse.series.least_arc_frequency)
+    return mask
 
 
 def solve_cells(
@@ -163,14 +170,26 @@ def solve_cells(
     StoppedError
         If `stop` was set.
     """
+    exact = solved_by_arcs(pulse, cells)
+    if exact.all() or not exact.any():
+        return _solve_alike(pulse, cells, bool(exact.any()), precision, threads, stop)
+    records = np.empty(exact.size, RESPONSE_RECORD)
+    for by_arcs, kind in ((True, exact), (False, ~exact)):
+        records[kind] = _solve_alike(pulse, [cell[kind] for cell in cells], by_arcs, precision, threads, stop)
+    return records
+
+
+def _solve_alike(
+    pulse: AbstractPulse,
+    cells: list[NDArray[np.float64]],
+    by_arcs: bool,
+    precision: float,
+    threads: int | None,
+    stop: StopFlag | None,
+) -> NDArray[np.void]:
+    """Solve cells that are all solved by arcs, or all by Taylor steps."""
     size = cells[0].size
     records = np.empty(size, RESPONSE_RECORD)
-    exact = (cells[3] == 0.0) & (cells[1] >= pulse.series.least_arc_frequency)
-    by_arcs = bool(exact.all())
-    if not by_arcs and exact.any():
-        for kind in (exact, ~exact):
-            records[kind] = solve_cells(pulse, [cell[kind] for cell in cells], precision, threads, stop)
-        return records
     cores = int(threads) if threads else AVAILABLE_CORES
     fewest, most = (MIN_ARC_CHUNK, MAX_ARC_CHUNK) if by_arcs else (MIN_CHUNK, MAX_CHUNK)
     chunk_size = min(max(math.ceil(size / cores), fewest), most)

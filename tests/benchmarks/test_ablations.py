@@ -63,6 +63,9 @@ def test_arcs_are_never_solved_a_second_time() -> None:
         for alpha in (None, 0.35)
     }
     assert solved.pop(("cosine", None)) == slenderness.size
+    by_arcs = frequency_ratio >= 1.0
+    arcs = {name: value[by_arcs] if np.ndim(value) else value for name, value in groups.items()}
+    assert grids.cells_solved(lambda: peak_response("ricker", **arcs)) == by_arcs.sum()
     assert all(count < 1.2 * slenderness.size for count in solved.values())
     assert max(solved.values()) > slenderness.size
 
