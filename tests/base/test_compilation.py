@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -221,6 +222,26 @@ def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypat
     expected = [a + b - c for a, b, c in sums]
     found = [with_one_weight(values), with_any_weight(values, 5.0)]
     assert found == pytest.approx(expected, rel=1e-14)
+
+
+def test_pairs_of_reference_counts_are_removed_from_entries(monkeypatch):
+    """They are atomic operations: the solver took 1.7 times the time with them."""
+    monkeypatch.setattr(rocking._numba.compilation, "cache_folder", lambda: None)
+
+    @kernel
+    def total(values):
+        found = 0.0
+        for x in values:
+            found += x
+        return found
+
+    @entry
+    def both(one, two):
+        return total(one) + total(two)
+
+    assert both(np.ones(3), np.ones(4)) == 7.0
+    (code,) = both.inspect_llvm().values()
+    assert re.findall(r"call .*NRT_incref", code) == []  # the wrapper for Python keeps decrements
 
 
 @pytest.mark.slow
