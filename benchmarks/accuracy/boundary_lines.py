@@ -23,6 +23,9 @@ from rocking.model.response import Outcome
 
 Array = NDArray[np.float64]
 
+CLOSER = (2001, 200_001)
+"""Points at which a change of outcome is looked for at a crossing; the more where the fewer show none [-]."""
+
 
 class Chords:
     """The chords of boundary curves, in the plane of 1/a and log omega."""
@@ -71,12 +74,15 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
                 if others.size:
                     widest = max(widest, np.abs(others - x).min())
         x, slope = chords.crossings(y)
-        reach = 1.1 * curves.chord_error * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 2001)[:, None]
-        overturned = rocking.peak_response(
-            pulse, slenderness=np.clip(x + reach, 1e-3, 1.0), frequency_ratio=omega, **groups
-        ).overturned
         crossings += x.size
-        wrong += int((overturned.all(axis=0) | ~overturned.any(axis=0)).sum())
+        for points in CLOSER:
+            reach = 1.1 * curves.chord_error * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, points)[:, None]
+            overturned = rocking.peak_response(
+                pulse, slenderness=np.clip(x + reach, 1e-3, 1.0), frequency_ratio=omega, **groups
+            ).overturned
+            alike = overturned.all(axis=0) | ~overturned.any(axis=0)
+            x, slope = x[alike], slope[alike]
+        wrong += x.size
     sizes = curves.row_size.values
     return {
         "curves": sizes.size, "short": int((sizes < 6).sum()), "points": int(sizes.sum()), "seconds": seconds,

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
-from rocking.boundary.columns import Index
+from rocking.boundary.columns import THINNEST, Index
 from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
 SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
@@ -148,7 +148,11 @@ def _middles(
         refined = refine_brackets(0, points, ends[k], margins[k], one.own[k], met[k], classify, resolution[k])
         ends[k], margins[k], met[k] = refined.ends, refined.margins, refined.met
         distance[k] = np.abs(ends[k] - chord[k, None]).max(axis=1) / np.hypot(1.0, slope[k])
-    middle = Chains(one.chain, one.eta, ends[:, 0], y, one.own, one.neighbour, one.side, width)
+    other = np.flatnonzero(found & (met != one.neighbour) & (met != two.neighbour))
+    if other.size:  # another neighbour, unless it is too thin to be resolved
+        beyond, _ = classify(ends[other, 0] + THINNEST * outward[other], y[other], one.eta[other])
+        met[other] = np.where(beyond == one.own[other], met[other], beyond)
+    middle = Chains(one.chain, one.eta, ends[:, 0], y, one.own, met, one.side, width)
     return middle, found, distance
 
 

@@ -141,14 +141,13 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
         share = (y - log_omega[cut]) / (log_omega[cut + 1] - log_omega[cut])
         x = s[cut] + share * (s[cut + 1] - s[cut])
         slope = np.abs((s[cut + 1] - s[cut]) / (log_omega[cut + 1] - log_omega[cut]))
-        reach = 1.1 * CHORD * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 801)[:, None]
+        reach = 1.1 * CHORD * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 4001)[:, None]
         near = rocking.peak_response(pulse, slenderness=np.clip(x + reach, 1e-3, 1.0), frequency_ratio=omega, **case)
         changes = near.overturned.any(axis=0) & ~near.overturned.all(axis=0)
         wrong += int((~changes).sum())
         crossings += cut.size
     assert crossings > 60
-    # between regions of many impacts that lie side by side a chord can join two of them: 1 of 152 at the most
-    assert wrong <= 1
+    assert wrong == 0
     # thresholds of regions that the nodes do not show, all after many impacts: 6 of 152 at the most, 21 of 224 at 0.94
     assert unlisted <= (0.05 if restitution < 0.9 else 0.12) * crossings
 

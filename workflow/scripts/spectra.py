@@ -18,7 +18,7 @@ def main(
 ) -> None:
     """Write the cube of each restitution to the corresponding path of `cubes`; tiles are in the order of their rows."""
     for cube, path in zip(join_tiles(pulse, tiles), cubes, strict=True):
-        write_dataset(describe(cube, **provenance), path)
+        write_dataset(describe(cube, **provenance), path, chunks={"alpha": 1})  # one angle can be read alone
         print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
     delete_former_parts(tiles, pulse)
 
