@@ -18,6 +18,7 @@ import xarray as xr
 
 from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import decode_dataset
+from rocking.datasets.shared_cache import KnownVersion, SharedCache
 from rocking.errors import DatasetError
 
 CLOCK_TICK = 20_000_000
@@ -202,10 +203,13 @@ class Catalogue:
     ----------
     results : path
         Folder that the workflow fills; it need not exist yet.
+    cache : SharedCache, optional
+        Keeps digests for other processes.
     """
 
-    def __init__(self, results: Path | str) -> None:
+    def __init__(self, results: Path | str, cache: SharedCache | None = None) -> None:
         self.results = Path(results)
+        self._cache = cache
         self.lock = threading.RLock()
         """To be held while a file is read: the netCDF library is not thread-safe."""
         self._products = VersionCache[str, DatasetFile]()
@@ -266,7 +270,16 @@ class Catalogue:
             As `DataFile.content`.
         """
         with self.lock:
-            return self._products.value(file.name, file, _dataset_file)
+            return self._products.value(file.name, file, self._dataset_file)
+
+    def _dataset_file(self, file: DataFile) -> DatasetFile:
+        known = None if self._cache is None else self._cache.known(file.name, file.version)
+        if known is not None:
+            return DatasetFile(file.name, file.version.size, known.sha256)
+        digest = sha256_of(file.content())
+        if self._cache is not None:
+            self._cache.store(file.name, file.version, KnownVersion(digest))
+        return DatasetFile(file.name, file.version.size, digest)
 
     def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
         """A data set, read into memory and checked, and its version.
@@ -281,11 +294,6 @@ class Catalogue:
         with self.open(name) as file, self.lock:
             content = file.content()
             return self.product_of(file), decode_dataset(content, name)
-
-
-def _dataset_file(file: DataFile) -> DatasetFile:
-    digest = sha256_of(file.content())
-    return DatasetFile(file.name, file.version.size, digest)
 
 
 def _scan(

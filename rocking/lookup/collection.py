@@ -14,11 +14,14 @@ from numpy.typing import ArrayLike
 
 from rocking._numba.cancellation import StopFlag
 from rocking.datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
+from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import decode_dataset
+from rocking.datasets.shared_cache import KnownVersion, SharedCache
 from rocking.errors import DatasetError
 from rocking.excitation.pulses import get_pulse
 from rocking.lookup.cube import Cube
-from rocking.lookup.cube_slice import CubeSlice, decode_slice
+from rocking.lookup.cube_slice import CubeSlice, check_slice, decode_slice
+from rocking.lookup.packed_tables import PackedTables
 from rocking.solver.bounded_response import BoundedResponse
 
 
@@ -29,6 +32,8 @@ class CubeCollection:
     ----------
     results : path
         Folder that the workflow fills; it need not exist yet.
+    cache : path, optional
+        Folder in which processes share tables of the cubes and results of checks; by default nothing is shared.
 
     Attributes
     ----------
@@ -36,8 +41,10 @@ class CubeCollection:
         All files of the folder.
     """
 
-    def __init__(self, results: Path | str) -> None:
-        self.catalogue = Catalogue(results)
+    def __init__(self, results: Path | str, cache: Path | None = None) -> None:
+        self._cache = None if cache is None else SharedCache(cache, Path(results))
+        self.catalogue = Catalogue(results, self._cache)
+        self._tables = None if self._cache is None else PackedTables(self._cache, self.catalogue)
         self._slices = VersionCache[tuple[str, float], CubeSlice | DatasetError]()
         self._restitutions = VersionCache[str, list[float]]()
         self._problems = VersionCache[str, str | None]()
@@ -73,7 +80,7 @@ class CubeCollection:
             try:
                 # under the lock: another thread may read the same file, which is then read once
                 with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
-                    known = self._slices.value(key, file, lambda file: _open(file, *key))
+                    known = self._slices.value(key, file, lambda file: self._open(file, *key))
             except UnknownDatasetError:
                 return None
         if isinstance(known, DatasetError):
@@ -115,6 +122,8 @@ class CubeCollection:
         names, found = self.catalogue.scan()
         if not any(name.startswith("spectra/") for name in names):
             found.setdefault("spectra", "no spectrum cubes; `make reproduce` builds them")
+        elif self._cache is not None:
+            self._cache.keep_only(names)
         for name in names:
             try:
                 problem = self.problem(name)
@@ -186,7 +195,27 @@ class CubeCollection:
     def problem_of(self, file: DataFile) -> str | None:
         """The same for an open data set, which is read and checked once per version of its file."""
         with self.catalogue.lock:
-            return self._problems.value(file.name, file, _check)
+            return self._problems.value(file.name, file, self._check)
+
+    def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
+        try:
+            cube = decode_slice(file.content(), file.name) if self._tables is None else self._tables.slice_of(file)
+            _check_content(file.name, (cube.pulse, cube.restitution), (pulse, restitution))
+        except DatasetError as error:
+            return error
+        return cube
+
+    def _check(self, file: DataFile) -> str | None:
+        """Read a data set, unless another process has; description of its problem, None if it is intact."""
+        if self._cache is None:
+            return _problem_of(file.name, file.content())
+        with self._cache.alone(file.name):
+            known = self._cache.known(file.name, file.version)
+            if known is None or not known.checked:
+                content = file.content()
+                known = KnownVersion(sha256_of(content), checked=True, problem=_problem_of(file.name, content))
+                self._cache.store(file.name, file.version, known)
+        return known.problem
 
 
 def _cube_name(pulse: str, restitution: float) -> str:
@@ -201,24 +230,20 @@ def _restitution_of(stem: str) -> float:
         return np.nan
 
 
-def _open(file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
-    try:
-        cube = decode_slice(file.content(), file.name)
-    except DatasetError as error:
-        return error
-    if (cube.pulse, cube.restitution) != (pulse, restitution):
-        return DatasetError(f"{file.name}: holds {cube.pulse} with restitution {cube.restitution:g}; build it again")
-    return cube
+def _check_content(name: str, found: tuple[str, float], expected: tuple[str, float]) -> None:
+    """Raise `DatasetError` if a data set has another pulse or restitution than expected."""
+    if found != expected:
+        raise DatasetError(f"{name}: holds {found[0]} with restitution {found[1]:g}; build it again")
 
 
-def _check(file: DataFile) -> str | None:
-    """Read a data set; description of its problem, None if it is intact."""
-    kind, *rest = file.name.split("/")
-    if kind == "spectra" and len(rest) == 2:
-        found = _open(file, rest[0], _restitution_of(rest[1]))
-        return str(found) if isinstance(found, DatasetError) else None
+def _problem_of(name: str, content: bytes) -> str | None:
+    """Description of the problem of a data set with these bytes, None if it is intact."""
+    kind, *rest = name.split("/")
     try:
-        decode_dataset(file.content(), file.name)
+        if kind == "spectra" and len(rest) == 2:
+            _check_content(name, check_slice(content, name), (rest[0], _restitution_of(rest[1])))
+        else:
+            decode_dataset(content, name)
     except DatasetError as error:
         return str(error)
     return None

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import tempfile
 import urllib.request
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from weakref import ref
 
 import numpy as np
 import xarray as xr
@@ -20,6 +22,9 @@ from rocking.interpolation.kernel import AngleAxis, SliceWindow, pack_cells
 from rocking.interpolation.stencils import STENCIL_SIZE, Mesh, slice_products
 
 Array = NDArray[np.float64]
+
+CELL_VARIABLES = ("stencil", "outcome", "impacts", "interpolation_error", "restitution_error", "alpha_error")
+"""Variables of a cube from which `pack_cells` makes its records, in order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +48,9 @@ class CubeSlice:
     sha256 : str
         Digest of the file, the version of the data.
     peaks : float array (angles, n, m)
-        The variable `peak_rotation`.
+        The variable `peak_rotation`; contiguous, may be read-only.
     cells : array (angles, n - 1, m - 1) of `CELL_RECORD`
-        What is known of each cell.
+        What is known of each cell; contiguous, may be read-only.
     """
 
     pulse: str
@@ -59,7 +64,19 @@ class CubeSlice:
     sha256: str
     peaks: Array
     cells: NDArray[np.void]
-    _windows: dict[tuple[CubeSlice, ...], SliceWindow] = field(default_factory=dict, init=False, repr=False)
+    _windows: dict[tuple[ref[CubeSlice], ...], SliceWindow] = field(default_factory=dict, init=False, repr=False)
+
+    @classmethod
+    def of(cls, axes: Mapping[str, Any], **fields: Any) -> CubeSlice:
+        """A slice from its axes by name and the other fields.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If an axis has fewer than four nodes.
+        """
+        mesh = Mesh.of(axes["slenderness"], axes["frequency_ratio"])
+        return cls(**axes, **fields, mesh=mesh, angles=AngleAxis.of(axes["alpha"]))
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
@@ -70,7 +87,8 @@ class CubeSlice:
 
         It holds addresses in the slices, which the caller keeps while it uses the window.
         """
-        found = self._windows.get(others)
+        key = tuple(map(ref, others))  # a slice does not keep the others, which files may have replaced
+        found = self._windows.get(key)
         if found is None:
             slices = sorted([self, *others], key=lambda one: one.restitution)
             padded = slices + [self] * (STENCIL_SIZE - len(slices))
@@ -78,7 +96,9 @@ class CubeSlice:
             cells, peaks = (tuple(getattr(one, name).ctypes.data for one in padded) for name in ("cells", "peaks"))
             products = slice_products(restitutions[: len(slices)])
             found = SliceWindow(restitutions, products, slices.index(self), len(slices), cells, peaks)
-            self._windows[others] = found
+            for old in [old for old in self._windows if any(one() is None for one in old)]:
+                self._windows.pop(old, None)
+            self._windows[key] = found
         return found
 
 
@@ -108,6 +128,22 @@ def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
         raise DatasetError(f"{path}: {error}; build it again") from error
 
 
+def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
+    """Pulse and restitution of the bytes of a file from which `decode_slice` makes a cube.
+
+    Raises
+    ------
+    DatasetError
+        As `decode_slice`.
+    """
+    cube = decode_spectrum(content, path)
+    try:
+        Mesh.of(cube["slenderness"].values, cube["frequency_ratio"].values)
+    except InvalidArgumentError as error:
+        raise DatasetError(f"{path}: {error}; build it again") from error
+    return pulse_of(cube), restitution_of(cube)
+
+
 def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
     """A spectrum cube in memory; `sha256` is the digest of its file, if it has one.
 
@@ -116,19 +152,30 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
     InvalidArgumentError
         If an axis has fewer than four nodes.
     """
-    axes: dict[str, Any] = {name: cube[name].values for name in AXES}
-    of_cells = ("stencil", "outcome", "impacts", "interpolation_error", "restitution_error", "alpha_error")
-    return CubeSlice(
-        pulse=str(cube["pulse"].attrs["pulse_name"]),
-        restitution=float(cube["restitution"]),
-        restitutions=np.atleast_1d(cube.attrs.get("restitution_slices", float(cube["restitution"]))),
-        mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
-        angles=AngleAxis.of(axes["alpha"]),
+    return CubeSlice.of(
+        {name: cube[name].values for name in AXES},
+        pulse=pulse_of(cube),
+        restitution=restitution_of(cube),
+        restitutions=restitutions_of(cube),
         sha256=sha256,
         peaks=contiguous_array(cube["peak_rotation"].values),
-        cells=pack_cells(*(cube[name].values for name in of_cells)),
-        **axes,
+        cells=pack_cells(*(cube[name].values for name in CELL_VARIABLES)),
     )
+
+
+def pulse_of(cube: xr.Dataset) -> str:
+    """Name of the pulse of a spectrum cube."""
+    return str(cube["pulse"].attrs["pulse_name"])
+
+
+def restitution_of(cube: xr.Dataset) -> float:
+    """eta of a spectrum cube [-]."""
+    return float(cube["restitution"])
+
+
+def restitutions_of(cube: xr.Dataset) -> Array:
+    """eta of all cubes computed with a spectrum cube [-], ascending."""
+    return np.atleast_1d(cube.attrs.get("restitution_slices", restitution_of(cube)))
 
 
 def fetch_slice(address: str) -> CubeSlice:
