@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import tempfile
+from contextlib import ExitStack
 from typing import Any
 
 import typer
 from pydantic import ValidationError
 
-from rocking_api.server import serve
 from rocking_api.settings import Settings
 
 
-def main(results: str | None, host: str, port: int) -> None:
+def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
     """Serve a folder of results on an address until SIGINT or SIGTERM.
 
     Parameters
@@ -22,6 +25,8 @@ def main(results: str | None, host: str, port: int) -> None:
         Address to listen on.
     port : int
         Port to listen on, 0 to 65535; 0 takes a free one.
+    workers : int
+        Number of processes that serve, >= 1.
 
     Raises
     ------
@@ -38,4 +43,12 @@ def main(results: str | None, host: str, port: int) -> None:
         allowed = wrong.get("ctx", {}).get("error", wrong["msg"])
         typer.echo(f"Error: {name} = {wrong['input']!r} is not allowed; allowed: {allowed}", err=True)
         raise typer.Exit(2) from None
-    serve(settings, host, port)
+    with ExitStack() as stack:
+        if workers > 1:
+            folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="rocking-metrics-"))
+            os.environ["PROMETHEUS_MULTIPROC_DIR"] = folder
+        from rocking_api.server import serve  # noqa: PLC0415  (prometheus_client reads the variable on import)
+
+        stopped_by = serve(settings, host, port, workers)
+    if stopped_by == signal.SIGTERM:  # end as one process does
+        signal.raise_signal(stopped_by)

@@ -1,18 +1,25 @@
-"""The server process: uvicorn with one event loop, connection limits, JSON logs and graceful shutdown."""
+"""The server: uvicorn, one event loop in each process, with connection limits, JSON logs and graceful shutdown."""
 
 from __future__ import annotations
 
 import ctypes
 import gc
+import socket
+import subprocess
 import sys
 from contextlib import suppress
+from typing import Any
 
 import uvicorn
 
+from rocking.precompile import load_kernels
 from rocking_api.app import create_app
+from rocking_api.execution.kernels import compile_command
 from rocking_api.http.connection import limited_protocol
+from rocking_api.http.metrics import forget_process
 from rocking_api.http.request_log import CONFIG
 from rocking_api.settings import Settings
+from rocking_api.workers import Workers
 
 GC_THRESHOLD = 20_000
 """Net allocations that start a garbage collection [-]."""
@@ -33,30 +40,75 @@ LARGE_BLOCK = 1_000_000
 """Bytes of memory that are returned to the operating system when they are freed."""
 
 
-def serve(settings: Settings, host: str, port: int) -> None:
+def serve(settings: Settings, host: str, port: int, workers: int = 1) -> int:
     """Serve until SIGINT or SIGTERM; then finish running requests within `stop_seconds`, and refuse new ones.
 
     Parameters
     ----------
     settings : Settings
-        Of the service.
+        Of the service; limits are those of each worker.
     host, port : str, int
         Address; port 0 takes a free one and logs it.
+    workers : int
+        Number of processes that serve, >= 1. The metrics are those of all if `PROMETHEUS_MULTIPROC_DIR` named a folder
+        when `prometheus_client` was imported.
+
+    Returns
+    -------
+    int
+        The signal that has stopped several workers; one worker ends by the signal.
     """
-    _tune_garbage_collector()
     _return_freed_memory()
     sys.setswitchinterval(SWITCH_INTERVAL)
-    uvicorn.run(
-        create_app(settings, when_ready=gc.freeze),
-        host=host,
-        port=port,
-        http=limited_protocol(settings.arrival_seconds, settings.max_header_bytes, settings.reading_seconds),
-        ws="none",
-        log_config=CONFIG,
-        access_log=False,  # written by RequestLog
-        server_header=False,
-        timeout_graceful_shutdown=settings.stop_seconds,
-    )
+    options: dict[str, Any] = {
+        "host": host,
+        "port": port,
+        "http": limited_protocol(settings.arrival_seconds, settings.max_header_bytes, settings.reading_seconds),
+        "ws": "none",
+        "log_config": CONFIG,
+        "access_log": False,  # written by RequestLog
+        "server_header": False,
+        "timeout_graceful_shutdown": settings.stop_seconds,
+    }
+    if workers == 1:
+        _tune_garbage_collector()
+        uvicorn.run(create_app(settings, when_ready=gc.freeze), **options)
+        return 0
+    listeners = _listen(uvicorn.Config("", **options), workers)
+    _load_kernels()
+    _tune_garbage_collector()
+
+    def work(listener: socket.socket) -> None:
+        app = create_app(settings, when_ready=gc.freeze)
+        uvicorn.Server(uvicorn.Config(app, **options)).run([listener])
+
+    return Workers(work, forget_process, settings.stop_seconds).run(listeners)
+
+
+def _listen(config: uvicorn.Config, workers: int) -> list[socket.socket]:
+    """Sockets that listen on the address of the configuration, one for each worker; connections wait for the workers.
+
+    Linux distributes connections evenly among them. Of one socket the worker that wakes first takes all connections
+    that wait: sixteen that were opened together all went to one of two workers. Elsewhere the workers share one socket.
+    """
+    first = config.bind_socket()  # fails if another service listens there
+    sockets = [first] * workers
+    if sys.platform == "linux":
+        first.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        sockets[1:] = [socket.socket(first.family) for _ in sockets[1:]]
+        for one in sockets[1:]:
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+            one.bind(first.getsockname())
+    for one in sockets:
+        one.listen(config.backlog)
+    return sockets
+
+
+def _load_kernels() -> None:
+    """Load the solver before workers are forked, which then share it; compile it if necessary."""
+    if (command := compile_command()) is not None:
+        subprocess.run(command, check=False)
+    load_kernels()
 
 
 def _return_freed_memory() -> None:

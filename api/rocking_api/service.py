@@ -52,8 +52,10 @@ class Service:
         single = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
         self.batcher = MicroBatcher(self.cubes, single)
         self.kernels = Kernels(settings.max_seconds)
-        self.executor = BoundedExecutor(settings.max_workers, settings.max_queue, settings.max_seconds)
-        self.metrics = Metrics(self.executor)
+        self.metrics = Metrics()
+        self.executor = BoundedExecutor(
+            settings.max_workers, settings.max_queue, settings.max_seconds, on_change=self.metrics.heavy
+        )
         self.dataset_checker = DatasetChecker(self.cubes)
         self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)

@@ -139,6 +139,7 @@ def serve(
         str | None,
         typer.Option(help="Folder that the workflow filled; ROCKING_RESULTS, or results.", show_default=False),
     ] = None,
+    workers: Annotated[int, typer.Option(help="Number of processes that serve.", min=1)] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
     from importlib.metadata import entry_points
@@ -151,4 +152,4 @@ def serve(
             f"no module {error.name}: rocking serve needs the extra `service`, pip install 'rocking[service]'", err=True
         )
         raise typer.Exit(1) from error
-    listen(results, host, port)
+    listen(results, host, port, workers)

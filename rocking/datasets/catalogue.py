@@ -187,6 +187,14 @@ class VersionCache(Generic[K, V]):
         self._entries[key] = path, version, value
         return value
 
+    def items(self) -> list[tuple[K, V]]:
+        """All keys and values, in the order in which the keys were first stored."""
+        return [(key, entry[2]) for key, entry in self._entries.items()]
+
+    def forget(self, key: K) -> None:
+        """Keep the value of a key no longer."""
+        self._entries.pop(key, None)
+
     def value(self, key: K, file: DataFile, compute: Callable[[DataFile], V]) -> V:
         """The value of a key for an open file, computed once per version of the file."""
         entry = self._entries.get(key)

@@ -24,6 +24,9 @@ from rocking.lookup.cube_slice import CubeSlice, check_slice, decode_slice
 from rocking.lookup.packed_tables import PackedTables
 from rocking.solver.bounded_response import BoundedResponse
 
+MAX_PRIVATE_BYTES = 500_000_000
+"""Tables in private memory that a collection with a cache keeps, where the cache cannot be written [bytes]."""
+
 
 class CubeCollection:
     """The spectrum cubes below a results folder.
@@ -81,6 +84,7 @@ class CubeCollection:
                 # under the lock: another thread may read the same file, which is then read once
                 with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
                     known = self._slices.value(key, file, lambda file: self._open(file, *key))
+                    self._limit_private_memory(key)
             except UnknownDatasetError:
                 return None
         if isinstance(known, DatasetError):
@@ -196,6 +200,17 @@ class CubeCollection:
         """The same for an open data set, which is read and checked once per version of its file."""
         with self.catalogue.lock:
             return self._problems.value(file.name, file, self._check)
+
+    def _limit_private_memory(self, newest: tuple[str, float]) -> None:
+        """Forget the oldest tables in private memory, which are read again when needed; tables in files need none."""
+        if self._cache is None:
+            return
+        sizes = {key: 0 if isinstance(one, DatasetError) else one.private_bytes for key, one in self._slices.items()}
+        excess = sum(sizes.values()) - MAX_PRIVATE_BYTES
+        for key, size in sizes.items():
+            if excess > 0 and size and key != newest:
+                self._slices.forget(key)
+                excess -= size
 
     def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
         try:

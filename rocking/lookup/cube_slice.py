@@ -78,6 +78,11 @@ class CubeSlice:
         mesh = Mesh.of(axes["slenderness"], axes["frequency_ratio"])
         return cls(**axes, **fields, mesh=mesh, angles=AngleAxis.of(axes["alpha"]))
 
+    @property
+    def private_bytes(self) -> int:
+        """Memory of the tables that this process does not share with others [bytes]."""
+        return sum(array.nbytes for array in (self.peaks, self.cells) if array.flags.writeable)
+
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)

@@ -1,9 +1,9 @@
 """The tables of a spectrum cube in a file that processes map into memory read-only, and so share.
 
-The kernel of interpolation needs peaks in float64 and one record for each cell, which are 3 times the size of a cube in
-its netCDF file. A file of tables is an array of numpy (`.npy`) of one record with the fields of `_layout`, followed by
-the sha256 of all bytes before. It is checked when it is opened, without memory of its own; later only the pages that
-are touched are resident, and the system may drop them.
+The kernel of interpolation needs peaks in float64 and one record for each cell, which take four to five times the size
+of a cube in its netCDF file. A file of tables is an array of numpy (`.npy`) of one record with the fields of `_layout`,
+followed by the sha256 of all bytes before. It is checked when it is opened, without memory of its own; later only the
+pages that are touched are resident, and the system may drop them.
 """
 
 from __future__ import annotations

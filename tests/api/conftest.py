@@ -1,5 +1,6 @@
 """A small results folder, and the service over it."""
 
+import os
 import shutil
 
 import numpy as np
@@ -22,6 +23,14 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
     "overturning/sine/eta-0.85", "suites/demonstration/fragility", "suites/demonstration/outcomes",
 }  # fmt: skip
 """Names of the data sets in the results."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _cache(tmp_path_factory):
+    """A cache folder for the services of the tests, not that of the user."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(os.environ, "ROCKING_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -12,6 +12,11 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
+def processes_below(process):
+    """Process ids of the children of a process."""
+    return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+
+
 class Server:
     """A running `rocking serve`."""
 
@@ -41,12 +46,15 @@ class Server:
 
 
 @contextmanager
-def serving(results, log, command=(sys.executable, "-m", "rocking.cli"), cwd=ROOT, **environment):
-    """`rocking serve` in a separate process on a free port."""
+def serving(results, log, command=(sys.executable, "-m", "rocking.cli"), cwd=ROOT, workers=1, **environment):
+    """`rocking serve` in a separate process on a free port, with a cache folder beside its log."""
     arguments = [*command, "serve", "--port", "0", "--results", str(results)]
+    if workers > 1:
+        arguments += ["--workers", str(workers)]
+    environment = os.environ | {"ROCKING_CACHE": str(log.with_name("cache"))} | environment
     with (
         log.open("w") as output,
-        subprocess.Popen(arguments, cwd=cwd, stdout=output, stderr=output, env=os.environ | environment) as process,
+        subprocess.Popen(arguments, cwd=cwd, stdout=output, stderr=output, env=environment) as process,
     ):
         try:
             yield Server(process, log)

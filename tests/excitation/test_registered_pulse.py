@@ -78,7 +78,7 @@ def test_cube_and_http_response(tmp_path):
     interpolated = open_cube(path).response(**GROUPS, tolerance=1e-2)
     assert abs(float(interpolated.peak_rotation) - solved) <= float(interpolated.error_bound)
     precompile.main()  # the service refuses requests while it compiles
-    with TestClient(create_app(Settings(results=tmp_path))) as client:
+    with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
         for method in ("solver", "auto"):
             response = client.get("/v1/response", params=GROUPS | {"pulse": "three_sines", "method": method})
             assert response.status_code == 200, response.text

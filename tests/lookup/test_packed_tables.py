@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import rocking.datasets.shared_cache
+import rocking.lookup.collection
 import rocking.lookup.packed_tables
 from rocking.datasets.catalogue import DataFile
 from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, write_dataset
@@ -220,6 +221,18 @@ def test_without_a_cache_the_tables_are_in_memory(results, monkeypatch, caplog, 
     assert len(caplog.records) == 1
     assert "private memory" in caplog.text
     assert [*results.with_name("cache").rglob("*.partial"), *tables_of(results)] == []
+
+
+def test_tables_in_private_memory_are_limited(results, monkeypatch, reads):
+    folder_is_a_file(results, monkeypatch)
+    cubes = collection(results)
+    monkeypatch.setattr(rocking.lookup.collection, "MAX_PRIVATE_BYTES", cubes.slice_at("sine", 0.85).private_bytes)
+    kept = cubes.slice_at("sine", 0.86)
+    assert not cubes.is_open("sine", 0.85)
+    assert cubes.slice_at("sine", 0.86) is kept
+    reads.clear()
+    respond(cubes)
+    assert set(reads) == {NAMES[0]}
 
 
 def test_a_replaced_cube_is_not_kept_by_its_neighbour(results, contents):

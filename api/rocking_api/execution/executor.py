@@ -44,14 +44,19 @@ class BoundedExecutor:
         Requests that may wait for one.
     seconds : float
         Time limit of a request, waiting included [s].
+    on_change : callable, optional
+        Called with the executor, in any thread, after `running` or `waiting` has changed.
     """
 
-    def __init__(self, workers: int, queue: int, seconds: float) -> None:
+    def __init__(
+        self, workers: int, queue: int, seconds: float, on_change: Callable[[BoundedExecutor], None] = lambda _: None
+    ) -> None:
         self._pool = ThreadPoolExecutor(workers, thread_name_prefix="heavy")
         self._capacity = workers + queue
         self._workers = workers
         self._seconds = seconds
         self._jobs: dict[Future[Any], StopFlag] = {}
+        self._on_change = on_change
 
     @property
     def running(self) -> int:
@@ -80,7 +85,8 @@ class BoundedExecutor:
         stop = StopFlag()
         future = self._pool.submit(work, stop)
         self._jobs[future] = stop
-        future.add_done_callback(self._jobs.pop)
+        self._on_change(self)
+        future.add_done_callback(self._forget)
         answer = asyncio.wrap_future(future)
         gone = None if request is None else asyncio.create_task(_wait_for_disconnect(request))
         try:
@@ -96,6 +102,10 @@ class BoundedExecutor:
             if gone is not None:
                 gone.cancel()
             answer.cancel()  # removes it from the queue if it has not started
+
+    def _forget(self, future: Future[Any]) -> None:
+        del self._jobs[future]
+        self._on_change(self)
 
     def close(self) -> None:
         """Start no more work, and cancel what runs."""

@@ -23,6 +23,14 @@ class NotReadyError(RuntimeError):
     """The kernels are still being compiled; the client may retry."""
 
 
+def compile_command() -> list[str] | None:
+    """The command that compiles the kernels, which is logged; None if they are in the cache."""
+    if not is_missing():
+        return None
+    LOG.info("compiling the kernels, up to a minute; requests wait for it")
+    return [sys.executable, "-m", "rocking.precompile"]
+
+
 class Kernels:
     """State of the kernels.
 
@@ -40,9 +48,8 @@ class Kernels:
         """Load them."""
         self._loading = asyncio.get_running_loop().create_future()
         try:
-            if is_missing():
-                LOG.info("compiling the kernels, up to a minute; requests wait for it")
-                compiled = await anyio.run_process([sys.executable, "-m", "rocking.precompile"], check=False)
+            if (command := compile_command()) is not None:
+                compiled = await anyio.run_process(command, check=False)
                 if compiled.returncode:
                     LOG.warning("the compiler failed", extra={"fields": {"stderr": compiled.stderr.decode()}})
             await anyio.to_thread.run_sync(load_kernels, abandon_on_cancel=True)

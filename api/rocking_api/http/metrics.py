@@ -1,11 +1,22 @@
-"""Prometheus metrics: /metrics."""
+"""Prometheus metrics: /metrics.
+
+With several workers each counts into files of a folder (`PROMETHEUS_MULTIPROC_DIR`, see prometheus_client), and the one
+that is asked adds them up.
+"""
 
 from __future__ import annotations
 
-from functools import cache
+import os
+import threading
+from collections.abc import Iterator
+from functools import cache, partial
+from pathlib import Path
 
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client.metrics_core import Metric
+from prometheus_client.multiprocess import MultiProcessCollector, mark_process_dead
 from prometheus_client.process_collector import ProcessCollector
+from prometheus_client.registry import Collector
 
 from rocking_api.execution.executor import BoundedExecutor
 
@@ -15,16 +26,19 @@ BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0,
 """Bucket bounds of the latency [s]: a point takes a millisecond, a batch a second, a curve several."""
 
 
+FOLDER = "PROMETHEUS_MULTIPROC_DIR"
+"""Environment variable with the folder of the metrics of several workers."""
+
+
+def forget_process(process: int) -> None:
+    """Remove what a worker that has ended has reported of its present state; its counts are kept."""
+    mark_process_dead(process)  # type: ignore[no-untyped-call]
+
+
 class Metrics:
-    """Metrics of one application.
+    """Metrics of one application."""
 
-    Parameters
-    ----------
-    executor : BoundedExecutor
-        Executor whose running and waiting requests are reported.
-    """
-
-    def __init__(self, executor: BoundedExecutor) -> None:
+    def __init__(self) -> None:
         self.registry = CollectorRegistry()
         self._requests = Counter(
             "rocking_requests", "Requests answered.", ["method", "route", "status"], registry=self.registry
@@ -42,11 +56,20 @@ class Metrics:
             "rocking_points", "Blocks computed, by a data set or by the solver.", ["source"], registry=self.registry
         )
         self._source = cache(self._points.labels)
-        running = Gauge("rocking_heavy_running", "Requests of heavy work being computed.", registry=self.registry)
-        waiting = Gauge("rocking_heavy_waiting", "Requests of heavy work that wait.", registry=self.registry)
-        running.set_function(lambda: executor.running)
-        waiting.set_function(lambda: executor.waiting)
+        self._running, self._waiting = (
+            Gauge(f"rocking_heavy_{name}", text, registry=self.registry, multiprocess_mode="livesum")
+            for name, text in [
+                ("running", "Requests of heavy work being computed."),
+                ("waiting", "Requests of heavy work that wait."),
+            ]
+        )
+        self._heavy_lock = threading.Lock()
         ProcessCollector(registry=self.registry)  # memory, processor time, open files
+        self._all_workers: CollectorRegistry | None = None
+        if FOLDER in os.environ:
+            self._all_workers = CollectorRegistry()
+            MultiProcessCollector(self._all_workers)  # type: ignore[no-untyped-call]
+            self._all_workers.register(WorkerProcesses(Path(os.environ[FOLDER])))
 
     def request(self, method: str, route: str, status: int, seconds: float) -> None:
         """Count a request; `route` is its pattern, so that names of data sets do not create time series."""
@@ -58,6 +81,36 @@ class Metrics:
         if count:
             self._source(source).inc(count)
 
+    def heavy(self, executor: BoundedExecutor) -> None:
+        """Report the running and waiting requests of an executor; may be called by any thread."""
+        with self._heavy_lock:  # the last call reports the last state
+            self._running.set(executor.running)
+            self._waiting.set(executor.waiting)
+
     def text(self) -> bytes:
-        """In the text format of Prometheus."""
-        return generate_latest(self.registry)
+        """In the text format of Prometheus; with several workers those of all, their processes by `pid`."""
+        return generate_latest(self._all_workers or self.registry)
+
+
+class WorkerProcesses(Collector):
+    """Memory, processor time and open files of each worker.
+
+    Parameters
+    ----------
+    folder : path
+        Folder of the metrics; it has a file with the gauges of each running worker.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def collect(self) -> Iterator[Metric]:
+        """The metrics of `ProcessCollector`, with the process id as label `pid`."""
+        found: dict[str, Metric] = {}
+        for path in sorted(self._folder.glob("gauge_livesum_*.db")):
+            process = path.stem.rpartition("_")[2]
+            for metric in ProcessCollector(pid=partial(str, process), registry=None).collect():
+                merged = found.setdefault(metric.name, Metric(metric.name, metric.documentation, metric.type))
+                for sample in metric.samples:
+                    merged.add_sample(sample.name, {**sample.labels, "pid": process}, sample.value)
+        yield from found.values()

@@ -27,9 +27,6 @@ ERRORS = logging.getLogger("rocking.service")
 
 METHODS = {"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH"}
 
-_RANDOM = random.Random()
-"""Random numbers of this process; an id is no secret."""
-
 _SANE = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
 
@@ -112,7 +109,7 @@ def _request_id(scope: Scope) -> str:
     for name, value in scope["headers"]:
         if name == b"x-request-id" and _SANE.fullmatch(value):
             return str(value.decode())
-    return f"{_RANDOM.getrandbits(64):016x}"
+    return f"{random.getrandbits(64):016x}"  # an id is no secret; workers are seeded when they are forked
 
 
 def _fields(record: RequestRecord) -> dict[str, Any]:

@@ -18,5 +18,5 @@ router = APIRouter(tags=["health"], route_class=ParamsRoute)
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
 async def get_metrics(service: ServiceDep) -> Response:
-    """Requests by route and status, their times, blocks by source, heavy work; since the process started."""
+    """Requests by route and status, their times, blocks by source, heavy work; of all workers since the start."""
     return Response(service.metrics.text(), media_type=CONTENT_TYPE, headers={"Cache-Control": "no-store"})
