@@ -1,10 +1,10 @@
 """Simulated wall time of the workflow on more cores: `python -m benchmarks.cost.scaling FOLDER [FOLDER ...]`.
 
-The job times are those of a finished run, from Snakemake's records in `logs/benchmarks`: processor time, one core
-for each job. The simulation starts a waiting job whenever a core is free, first those of the higher priority of the
-rules, then the longer ones. In the column of Slurm each job sent to the cluster takes `SLURM_OVERHEAD` more, and the jobs that the
-rules keep local run on a core of their own without it, as with `profiles/slurm`. Figures follow the boundaries of the
-sine and the cosine, the claims all data sets and figures, the manifest all of these.
+The job times are those of a finished run, from Snakemake's records in `logs/benchmarks`: processor time, one core for
+each job. The simulation starts a waiting job whenever a core is free, first those of the higher priority of the
+rules, then the longer ones. In the column of Slurm each job sent to the cluster takes `SLURM_OVERHEAD` more, and the
+jobs that the rules keep local run on a core of their own without it, as with `profiles/slurm`. Figures follow the
+boundaries of the sine and the cosine, the claims all data sets and figures, the manifest all of these.
 """
 
 from __future__ import annotations
