@@ -6,6 +6,7 @@ import os
 import signal
 import tempfile
 from contextlib import ExitStack
+from types import FrameType
 from typing import Any
 
 import typer
@@ -47,8 +48,14 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
         if workers > 1:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="rocking-metrics-"))
             os.environ["PROMETHEUS_MULTIPROC_DIR"] = folder
+            signal.signal(signal.SIGTERM, _leave)  # until the workers run; the folder is removed
         from rocking_api.server import serve  # noqa: PLC0415  (prometheus_client reads the variable on import)
 
         stopped_by = serve(settings, host, port, workers)
     if stopped_by == signal.SIGTERM:  # end as one process does
+        signal.signal(stopped_by, signal.SIG_DFL)
         signal.raise_signal(stopped_by)
+
+
+def _leave(number: int, _: FrameType | None) -> None:
+    raise SystemExit(128 + number)

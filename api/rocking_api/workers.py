@@ -17,7 +17,7 @@ import threading
 import time
 from collections.abc import Callable, Collection, Sequence
 from multiprocessing.connection import wait
-from multiprocessing.context import ForkProcess
+from multiprocessing.process import BaseProcess
 
 from uvicorn.config import STARTUP_FAILURE
 
@@ -53,7 +53,7 @@ class Workers:
         self._when_ended = when_ended
         self._stop_seconds = stop_seconds + KILL_SECONDS
         self._listeners: Sequence[socket.socket] = ()
-        self._started: dict[ForkProcess, tuple[socket.socket, float]] = {}
+        self._started: dict[BaseProcess, tuple[socket.socket, float]] = {}
 
     def run(self, listeners: Sequence[socket.socket]) -> int:
         """Run a worker for each socket until SIGTERM or SIGINT, and return it; then new connections are refused.
@@ -111,7 +111,7 @@ class Workers:
             time.sleep(max(0.0, started + QUICK_SECONDS - time.monotonic()))
             self._start(listener)
 
-    def _ended(self) -> list[tuple[ForkProcess, tuple[socket.socket, float]]]:
+    def _ended(self) -> list[tuple[BaseProcess, tuple[socket.socket, float]]]:
         """Workers that have ended, their sockets, and when they were started."""
         ended = [(process, facts) for process, facts in self._started.items() if not process.is_alive()]
         for process, _ in ended:

@@ -8,12 +8,12 @@ a disk causes without a write is not noticed as long as the record exists.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import logging
 import os
 import shutil
+import sys
 import tempfile
 import time
 from collections.abc import Collection, Iterator
@@ -24,6 +24,9 @@ from typing import IO
 
 from rocking.datasets.checksum import PARTIAL
 from rocking.version import __version__
+
+if sys.platform != "win32":
+    import fcntl
 
 LOG = logging.getLogger("rocking.datasets")
 
@@ -136,7 +139,7 @@ class SharedCache:
         descriptor = None
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-            descriptor = os.open(folder, os.O_RDONLY)
+            descriptor = os.open(folder, os.O_RDONLY)  # fails on Windows
             fcntl.flock(descriptor, fcntl.LOCK_EX)
         except OSError:
             pass  # several processes may do the same work

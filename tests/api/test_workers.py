@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from contextlib import closing, contextmanager, suppress
@@ -15,7 +16,10 @@ from pathlib import Path
 
 import httpx2
 import pytest
+import rocking_api.command
+import rocking_api.server
 from prometheus_client.parser import text_string_to_metric_families
+from rocking_api.http.metrics import FOLDER
 from typer.testing import CliRunner
 
 from benchmarks.service import workers as benchmark
@@ -217,6 +221,24 @@ def test_running_requests_of_all_workers_are_finished_at_shutdown(server, folder
     assert status == -signal.SIGTERM
     assert [worker for worker in workers if Path(f"/proc/{worker}").exists()] == []
     assert [*folder.glob("rocking-metrics-*")] == []
+
+
+def test_the_folder_of_metrics_is_removed_if_it_ends_before_the_workers_run(tmp_path, monkeypatch):
+    def serve(*_):
+        (folder,) = tmp_path.iterdir()
+        assert os.environ[FOLDER] == str(folder)
+        signal.raise_signal(signal.SIGTERM)
+
+    monkeypatch.setattr(rocking_api.server, "serve", serve)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv(FOLDER, "")  # restored at the end
+    handler = signal.getsignal(signal.SIGTERM)
+    try:
+        with pytest.raises(SystemExit, match="143"):
+            rocking_api.command.main(None, "127.0.0.1", 0, workers=2)
+    finally:
+        signal.signal(signal.SIGTERM, handler)
+    assert [*tmp_path.iterdir()] == []
 
 
 PROGRAM = """
