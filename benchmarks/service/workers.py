@@ -2,9 +2,9 @@
 
 First the memory of all processes of each service, pages that several share counted once (PSS), after batches from every
 cube of the pulse, each service alone. Then both services run and are loaded in turns, several rounds each: requests for
-one block over many connections, by wrk if it is installed, and batches of 20,000 blocks. Last, a worker is killed under
-load: which requests fail. The load shares the cores with the workers: on two cores two workers cannot reach twice the
-rate of one.
+one block over many connections, by wrk if it is installed, batches of 20,000 blocks, and downloads by wrk. Last, a
+worker is killed under load: which requests fail. The load shares the cores with the workers: on two cores two workers
+cannot reach twice the rate of one where that needs a core.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import asyncio
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -163,6 +164,19 @@ def batch_turn(one: Service, pulse: str, seconds: float, clients: int) -> float:
     return asyncio.run(all_clients())
 
 
+def file_turn(one: Service, name: str, seconds: float) -> dict[str, float]:
+    """Downloads of a data set and revalidations of an unchanged one per second, over 16 connections of wrk."""
+    address = f"http://127.0.0.1:{one.port}/v1/datasets/{name}.nc"
+    with urllib.request.urlopen(address) as response:
+        tag, megabytes = response.headers["ETag"], len(response.read()) / 1e6
+    rates = {}
+    for kind, header in (("downloads", []), ("revalidations", ["--header", f"If-None-Match: {tag}"])):
+        command = ["wrk", "-t1", "-c16", f"-d{max(1, round(seconds))}s", *header, address]
+        printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+        rates[kind] = float(re.findall(r"Requests/sec: +([\d.]+)", printed)[0])
+    return {**rates, "download_MB_per_second": rates["downloads"] * megabytes}
+
+
 def kill_under_load(one: Service, pulse: str, connections: int, seconds: float) -> dict[str, Any]:
     """Kill a worker after a third of the time; each connection sends one request after the other.
 
@@ -273,6 +287,17 @@ def main(arguments: list[str] | None = None) -> None:
             | {name: spread([row[name] for row in rows]) for name in rows[0]}
             for (workers, connections), rows in loads.items()
         ]
+        if shutil.which("wrk"):
+            progress("files")
+            name = f"spectra/{asked.pulse}/eta-0.85"
+            turns = [
+                (workers, file_turn(one, name, asked.seconds)) for _ in range(3) for workers, one in services.items()
+            ]
+            record["files"] = [
+                {"workers": workers}
+                | {kind: spread([rates[kind] for one, rates in turns if one == workers]) for kind in turns[0][1]}
+                for workers in services
+            ]
         record["ratios"] = {  # in one round, so that other load on the machine affects both alike
             connections: spread(
                 [
@@ -310,6 +335,11 @@ def table(record: dict[str, Any]) -> str:
         f"{row['workers']} workers, batches of {BATCH_POINTS:,}  {row['per_second']['median']:.1f} a second "
         f"({row['per_second']['smallest']:.1f} to {row['per_second']['largest']:.1f})"
         for row in record["batches"]
+    ]
+    lines += [
+        f"{row['workers']} workers, 16 connections  {row['downloads']['median']:.0f} downloads/s "
+        f"({row['download_MB_per_second']['median']:.0f} MB/s), {row['revalidations']['median']:.0f} revalidations/s"
+        for row in record.get("files", [])
     ]
     lines += [
         f"{workers} workers: {memory['at_first_MB']:.0f} MB in all, {memory['all_MB']:.0f} MB after all cubes, "
