@@ -39,12 +39,23 @@ def test_a_suite_is_reported_for_each_limit_state(open_page):
     expect(report).to_contain_text("neither slides nor leaves the ground")
     assert report.locator("canvas").count() == 2
     found = page.request.get("/v1/suites/demonstration").json()
+    at = found["blocks"][1]["sensitivity"][0]
+    row = report.locator("tr", has_text=f"{at['friction_demand_largest']:.3g}")
+    count = round(4 * at["fraction_low_restitution"])
+    expect(row).to_contain_text(f"{count} of 4")
+    expect(report).to_contain_text(f"with η = {at['restitution_low']:.3g}")
     curve = found["blocks"][0]["limit_states"][0]["curves"][0]
     expect(report).to_contain_text(f"{curve['median_intensity']:.3g} (")
     page.locator("#demand").select_option("0.5 alpha")
     expect(report).to_contain_text("the block rocks beyond 0.5 α")
     expect(report).not_to_contain_text("Margin of each record")
     assert page.url.endswith("demand=0.5+alpha")
+    page.locator("#block").select_option(label="80 cm by 4 m")
+    expect(report).not_to_contain_text("Block of 50 cm by 2 m")
+    assert report.locator("canvas").count() == 1
+    page.reload()
+    expect(report).to_contain_text("Block of 80 cm by 4 m")
+    expect(report).not_to_contain_text("Block of 50 cm by 2 m")
     page.emulate_media(media="print")
     expect(page.locator("nav")).to_be_hidden()
     expect(page.locator("#choice")).to_be_hidden()
