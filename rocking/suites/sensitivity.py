@@ -79,7 +79,7 @@ def suite_sensitivity(
     -------
     xarray.Dataset
         Over (block, intensity, record): `peak_rotation`, `overturned`, `outcome` and `scale` as `rocking.fragility`
-        gives them; `friction_demand`, the largest |H|/N [-], infinite if the block would lift off, nan for an
+        gives them; `friction_demand`, the largest abs(H)/N [-], infinite if the block would lift off, nan for an
         `EquivalentBlock`, whose contact forces are not known; `overturned_low_restitution`,
         `overturned_high_restitution` and `overturned_resampled`. Over (block, intensity): `exceedances`, the number of
         records that overturn the block, their `fraction` with its Clopper-Pearson interval `fraction_lower`,
