@@ -33,8 +33,7 @@ def measure(folder: Path) -> list[dict[str, Any]]:
     """Return one row for each kind of job, sorted by decreasing time."""
     rows: dict[str, dict[str, Any]] = {}
     for path in sorted(folder.glob("*.tsv")):
-        with path.open(newline="") as stream:
-            (job_record,) = csv.DictReader(stream, delimiter="\t")
+        job_record = record_of(path)
         row = rows.setdefault(
             kind_of(path.stem),
             {"kind": kind_of(path.stem), "jobs": 0, "seconds": 0.0, "processor_seconds": 0.0, "largest_mb": 0.0},
@@ -44,6 +43,13 @@ def measure(folder: Path) -> list[dict[str, Any]]:
         row["processor_seconds"] += number(job_record["cpu_time"])
         row["largest_mb"] = max(row["largest_mb"], number(job_record["max_rss"]))
     return sorted(rows.values(), key=lambda row: -row["seconds"])
+
+
+def record_of(path: Path) -> dict[str, str]:
+    """Read Snakemake's record of a job."""
+    with path.open(newline="") as stream:
+        (record,) = csv.DictReader(stream, delimiter="\t")
+    return record
 
 
 def number(text: str) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
-from rocking.boundary.columns import THINNEST, Index
+from rocking.boundary.columns import ELASTIC_RESOLUTION, THINNEST, Index
 from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
 SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
@@ -116,7 +116,8 @@ def _middles(
     guess = chord + bend
     outward = np.where(one.side == 1, -1.0, 1.0)
     width = np.minimum(one.width, two.width)
-    near = np.clip(0.3 * np.abs(bend), 1e-8, 0.4 * width)
+    nearest = np.where((one.eta == 1.0) & (one.own == UNCOUNTED), ELASTIC_RESOLUTION, 1e-8)
+    near = np.clip(0.3 * np.abs(bend), nearest, np.maximum(0.4 * width, nearest))
     ends, margins, met = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
     found = np.zeros(y.size, dtype=bool)
     for _ in range(WIDENINGS):

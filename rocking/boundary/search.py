@@ -311,8 +311,11 @@ def refine_lines(
     classify: Classify,
     thinnest: float = RESOLUTION,
     layers: Floats | float = RESOLUTION,
+    uncounted: Floats | float = RESOLUTION,
 ) -> Nodes:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
+
+    Where `layers` or `uncounted` hold, they may lie so far apart.
 
     Parameters
     ----------
@@ -328,17 +331,23 @@ def refine_lines(
         Width below which a region between two others need not be found [-].
     layers : float or float array (lines,)
         Distance of the two nodes where two layers of one region meet, see `region_code` [-].
+    uncounted : float or float array (lines,)
+        Distance of the two nodes where a region of uncounted impacts meets another region [-].
 
     Returns
     -------
     Nodes
         The nodes and both ends of every bracket in which the outcome changes.
     """
-    layers = np.broadcast_to(layers, len(points))
+    layers, uncounted = (np.broadcast_to(each, len(points)) for each in (layers, uncounted))
+
+    def resolution_at(line: Index, below: Codes, above: Codes) -> Floats:
+        many = np.where((below == UNCOUNTED) | (above == UNCOUNTED), uncounted[line], RESOLUTION)
+        return np.where(without_layers(below) == without_layers(above), layers[line], many)
 
     def refined(inner: Nodes, outer: Nodes) -> tuple[Nodes, Nodes]:
         """Where the outcome at the inner nodes ends before the outer ones: the last node within, the first beyond."""
-        resolution = _resolution(inner.codes, outer.codes, layers[inner.line])
+        resolution = resolution_at(inner.line, inner.codes, outer.codes)
         ends, margins = (np.stack(each, axis=1) for each in ((inner.x, outer.x), (inner.margin, outer.margin)))
         found = refine_brackets(axis, points[inner.line], ends, margins, inner.codes, outer.codes, classify, resolution)
         (x, beyond), (margin, margin_beyond) = found.ends.T, found.margins.T
@@ -347,7 +356,7 @@ def refine_lines(
     for _ in range(ROUNDS):
         change = (np.diff(nodes.codes) != 0) & (np.diff(nodes.line) == 0)
         width = np.diff(nodes.x)
-        resolution = _resolution(nodes.codes[:-1], nodes.codes[1:], layers[nodes.line[:-1]])
+        resolution = resolution_at(nodes.line[:-1], nodes.codes[:-1], nodes.codes[1:])
         exact = np.concatenate([[False], change & (width <= 2 * resolution), [False]])  # where a region is known to end
         narrow = width <= thinnest
         edge = change & (width > 2 * resolution) & ~(narrow & exact[:-2] & exact[2:])
@@ -372,11 +381,6 @@ def refine_lines(
         ]
         nodes = Nodes.merged([nodes, inside, outside, last, before, *between])
     return nodes
-
-
-def _resolution(below: Codes, above: Codes, layers: Floats) -> Floats:
-    """How near to each other the two nodes beside a change of outcome shall lie."""
-    return np.where(without_layers(below) == without_layers(above), layers, RESOLUTION)
 
 
 def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tuple[Codes, Floats]:

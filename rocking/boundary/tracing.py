@@ -58,7 +58,8 @@ def overturning_boundary(
     -------
     xarray.Dataset
         Polylines in the contiguous ragged representation of CF: slenderness(point), frequency_ratio(point), each
-        vertex good to `RESOLUTION` in 1/a; row_size(curve); outcome(curve), impacts(curve) of the overturning region
+        vertex good to `RESOLUTION` in 1/a (to `ELASTIC_RESOLUTION` for elastic blocks, where one of the two regions
+        has uncounted impacts); row_size(curve); outcome(curve), impacts(curve) of the overturning region
         that the curve bounds; neighbour_outcome(curve), neighbour_impacts(curve) on the other side (SAFE, 0, or
         another way of overturning). An outline is cut into curves where its neighbour changes, the point before the
         cut being repeated; outline(curve) numbers it. `impacts` is -1 for overturning after more than `MANY_IMPACTS`

@@ -124,8 +124,8 @@ def peak_response(
     records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
         margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], cells[3])
-        near = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
-        near = np.flatnonzero(near & ~solved_by_arcs(made, cells))
+        close = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
+        near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
     peak = found[PEAK_ROTATION.name]

@@ -273,6 +273,7 @@ def test_a_request_waits_for_those_of_the_next_iterations_of_the_loop(results):
 
 def test_an_internal_error_reaches_all_requests_of_a_batch(results, monkeypatch):
     with client_of(results) as client:
+        client.get("/v1/response", params=POINT)  # the kernels are loaded in the event loop of the client
         monkeypatch.setattr(client.app.state.service.cubes, "is_open", lambda *_: 1 / 0)
         together = asyncio.run(_all_at_once(client.app, [POINT, POINT | {"slenderness": 0.5}]))
     assert [status for status, _ in together] == [500, 500]
