@@ -9,6 +9,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from http import HTTPStatus
 from typing import Any
 
@@ -195,9 +196,9 @@ def _refusals(error: Exception) -> list[_Refusal]:
     elif isinstance(error, InvalidArgumentError):
         found = [_Refusal(str(error), error.parameter, error.value, error.allowed)]
     elif isinstance(error, RequestValidationError):
-        found = [_of_validation("", one) for one in error.errors()]
+        found = [_of_validation(one) for one in error.errors()]
     elif isinstance(error, ValidationError):
-        found = [_of_validation(error.title, one) for one in error.errors(include_url=False)]
+        found = [_of_validation(one) for one in error.errors(include_url=False)]
     else:
         found = []
     once: dict[str, _Refusal] = {}
@@ -206,10 +207,13 @@ def _refusals(error: Exception) -> list[_Refusal]:
     return [*once.values()]
 
 
-def _of_validation(model: str, error: pydantic_core.ErrorDetails | dict[str, Any]) -> _Refusal:
+def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any]) -> _Refusal:
     kind, context = str(error["type"]), error.get("ctx", {})
-    where = [str(part) for part in error["loc"] if part not in ("query", "body", "path")]
+    place = [part for part in error["loc"] if part not in ("query", "body", "path")]
+    where = [str(part) for part in place]
     name = where[0] if where else "body"  # the rest is the position in an array
+    if len(place) > 2 and isinstance(place[1], int):  # in an array of objects
+        name = f"{name}[{place[1]}].{place[2]}"
     if kind == "missing":
         return _Refusal(f"`{name}` is missing", name, None, "required")
     if kind == "extra_forbidden":
@@ -217,7 +221,7 @@ def _of_validation(model: str, error: pydantic_core.ErrorDetails | dict[str, Any
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
     elif kind.startswith("float"):
-        allowed = f"a number{_unit(model, name)}"
+        allowed = "a number" + next((_units()[part] for part in reversed(where) if part in _units()), "")
     elif kind.startswith("int"):
         allowed = "an integer"
     else:
@@ -226,12 +230,16 @@ def _of_validation(model: str, error: pydantic_core.ErrorDetails | dict[str, Any
     return _Refusal(text, name, error["input"], allowed)
 
 
-def _unit(model: str, name: str) -> str:
-    """The unit of a parameter, such as ` [m]`, which its description states; empty if it has none."""
-    params = next((kind for kind in _models(Params) if kind.__name__ == model), Params)
-    described = params.model_fields[name].description if name in params.model_fields else None
-    found = re.search(r" \[[^\]]+\]", described or "")
-    return found[0] if found and found[0] != " [-]" else ""
+@cache
+def _units() -> dict[str, str]:
+    """The units of the parameters of all routes, such as ` [m]`, which their descriptions state."""
+    found = {}
+    for kind in _models(Params):
+        for name, field in kind.model_fields.items():
+            unit = re.search(r" \[[^\]]+\]", field.description or "")
+            if unit and unit[0] != " [-]":
+                found[name] = unit[0]
+    return found
 
 
 def _models(kind: type[Params]) -> Iterator[type[Params]]:
