@@ -17,6 +17,7 @@ from benchmarks.ablations import suite as ablations
 from benchmarks.accuracy import grid_size, tolerance
 from benchmarks.cells import DIAGRAMS
 from benchmarks.cost import growth, solver, stages, work_precision
+from benchmarks.cost import records as recorded_motions
 from benchmarks.service import performance
 
 GOALS = {"slender": 1000.0, "rigid": 10.0}
@@ -27,6 +28,7 @@ TABLES = {
     "growth": ("Cost against the number of cells", growth.table),
     "grid-size": ("Interpolation", grid_size.table),
     "tolerance": ("Tolerance", tolerance.table),
+    "records": ("Recorded motions", recorded_motions.table),
     "service": ("Service", performance.table),
     "ablations": ("Ablations", ablations.table),
     "stages": ("Stages of the reproduction", lambda record: stages.table(record["stages"])),

@@ -27,24 +27,26 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "reference_tables",
     "example_server",
+    "guide_pages",
 ]
 exclude_patterns = ["README.md", "gallery/README.rst", "_extensions"]
 root_doc = "index"
 
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 3
+smartquotes = False  # it would change options and quoted arguments of commands
 myst_url_schemes = ("http", "https")
 suppress_warnings = ["config.cache"]  # the settings of the gallery hold functions
 
 autosummary_generate = True
 autosummary_imported_members = False
 autodoc_typehints = "none"  # numpydoc states types, units and ranges
-numpydoc_class_members_toctree = False
-numpydoc_show_inherited_class_members = False
+numpydoc_show_class_members = False  # members follow in full, by _templates/autosummary/class.rst
+templates_path = ["_templates"]
 # docstrings write absolute values with bars, which would be substitutions
 rst_prolog = "\n".join(
     rf".. |{text}| replace:: \|{text}\|"
-    for text in ("theta", "f", "a f", "u", "y", "acceleration", "x", "z", "a", "v", "E")
+    for text in ("theta", "f", "a f", "u", "y", "acceleration", "B", "x", "z", "a", "v", "E")
 )
 
 plot_html_show_source_link = False

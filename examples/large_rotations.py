@@ -25,11 +25,11 @@ plt.show()
 
 # %%
 # Under this pulse only the blocks of 20 and 30 degrees overturn after an impact. Passing alpha is not
-# overturning: above that range the block of 20 degrees passes alpha, and the second half of the pulse brings
-# it back.
+# overturning: at 1.1 times the upper end of that range the block of 20 degrees passes alpha, and the second
+# half of the pulse brings it back.
 
 edges = rocking.critical_amplitude("sine", alpha=np.radians(20), **groups)
 print(edges)
-back = rocking.time_history("sine", slenderness=1 / (edges.amplitude[1] * 1.01), alpha=np.radians(20), **groups)
+back = rocking.time_history("sine", slenderness=1 / (edges.amplitude[1] * 1.1), alpha=np.radians(20), **groups)
 rocking.plot.history(back)
 plt.show()

@@ -28,4 +28,5 @@ from .suites.fragility import fragility as fragility
 from .suites.hazard import annual_rate as annual_rate
 from .suites.pulse_fit import PulseFit as PulseFit
 from .suites.pulse_fit import fit_pulse as fit_pulse
+from .suites.sensitivity import suite_sensitivity as suite_sensitivity
 from .version import __version__ as __version__

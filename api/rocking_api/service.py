@@ -24,6 +24,7 @@ from rocking_api.http.metrics import Metrics
 from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.params import Params
 from rocking_api.settings import Settings
+from rocking_api.suite_reader import SuiteReader
 
 T = TypeVar("T")
 
@@ -44,6 +45,7 @@ class Service:
     parser: BoundedExecutor = field(init=False)
     memory_budget: MemoryBudget = field(init=False)
     summaries: DatasetSummaries = field(init=False)
+    suites: SuiteReader = field(init=False)
     turns: anyio.Lock = field(default_factory=anyio.Lock)
 
     def __post_init__(self) -> None:
@@ -58,6 +60,7 @@ class Service:
         )
         self.dataset_checker = DatasetChecker(self.cubes)
         self.summaries = DatasetSummaries(self.cubes.catalogue)
+        self.suites = SuiteReader(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)
         self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)

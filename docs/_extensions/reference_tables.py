@@ -54,7 +54,7 @@ class Routes(Generated):
         used: list[str] = []
         for path, operations in document["paths"].items():
             for method, operation in operations.items():
-                text += [f"**{method.upper()} `{path}`**", "", operation.get("summary", ""), ""]
+                text += [f"### {method.upper()} `{path}`", "", operation.get("summary", ""), ""]
                 parameters = operation.get("parameters", [])
                 if parameters:
                     text += ["| parameter | in | required | meaning |", "|---|---|---|---|"]
@@ -70,10 +70,10 @@ class Routes(Generated):
                 if content:
                     text += ["Response: " + ", ".join(f"`{kind}`" for kind in content) + ".", ""]
                 text += self.fields(content.get("application/json", {}).get("schema", {}), models, used)
-        text += ["**Parts of responses**", ""]
+        text += ["## Parts of responses", ""]
         for name in used:  # grows while models refer to others
             table = self.fields(models[name], models, used)
-            text += [f"`{name}`: {cell(models[name].get('description', ''))}", "", *table]
+            text += [f"### `{name}`", "", cell(models[name].get("description", "")), "", *table]
         return text
 
     def fields(self, schema: dict[str, Any], models: dict[str, Any], used: list[str]) -> list[str]:

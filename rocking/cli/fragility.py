@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -24,45 +24,77 @@ Configuration = Annotated[
     str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
 ]
 
+TableOption = Annotated[
+    Literal["levels", "curves", "sensitivity"],
+    typer.Option(
+        "--table",
+        help="What --csv prints: counts at each level; fitted curves; friction demand, and the effect of restitution "
+        "and sampling, if the configuration asks for them.",
+    ),
+]
+
 
 @with_options
-def fragility(configuration: Configuration, output: OutputOptions) -> None:
-    """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates."""
+def fragility(configuration: Configuration, output: OutputOptions, table: TableOption = "levels") -> None:
+    """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
+
+    If the configuration asks for it, also the friction demand, and the effect of restitution and sampling.
+    """
     from rocking.cli import printing
+    from rocking.cli.arguments import option_errors
+    from rocking.errors import InvalidArgumentError
     from rocking.suites.hazard import annual_rate
     from rocking.suites.table import curve_table, fragility_table
 
     with configuration_errors():
         form = printing.output_format(output)
-    found, suite = suite_fragility(configuration)
+    suite = read_suite(configuration)
+    with option_errors():
+        if table == "sensitivity" and suite.sensitivity is None:
+            raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
+        if table != "levels" and form != "csv":
+            raise InvalidArgumentError("table", table, "with --csv; the other formats hold all tables")
+    found = suite_fragility(suite)
     if suite.hazard is not None:
         found = found.assign(annual_rate(found, suite.hazard).data_vars)
-    levels, curves = fragility_table(found), curve_table(found)
-    unit = found["intensity"].attrs["units"]
+    tables = {"levels": fragility_table(found), "curves": curve_table(found)}
+    if suite.sensitivity is not None and (form != "csv" or table == "sensitivity"):
+        tables["sensitivity"] = _sensitivity(suite)
     if form == "csv":
-        printing.print_csv(levels)
+        printing.print_csv(tables[table])
         return
+    unit = found["intensity"].attrs["units"]
     about = {"suite": suite.name, "records": found["record"].values.tolist(), "measure": suite.measure, "unit": unit}
+    finite = {name: _finite(columns) for name, columns in tables.items()}
     if form == "json":
-        printing.print_json({**about, "confidence": suite.confidence, "levels": levels, "curves": _finite(curves)})
+        printing.print_json({**about, "confidence": suite.confidence, **finite})
         return
     units = dict.fromkeys(("intensity", "median_intensity"), unit) if unit != "1" else {}
     printing.print_text({**about, "records": len(about["records"])})
-    printing.print_table(_finite(levels), units)
+    printing.print_table(finite["levels"], units)
     typer.echo()
-    printing.print_table(_with_intervals(_finite(curves)), units)
+    printing.print_table(_with_intervals(finite["curves"]), units)
+    if "sensitivity" in finite:
+        typer.echo()
+        printing.print_table(_of_sensitivity(finite["sensitivity"], len(about["records"])), units)
 
 
-def suite_fragility(configuration: str) -> tuple[xr.Dataset, SuiteConfiguration]:
-    """The fragility of the suite in a file, and the suite; errors name the key or the file."""
+def read_suite(configuration: str) -> SuiteConfiguration:
+    """The suite in a file; errors name the key."""
     from rocking.suites.configuration import suite_configuration
-    from rocking.suites.fragility import fragility as fragility_of
 
     path = Path(configuration)
-    with configuration_errors(), file_errors(), progress("solving the blocks under the records"):
+    with configuration_errors():
         given = _read(path)
-        suite = suite_configuration(given.get("suite", given), path.parent)
-        found = fragility_of(
+        return suite_configuration(given.get("suite", given), path.parent)
+
+
+def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
+    """The fragility of a suite; errors name the key or the file."""
+    from rocking.suites.fragility import fragility as fragility_of
+
+    with configuration_errors(), file_errors(), progress("solving the blocks under the records"):
+        return fragility_of(
             suite.motions(),
             suite.blocks,
             intensity=suite.intensity,
@@ -71,7 +103,25 @@ def suite_fragility(configuration: str) -> tuple[xr.Dataset, SuiteConfiguration]
             demand=suite.demand,
             confidence=suite.confidence,
         )
-    return found, suite
+
+
+def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
+    """The table of friction demand, and of the effect of restitution and sampling."""
+    from rocking.suites.sensitivity import suite_sensitivity
+    from rocking.suites.table import sensitivity_table
+
+    assert suite.sensitivity is not None
+    with configuration_errors(), file_errors(), progress("solving the blocks with other restitution and sampling"):
+        found = suite_sensitivity(
+            suite.motions(),
+            suite.blocks,
+            intensity=suite.sensitivity.intensity,
+            measure=suite.measure,
+            restitution=suite.restitution,
+            restitution_step=suite.sensitivity.restitution_step,
+            confidence=suite.confidence,
+        )
+    return sensitivity_table(found)
 
 
 @contextmanager
@@ -135,6 +185,22 @@ def _with_intervals(curves: dict[str, list[Any]]) -> dict[str, list[Any]]:
 
     last = [name for name in ("annual_rate", "records_surviving_above_first") if name in curves]
     return {name: column(name) for name in (*shown, *last)}
+
+
+def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[Any]]:
+    """The columns of the table of sensitivities that fit a screen; CSV and JSON have all of them."""
+
+    def count(fraction: float) -> str:
+        return f"{round(fraction * records)} of {records}"
+
+    shown = {name: rows[name] for name in ("half_width", "half_height", "intensity")}
+    shown["overturn"] = [count(value) for value in rows["fraction"]]
+    for end in ("low", "high"):
+        pairs = zip(rows[f"fraction_{end}_restitution"], rows[f"restitution_{end}"], strict=True)
+        shown[f"{end}_restitution"] = [f"{count(value)} (eta {eta:.3g})" for value, eta in pairs]
+    shown["resampled"] = [count(value) for value in rows["fraction_resampled"]]
+    friction = ("friction_demand_median", "friction_demand_largest", "records_changed_by_sampling")
+    return shown | {name: rows[name] for name in friction}
 
 
 def _finite(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:

@@ -199,10 +199,10 @@ def fragility(
     picture: PictureOptions,
 ) -> None:
     """Fragility curves of the first limit state of a suite of records, one panel for each block."""
-    from rocking.cli.fragility import suite_fragility
+    from rocking.cli.fragility import read_suite, suite_fragility
 
     with _picture(picture) as draw:
-        data, _ = suite_fragility(configuration)
+        data = suite_fragility(read_suite(configuration))
 
         def panels(pictures: Any, figure: Any) -> None:
             first = data.isel(demand=0)

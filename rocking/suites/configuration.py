@@ -15,6 +15,8 @@ A configuration is a mapping, as read from a file, with exactly these keys:
 - map: `intensity`, and `half_diagonal` [m] and `alpha_deg`, each a list or `low`, `high` and `points`, spaced evenly;
   null for none
 - hazard: `intensity` and annual `rate` of exceedance [1/year], two lists; null for none
+- sensitivity: `intensity`, levels as above, and `restitution_step` [-], as for `rocking.suite_sensitivity`; null, or no
+  such key, for none
 """
 
 from __future__ import annotations
@@ -105,6 +107,22 @@ class BlockMap:
 
 
 @dataclass(frozen=True)
+class Sensitivity:
+    """What `rocking.suite_sensitivity` is asked for.
+
+    Attributes
+    ----------
+    intensity : array
+        Levels, ascending, in the unit of the measure.
+    restitution_step : float
+        Change of the coefficient of restitution [-].
+    """
+
+    intensity: Array
+    restitution_step: float
+
+
+@dataclass(frozen=True)
 class SuiteConfiguration:
     """A checked configuration, in SI units."""
 
@@ -118,6 +136,7 @@ class SuiteConfiguration:
     confidence: float
     map: BlockMap | None
     hazard: tuple[Array, Array] | None
+    sensitivity: Sensitivity | None
 
     def motions(self) -> list[Record]:
         """The motions of all files, in the order of their names."""
@@ -140,6 +159,8 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         For the first key that is missing, unknown or has an invalid value; `parameter` is the key, such as
         `map.alpha_deg`.
     """
+    if isinstance(given, Mapping):
+        given = {"sensitivity": None, **given}
     _keys("suite", given, SuiteConfiguration.__annotations__)
     measure = one_of("measure", given["measure"], MEASURES)
     hazard = None
@@ -157,6 +178,7 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         confidence=_number("confidence", given["confidence"], 0.0, 1.0),
         map=None if given["map"] is None else _map(given["map"]),
         hazard=hazard,
+        sensitivity=None if given["sensitivity"] is None else _sensitivity(given["sensitivity"]),
     )
 
 
@@ -243,4 +265,12 @@ def _map(given: Any) -> BlockMap:
         _number("map.intensity", given["intensity"], 0.0, math.inf),
         _levels("map.half_diagonal", given["half_diagonal"], logarithmic=False),
         np.radians(angles),
+    )
+
+
+def _sensitivity(given: Any) -> Sensitivity:
+    _keys("sensitivity", given, Sensitivity.__annotations__)
+    return Sensitivity(
+        _levels("sensitivity.intensity", given["intensity"], logarithmic=True),
+        _number("sensitivity.restitution_step", given["restitution_step"], 0.0, 1.0, closed="right"),
     )

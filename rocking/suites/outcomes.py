@@ -18,6 +18,7 @@ from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking.model.response import Response
 from rocking.solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
 
@@ -136,26 +137,50 @@ def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag |
     shape = tuple(map(len, (suite.blocks, suite.levels, suite.records)))
     fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in FIELDS}
     scales = np.empty(shape)
-    alpha = np.array([block.equation_alpha for block in suite.blocks])[:, None]
-    uplift = np.array([block.uplift_acceleration for block in suite.blocks])[:, None]
     for k, record in enumerate(suite.records):
-        own = np.array([suite.measure.of(record, block) for block in suite.blocks])[:, None]
-        p = np.array([block.frequency_parameter for block in suite.blocks])[:, None]
-        ratio = suite.levels / own
-        scale, frequency = (ratio, p) if suite.measure.scales_amplitude else (np.ones_like(ratio), p / ratio)
-        found = record_response(
-            record,
-            frequency_parameter=frequency,
-            slenderness=uplift / (scale * record.peak_acceleration),
-            restitution=suite.restitution[:, None],
-            alpha=alpha,
-            threads=threads,
-            stop=stop,
-        )
-        scales[:, :, k] = scale
+        scales[:, :, k], frequency = problems_of(suite, record)
+        found = responses_to(suite, record, scales[:, :, k], frequency, suite.restitution, threads=threads, stop=stop)
         for name, values in fields.items():
             values[:, :, k] = getattr(found, name)
     return described_outcomes(suite, fields | {"scale": scales})
+
+
+def problems_of(suite: Suite, record: Record) -> tuple[Array, Array]:
+    """The factor of a record [-], and the frequency parameter [rad/s], both (blocks, levels)."""
+    own = np.array([suite.measure.of(record, block) for block in suite.blocks])[:, None]
+    p = np.array([block.frequency_parameter for block in suite.blocks])[:, None]
+    ratio = suite.levels / own
+    if suite.measure.scales_amplitude:
+        return ratio, np.broadcast_to(p, ratio.shape)
+    return np.ones_like(ratio), p / ratio
+
+
+def responses_to(
+    suite: Suite,
+    record: Record,
+    scale: Array,
+    frequency: Array,
+    restitution: Array,
+    *,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> Response:
+    """Responses (blocks, levels) of the blocks to a record times `scale`, with `restitution` (blocks,) of each."""
+    return record_response(
+        record,
+        frequency_parameter=frequency,
+        slenderness=slenderness_of(suite, record, scale),
+        restitution=restitution[:, None],
+        alpha=np.array([block.equation_alpha for block in suite.blocks])[:, None],
+        threads=threads,
+        stop=stop,
+    )
+
+
+def slenderness_of(suite: Suite, record: Record, scale: Array) -> Array:
+    """g tan(alpha)/PGA [-] of the blocks under a record times `scale`, (blocks, levels)."""
+    uplift = np.array([block.uplift_acceleration for block in suite.blocks])[:, None]
+    return np.asarray(uplift / (scale * record.peak_acceleration))
 
 
 def described_outcomes(suite: Suite, values: dict[str, NDArray[Any]]) -> xr.Dataset:

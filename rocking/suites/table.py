@@ -61,23 +61,49 @@ def curve_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     return _rows(found, {**models, **columns, "records_surviving_above_first": named})
 
 
+SENSITIVITY_COLUMNS = (
+    *("exceedances", "fraction", "fraction_lower", "fraction_upper"),
+    *("fraction_low_restitution", "changed_low_restitution", "fraction_high_restitution", "changed_high_restitution"),
+    *("fraction_resampled", "changed_resampled", "records_changed_by_sampling"),
+    *("friction_demand_median", "friction_demand_largest"),
+)
+"""Variables over (block, intensity) that the table of sensitivities holds."""
+
+
+def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
+    """One row for each block and level of a result of `rocking.suite_sensitivity`.
+
+    Returns
+    -------
+    dict
+        Columns half_width [m], half_height [m], intensity (unit of the measure), restitution and its smaller and larger
+        value `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
+    """
+    found = _with_block(sensitivity)
+    columns = {name: found[name].transpose("block", "intensity").values for name in SENSITIVITY_COLUMNS}
+    restitution = {name: _by_block(found, name) for name in ("restitution", "restitution_low", "restitution_high")}
+    return _rows(found, {"intensity": found["intensity"].values, **restitution, **columns})
+
+
 def _with_dimensions(fragility: xr.Dataset) -> xr.Dataset:
     """The result with the dimensions demand and block, also where it was made for one of them."""
-    found = fragility
-    if "block" not in found.dims:
-        own = [name for name, value in found.coords.items() if value.ndim == 0 and name not in ("demand",)]
-        found = found.reset_coords(own).expand_dims("block").set_coords(own)
+    found = _with_block(fragility)
     return found if "demand" in found.dims else found.expand_dims("demand")
 
 
+def _with_block(found: xr.Dataset) -> xr.Dataset:
+    """The result with the dimension block, also where it was made for one."""
+    if "block" in found.dims:
+        return found
+    own = [name for name, value in found.coords.items() if value.ndim == 0 and name not in ("demand",)]
+    return found.reset_coords(own).expand_dims("block").set_coords(own)
+
+
 def _rows(found: xr.Dataset, columns: dict[str, Any]) -> dict[str, list[Any]]:
-    """Columns that broadcast to (demand, block, last), one row each, after the limit state and the block."""
-    before = {
-        "demand": found["demand"].values.astype(str)[:, None, None],
-        "half_width": _by_block(found, "half_width"),
-        "half_height": _by_block(found, "half_height"),
-    }
-    everything = {**before, **columns}
+    """Columns that broadcast to (demand, block, last), one row each, after the limit state, if any, and the block."""
+    demand = {"demand": found["demand"].values.astype(str)[:, None, None]} if "demand" in found.coords else {}
+    sizes = {name: _by_block(found, name) for name in ("half_width", "half_height")}
+    everything = {**demand, **sizes, **columns}
     shape = np.broadcast_shapes(*(np.shape(values) for values in everything.values()))
     return {name: np.broadcast_to(values, shape).ravel().tolist() for name, values in everything.items()}
 

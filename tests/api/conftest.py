@@ -16,11 +16,13 @@ from rocking.spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.hazard import annual_rate
 from rocking.suites.outcomes import check_suite, suite_outcomes
+from rocking.suites.sensitivity import suite_sensitivity
 from tests.suites.motions import noise
 
 CUBES = {("sine", 0.85), ("cosine", 0.90)}
 NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
-    "overturning/sine/eta-0.85", "suites/demonstration/fragility", "suites/demonstration/outcomes",
+    "overturning/sine/eta-0.85",
+    *(f"suites/demonstration/{name}" for name in ("fragility", "outcomes", "sensitivity")),
 }  # fmt: skip
 """Names of the data sets in the results."""
 
@@ -55,7 +57,8 @@ def results(tmp_path_factory):
     fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
     rate = annual_rate(fragility, ([1.0, 10.0], [1e-2, 1e-4]))
     fragility = fragility.assign(rate.data_vars).assign_attrs(title="Fragility under noise", confidence=0.95)
-    for name, dataset in (("outcomes", outcomes), ("fragility", fragility)):
+    sensitivity = suite_sensitivity(motions, blocks, intensity=[4.0, 9.0])
+    for name, dataset in (("outcomes", outcomes), ("fragility", fragility), ("sensitivity", sensitivity)):
         write_dataset(describe(dataset), folder / "suites" / "demonstration" / f"{name}.nc")
     return folder
 

@@ -315,11 +315,22 @@ def test_many_blocks_as_json_and_csv(client):
     assert both["outcome"] == found["outcome"]
 
 
+def test_all_wrong_numbers_of_a_json_body_are_named_with_units(client):
+    row = {"half_width": 0.2, "half_height": "tall", "peak_acceleration": 4.0, "pulse_period": "short"}
+    response = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [row, row | {"half_height": 0.8}]})
+    problem = assert_problem(response, 422, "blocks[0].half_height")
+    assert problem["errors"] == [
+        {"name": "blocks[0].half_height", "value": "tall", "allowed": "a number [m]"},
+        {"name": "blocks[0].pulse_period", "value": "short", "allowed": "a number [s]"},
+        {"name": "blocks[1].pulse_period", "value": "short", "allowed": "a number [s]"},
+    ]
+
+
 @pytest.mark.parametrize(
     ("body", "kind", "name"),
     [
         ('{"blocks": []}', "application/json", "blocks"),
-        ('{"blocks": [{"half_width": 1}]}', "application/json", "blocks"),
+        ('{"blocks": [{"half_width": 1}]}', "application/json", "blocks[0].half_height"),
         (TABLE.replace("[cm]", ""), "text/csv", "blocks, header"),
         (TABLE.replace("80", "tall"), "text/csv", "blocks, line 2, height"),
         (TABLE.replace("0.2,", "1e9,"), "text/csv", "half_width"),

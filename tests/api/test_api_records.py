@@ -11,6 +11,7 @@ import xarray as xr
 import rocking
 from rocking.dimensional.record_response import respond_to_record
 from rocking.dimensional.record_scales import scale_thresholds
+from rocking.excitation.records.record import UNITS
 from tests.api.conftest import assert_problem, client_of
 
 ROOT = Path(__file__).parents[2]
@@ -178,6 +179,18 @@ def test_other_bodies_are_refused(client, body):
 )
 def test_invalid_parameters_are_named(client, params, name):
     assert_problem(post(client, **params), 422, name)
+
+
+def test_units_are_stated_and_all_wrong_parameters_named(client):
+    problem = assert_problem(post(client, half_height="x", scale=0.0, unit="feet", baseline_order="y"), 422)
+    found = {one["name"]: one["allowed"] for one in problem["errors"]}
+    assert found == {
+        "half_height": "a number [m]",
+        "baseline_order": "an integer",
+        "scale": "[1e-06, 1e+06] [-]",
+        "unit": "one of " + ", ".join(UNITS),
+    }
+    assert assert_problem(post(client, time_step="x"), 422, "time_step")["allowed"] == "a number [s]"
 
 
 def test_body_is_limited(results):

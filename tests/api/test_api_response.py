@@ -119,6 +119,33 @@ def test_a_missing_parameter_is_named(client):
     assert problem["allowed"] == "required"
 
 
+def test_several_missing_or_wrong_parameters_are_all_named(client):
+    problem = assert_problem(client.get("/v1/response?pulse=saw&slenderness=x&restitution=3&colour=1"), 422)
+    assert [one["name"] for one in problem["errors"]] == [
+        "slenderness", "frequency_ratio", "colour", "pulse", "restitution",
+    ]  # fmt: skip
+    first, missing, _, _, above = problem["errors"]
+    assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
+    assert missing == {"name": "frequency_ratio", "allowed": "required"}
+    assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
+    assert (problem["parameter"], problem["value"], problem["allowed"]) == ("slenderness", "x", "a number")
+    assert problem["detail"].startswith("5 parameters are missing or wrong: `slenderness` = 'x' is not allowed")
+    outside = assert_problem(get_response(client, slenderness=-1.0, restitution=2.0), 422, "slenderness")
+    assert [one["name"] for one in outside["errors"]] == ["slenderness", "restitution"]
+
+
+def test_one_wrong_parameter_is_no_list(client):
+    problem = assert_problem(get_response(client, restitution=3.0), 422, "restitution")
+    assert "errors" not in problem
+    assert problem["detail"] == "`restitution` = 3.0 is not allowed; allowed: [0, 1] [-]"
+
+
+def test_unknown_parameters_are_named_up_to_a_number(client):
+    problem = assert_problem(get_response(client, **{f"unknown_{k}": 1 for k in range(50)}), 422, "unknown_0")
+    assert len(problem["errors"]) == 20
+    assert problem["detail"].startswith("50 parameters")
+
+
 BATCH = {
     "slenderness": np.array([0.6, 0.3, 1.2, 0.62]),
     "frequency_ratio": np.array([6.0, 2.0, 1.0, 20.0]),

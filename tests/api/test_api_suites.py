@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 import xarray as xr
+from rocking_api import suite_reader
 
+import rocking
 from rocking.datasets.cube import read_dataset, write_dataset
 from rocking.suites.summary import record_margins
 from tests.api.conftest import assert_problem, client_of
+from tests.suites.motions import noise
 
 NAME = "/v1/suites/demonstration"
 
@@ -30,7 +33,7 @@ def test_catalogue_lists_suites_with_their_files(client):
     assert one["demands"] == ["overturning", "0.5 alpha"]
     own, *data = one["links"]
     assert own == {"rel": "self", "href": NAME, "type": "application/json"}
-    assert [link["href"].rpartition("/")[2] for link in data] == ["fragility.nc", "outcomes.nc"]
+    assert [link["href"].rpartition("/")[2] for link in data] == ["fragility.nc", "outcomes.nc", "sensitivity.nc"]
     for link in one["links"]:
         assert client.head(link["href"]).status_code in (200, 405)
         assert client.get(link["href"]).status_code == 200
@@ -79,6 +82,53 @@ def test_margins_and_quantiles_follow_from_the_outcomes(suite, files):
             known = np.sort(np.where(overturned[:, n], np.inf, peaks))  # of four: the first, the second, the last
             for one, expected in zip((low, median, high), known[[0, 1, 3]], strict=True):
                 assert one["peak_rotation"][n] == (expected if np.isfinite(expected) else None)
+
+
+def test_friction_restitution_and_sampling_are_those_of_direct_calls(suite):
+    blocks = [rocking.Block(0.25, 1.0), rocking.Block(0.4, 2.0)]
+    found = rocking.suite_sensitivity([noise(seed) for seed in range(4)], blocks, intensity=[4.0, 9.0])
+    for k, block in enumerate(suite["blocks"]):
+        assert [level["intensity"] for level in block["sensitivity"]] == [4.0, 9.0]
+        for n, level in enumerate(block["sensitivity"]):
+            own = found.isel(block=k, intensity=n)
+            numbers = {key: value for key, value in level.items() if isinstance(value, (int, float))}
+            assert len(numbers) == 15
+            for key, value in numbers.items():
+                assert value == own[key].item(), key
+            assert "; ".join(level["records_changed_by_sampling"]) == own["records_changed_by_sampling"].item()
+            for m, record in enumerate(level["records"]):
+                one = own.isel(record=m)
+                assert record["friction_demand"] == float(one["friction_demand"])
+                for key in ("overturned", "overturned_high_restitution", "overturned_resampled"):
+                    assert record[key] == bool(one[key])
+
+
+def test_files_are_read_once_and_replaced_ones_are_noticed(own_results, monkeypatch):
+    folder = own_results / "suites" / "demonstration"
+    with client_of(own_results) as own:
+        before = own.get(NAME).json()
+        with monkeypatch.context() as patched:
+            patched.setattr(suite_reader, "decode_dataset", None)  # a second reading fails
+            assert own.get(NAME).json() == before
+            assert len(own.get("/v1/suites").json()["suites"]) == 1
+        for file, change in (
+            ("fragility", lambda old: old.assign_attrs(title="Replaced")),
+            ("outcomes", lambda old: old.assign(overturned=xr.zeros_like(old["overturned"]))),
+            ("sensitivity", lambda old: old.assign(friction_demand_median=2.0 * old["friction_demand_median"])),
+        ):
+            changed = change(read_dataset(folder / f"{file}.nc"))
+            (folder / f"{file}.nc").unlink()
+            write_dataset(changed, folder / f"{file}.nc")
+        after = own.get(NAME).json()
+        assert after["title"] == own.get("/v1/suites").json()["suites"][0]["title"] == "Replaced"
+        for now, then in zip(after["blocks"], before["blocks"], strict=True):
+            assert {margin["overturning_intensity"] for margin in now["margins"]} == {None}
+            assert (
+                now["sensitivity"][0]["friction_demand_median"]
+                == 2.0 * then["sensitivity"][0]["friction_demand_median"]
+            )
+        (folder / "sensitivity.nc").unlink()
+        assert all(block["sensitivity"] == [] for block in own.get(NAME).json()["blocks"])
 
 
 def test_unknown_and_damaged_suites_are_refused(client, own_results):

@@ -236,6 +236,7 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
         "growth",
         "grid_size",
         "first_call",
+        "recorded_motions",
         "service",
         "stages",
     )
@@ -249,6 +250,11 @@ def test_the_summary_holds_what_was_measured_and_omits_the_rest(tmp_path: Path) 
     text = "\n".join(page(tmp_path))
     assert "Cost against the number of cells" in text
     assert "1.953" in text  # us per cell
+    measured = records.measure(records=2, scales=4, rounds=1, reference_runs=1)
+    (tmp_path / "records.json").write_text(json.dumps(measured))
+    text = "\n".join(page(tmp_path))
+    assert f"{measured['rigid']['runs_per_second']:,.0f}" in text.partition("Recorded motions")[2]
+    assert measured["slender"]["runs"] == 32
     assert "Interpolation" not in text
 
 

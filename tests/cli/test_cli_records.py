@@ -147,6 +147,30 @@ def test_fragility_in_three_formats(small):
     assert len(line) < 180
 
 
+def test_friction_restitution_and_sampling_in_three_formats(small):
+    suite = suite_configuration(json.loads(small.read_text()), small.parent)
+    expected = rocking.suite_sensitivity(suite.motions(), suite.blocks[0], intensity=suite.sensitivity.intensity)
+    result = json.loads(run("fragility", str(small), "--json"))["sensitivity"]
+    rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv", "--table", "sensitivity"))))
+    for name in ("intensity", "fraction_low_restitution", "changed_resampled", "friction_demand_largest"):
+        assert result[name] == [float(row[name]) for row in rows] == expected[name].values.tolist()
+    line = run("fragility", str(small)).splitlines()[-1].split("  ")
+    assert f"{float(expected.friction_demand_largest[-1]):.9g}" in [cell.strip() for cell in line]
+    assert f"2 of 2 (eta {float(expected.restitution_low):.3g})" in [cell.strip() for cell in line]
+
+
+def test_table_is_for_csv_and_for_what_the_configuration_asks_for(small, tmp_path):
+    assert "with --csv" in refused("fragility", str(small), "--json", "--table", "curves")
+    rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv", "--table", "curves"))))
+    assert len(rows) == 3 * 2
+    given = json.loads(small.read_text())
+    del given["sensitivity"]
+    path = tmp_path / "plain.json"
+    path.write_text(json.dumps(given))
+    assert "no sensitivity" in refused("fragility", str(path), "--csv", "--table", "sensitivity")
+    assert "sensitivity" not in json.loads(run("fragility", str(path), "--json"))
+
+
 def test_configuration_may_be_yaml_or_toml(small, tmp_path):
     given = json.loads(small.read_text())
     (tmp_path / "suite.yaml").write_text(yaml.safe_dump({"title": "a suite", "suite": given}))

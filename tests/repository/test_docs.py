@@ -124,9 +124,12 @@ def test_guide_builds_without_warning(tmp_path):
     for name in ("CHANGELOG.md", "CONTRIBUTING.md", "results/README.md", "workflow/config/paper.yaml"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
+    drawn = tmp_path / "results" / "figures" / "figure-05.svg"
+    drawn.parent.mkdir()
+    drawn.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>')
     target = tmp_path / "html"
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-D", "plot_gallery=0", "docs", str(target)]
-    environment = os.environ | {"PYTHONWARNINGS": "ignore"}
+    environment = os.environ | {"PYTHONWARNINGS": "ignore", "ROCKING_RESULTS": str(tmp_path / "results")}
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     index = " ".join(
@@ -138,6 +141,13 @@ def test_guide_builds_without_warning(tmp_path):
     assert "surviving_from_half_diagonal" in index  # of a part of a response
     assert "restitution_error" in (target / "reference/files.html").read_text()
     assert (target / "reference/generated/rocking.peak_response.html").exists()
+    members = (target / "reference/generated/rocking.Block.html").read_text()
+    assert members.count('id="rocking.Block.response"') == 1  # in full, not as a row of a table
+    assert "Factor of a record" in members
+    section = (target / "figures.html").read_text().partition('id="figures-5-and-6"')[2].partition("</section>")[0]
+    assert 'src="_images/figure-05.svg"' in section
+    assert not [page.name for page in target.rglob("*.html") if re.search(r">[\w./-]+\.md</a>", page.read_text())]
+    assert "--csv prints" in (target / "reference/command.html").read_text()  # no dash
     loaded = [
         (page.name, url)
         for page in target.rglob("*.html")

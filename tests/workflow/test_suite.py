@@ -40,6 +40,7 @@ def products(suite_run: Path) -> Path:
 def test_every_product_is_made_and_listed(products: Path) -> None:
     listed = json.loads((products / "manifest.json").read_text())["products"]
     expected = {f"records/{name}.csv.nc" for name in RECORDS} | {"outcomes.nc", "fragility.nc", "fragility.csv"}
+    expected |= {f"sensitivity/{name}.csv.nc" for name in RECORDS} | {"sensitivity.nc", "sensitivity.csv"}
     expected |= {f"figures/{name}.{kind}" for name in ("curves", "outcomes", "map") for kind in ("svg", "png", "nc")}
     assert set(listed) == expected
     for name, entry in listed.items():
@@ -63,6 +64,30 @@ def test_products_are_those_of_the_library(products: Path) -> None:
     assert outcomes.digest.values.tolist() == [motion.digest for motion in suite.motions()]
     rate = rocking.annual_rate(direct, suite.hazard)
     np.testing.assert_allclose(fragility.annual_rate, rate.annual_rate)
+
+
+def test_friction_restitution_and_sampling_are_those_of_the_library(products: Path) -> None:
+    suite = suite_configuration(yaml.safe_load(CONFIGURATION.read_text())["suite"], CONFIGURATION.parent)
+    asked = suite.sensitivity
+    assert asked is not None
+    found = read_dataset(products / "sensitivity.nc")
+    direct = rocking.suite_sensitivity(
+        suite.motions()[2:], suite.blocks[1], intensity=asked.intensity, restitution_step=asked.restitution_step
+    )
+    for name in (
+        "friction_demand",
+        "overturned_low_restitution",
+        "overturned_high_restitution",
+        "overturned_resampled",
+    ):
+        np.testing.assert_array_equal(found[name][1, :, 2:], direct[name])
+        assert found[name].attrs["units"] == "1"
+    np.testing.assert_array_equal(found.fraction_resampled, found.overturned_resampled.mean("record"))
+    np.testing.assert_array_equal(found.friction_demand_largest, found.friction_demand.max("record"))
+    assert found.attrs["confidence"] == suite.confidence
+    rows = (products / "sensitivity.csv").read_text().splitlines()
+    assert len(rows) == 1 + len(suite.blocks) * asked.intensity.size
+    assert rows[0].startswith("half_width,half_height,intensity,restitution,restitution_low")
 
 
 def test_map_is_that_of_single_blocks(products: Path) -> None:
@@ -127,6 +152,9 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run
         ("confidence", 1.0, "suite.confidence = 1.0: allowed: (0, 1)"),
         ("map/alpha_deg", [95.0], "suite.map.alpha_deg = 95.0: allowed: (0, 89] [deg]"),
         ("hazard/rate", [1.0], "suite.hazard_curve"),
+        ("sensitivity/intensity", [-1.0], "suite.sensitivity.intensity = -1.0"),
+        ("sensitivity/restitution_step", 0.0, "suite.sensitivity.restitution_step = 0.0: allowed: (0, 1]"),
+        ("sensitivity", {"intensity": [1.0]}, "suite.sensitivity = 'no restitution_step': allowed: exactly the keys"),
     ],
 )
 def test_invalid_configuration_is_refused_in_one_line(place: str, value: Any, message: str) -> None:

@@ -1,7 +1,7 @@
 # The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
 # measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = ["tolerance", "solver", "growth", "grid-size", "first-call", "service", "ablations", "stages"]
+TIMED = ["tolerance", "solver", "growth", "grid-size", "first-call", "records", "service", "ablations", "stages"]
 
 
 rule work_precision:
@@ -129,6 +129,22 @@ rule first_call:
         "First response of a new process"
     shell:
         "python -m benchmarks.cost.first_call --out {output.record} >{log}"
+
+
+rule recorded_motions:
+    output:
+        record="results/benchmarks/records.json",
+    log:
+        "logs/bench/records.log",
+    benchmark:
+        "logs/bench/records.tsv"
+    threads: CORES
+    params:
+        code=benchmark_code("cost/records"),
+    message:
+        "Responses under recorded motions"
+    shell:
+        "python -m benchmarks.cost.records --out {output.record} >{log}"
 
 
 rule service:

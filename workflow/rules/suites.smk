@@ -3,6 +3,14 @@
 SUITE = config["suite"]
 SUITE_FILES = {path.name: path for path in suite_configuration(SUITE, CONFIG_FOLDER).records.paths()}
 SUITE_FOLDER = f"results/suites/{SUITE['name']}"
+# asked for by `sensitivity`: one file for each record, and those of the suite
+SUITE_ASKS = SUITE.get("sensitivity") is not None
+SENSITIVITY_FILES = {name: f"{SUITE_FOLDER}/sensitivity/{name}.nc" for name in SUITE_FILES if SUITE_ASKS}
+SENSITIVITY_PRODUCTS = (
+    {"sensitivity": f"{SUITE_FOLDER}/sensitivity.nc", "sensitivity_rows": f"{SUITE_FOLDER}/sensitivity.csv"}
+    if SUITE_ASKS
+    else {}
+)
 SUITE_FIGURES = {"curves": "fragility", "outcomes": "outcomes", **({"map": "outcomes"} if SUITE["map"] else {})}
 # what the response of a record does not depend on
 OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95, "hazard": None}
@@ -13,13 +21,16 @@ RECORD_PROVENANCE = provenance(
     "suite_record",
     ["scripts/suite_record.py"],
     OUTCOME_SETTINGS,
-    [f"{SUITE_FOLDER}/records/{name}.nc" for name in SUITE_FILES],
+    [*(f"{SUITE_FOLDER}/records/{name}.nc" for name in SUITE_FILES), *SENSITIVITY_FILES.values()],
 )
 FRAGILITY_PROVENANCE = provenance(
     "suite_fragility",
     ["scripts/suite_fragility.py"],
     SUITE,
-    [f"{SUITE_FOLDER}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")],
+    [
+        *(f"{SUITE_FOLDER}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")),
+        *SENSITIVITY_PRODUCTS.values(),
+    ],
 )
 
 
@@ -31,6 +42,7 @@ rule suite_record:
     input:
         file=lambda wildcards: str(SUITE_FILES[wildcards.file]),
     output:
+        **({"sensitivity": f"{SUITE_FOLDER}/sensitivity/{{file}}.nc"} if SUITE_ASKS else {}),
         outcomes=f"{SUITE_FOLDER}/records/{{file}}.nc",
         record=record_of(f"{SUITE_JOBS}/records/{{file}}", RECORD_PROVENANCE),
     log:
@@ -52,7 +64,9 @@ rule suite_record:
 rule suite_fragility:
     input:
         files=expand(rules.suite_record.output.outcomes, file=SUITE_FILES),
+        sensitivities=list(SENSITIVITY_FILES.values()),
     output:
+        **SENSITIVITY_PRODUCTS,
         outcomes=f"{SUITE_FOLDER}/outcomes.nc",
         fragility=f"{SUITE_FOLDER}/fragility.nc",
         table=f"{SUITE_FOLDER}/fragility.csv",

@@ -4,13 +4,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
+
 from rocking.datasets.csv_text import csv_text
 from rocking.datasets.cube import describe, read_dataset, write_dataset
 from rocking.suites.configuration import suite_configuration
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.hazard import annual_rate
 from rocking.suites.outcomes import join_outcomes
-from rocking.suites.table import fragility_table
+from rocking.suites.sensitivity import sensitivity_of_outcomes
+from rocking.suites.table import fragility_table, sensitivity_table
 from workflow.scripts.job import run
 
 
@@ -22,6 +25,9 @@ def main(
     fragility: Path,
     table: Path,
     provenance: Mapping[str, str],
+    sensitivities: Sequence[Path] = (),
+    sensitivity: Path | None = None,
+    sensitivity_rows: Path | None = None,
 ) -> None:
     """Join the outcomes of all records, count them, and fit curves.
 
@@ -35,9 +41,13 @@ def main(
         Outputs: all outcomes; counts, intervals and curves, as netCDF and, by level, as CSV.
     provenance : mapping
         Digests of the code and settings.
+    sensitivities : sequence of paths
+        Friction demand and changed outcomes under each motion, if the suite asks for them.
+    sensitivity, sensitivity_rows : path, optional
+        Outputs: these under all motions with their counts, as netCDF and, by level, as CSV.
     """
     chosen = suite_configuration(suite, Path())
-    joined = join_outcomes([read_dataset(path).drop_attrs(deep=False) for path in files], chosen.measure)
+    joined = _joined(files, chosen.measure)
     found = fragility_of_outcomes(joined, chosen.demand, chosen.confidence)
     if chosen.hazard is not None:
         found = found.assign(annual_rate(found, chosen.hazard).data_vars)
@@ -47,7 +57,7 @@ def main(
         "measure": chosen.measure,
         **provenance,
     }
-    described = {
+    described: dict[Path, xr.Dataset] = {
         outcomes: joined.assign_attrs(
             title=f"Outcomes of the suite {chosen.name}",
             summary="Response of rigid blocks (2.2) to each record at each level of intensity, solved event by event.",
@@ -55,16 +65,29 @@ def main(
         fragility: found.assign_attrs(
             title=f"Fragility under the suite {chosen.name}",
             summary="Number of records that reach a limit state at each level of intensity, with binomial intervals, "
-            "and "
-            "curves fitted by maximum likelihood; rocking.suites.fits states how.",
+            "and curves fitted by maximum likelihood; rocking.suites.fits states how.",
             confidence=chosen.confidence,
         ),
     }
+    if sensitivity is not None and sensitivity_rows is not None:
+        changed = _joined(sensitivities, chosen.measure)
+        changed = changed.merge(sensitivity_of_outcomes(changed, chosen.confidence))
+        sensitivity_rows.write_text(csv_text(sensitivity_table(changed)), encoding="utf-8")
+        described[sensitivity] = changed.assign_attrs(
+            title=f"Friction demand, and effect of restitution and sampling, under the suite {chosen.name}",
+            summary="Largest friction demand of each block under each record at some levels of intensity, and whether "
+            "it overturns with another restitution or sampling; rocking.suites.sensitivity states what is changed.",
+            confidence=chosen.confidence,
+        )
     for path, dataset in described.items():
         name = f"suites/{chosen.name}/{path.stem}"
         write_dataset(describe(dataset, id=name, **about), path)
     table.write_text(csv_text(fragility_table(found)), encoding="utf-8")
     print(f"{fragility}: {joined.sizes['record']} records, {joined.sizes['block']} blocks")
+
+
+def _joined(files: Sequence[Path], measure: str) -> xr.Dataset:
+    return join_outcomes([read_dataset(path).drop_attrs(deep=False) for path in files], measure)
 
 
 if __name__ == "__main__":

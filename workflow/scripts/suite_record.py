@@ -1,6 +1,7 @@
 """Responses of the blocks of a suite to the motion of one file, at every level of intensity."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,18 @@ from rocking.excitation.records.record import Record
 from rocking.model.block import Block
 from rocking.suites.configuration import BlockMap, SuiteConfiguration, suite_configuration
 from rocking.suites.outcomes import check_suite, suite_outcomes
+from rocking.suites.sensitivity import sensitivity_outcomes
 from workflow.scripts.job import run
 
 
-def main(*, file: Path, suite: Mapping[str, Any], outcomes: Path, provenance: Mapping[str, str]) -> None:
+def main(
+    *,
+    file: Path,
+    suite: Mapping[str, Any],
+    outcomes: Path,
+    provenance: Mapping[str, str],
+    sensitivity: Path | None = None,
+) -> None:
     """Compute the outcomes of the blocks, and of the grid of blocks of the map, under the motion of a file.
 
     Parameters
@@ -27,6 +36,8 @@ def main(*, file: Path, suite: Mapping[str, Any], outcomes: Path, provenance: Ma
         Output.
     provenance : mapping
         Digests of the code and settings.
+    sensitivity : path, optional
+        Output, if the suite asks for it: friction demand, and outcomes with other restitution and sampling.
     """
     chosen = suite_configuration(suite, Path())
     motion = chosen.records.read(file)
@@ -34,15 +45,27 @@ def main(*, file: Path, suite: Mapping[str, Any], outcomes: Path, provenance: Ma
     found = suite_outcomes(checked, threads=1)
     if chosen.map is not None:
         found = found.assign(map_overturned=_map_of(chosen, chosen.map, motion))
-    about = {
-        "title": f"Rocking under {motion.name}",
-        "summary": "Response of rigid blocks (2.2) to a recorded ground motion at several levels of intensity, "
+    about = {"history": "workflow.scripts.suite_record", "source": motion.source, **provenance}
+    described = describe(
+        found,
+        title=f"Rocking under {motion.name}",
+        summary="Response of rigid blocks (2.2) to a recorded ground motion at several levels of intensity, "
         "solved event by event.",
-        "id": f"suites/{chosen.name}/records/{file.name}",
-        "history": "workflow.scripts.suite_record",
-        "source": motion.source,
-    }
-    write_dataset(describe(found, **about, **provenance), outcomes)
+        id=f"suites/{chosen.name}/records/{file.name}",
+        **about,
+    )
+    write_dataset(described, outcomes)
+    if chosen.sensitivity is not None and sensitivity is not None:
+        asked = replace(checked, levels=chosen.sensitivity.intensity)
+        described = describe(
+            sensitivity_outcomes(asked, chosen.sensitivity.restitution_step, threads=1),
+            title=f"Friction demand, and effect of restitution and sampling, under {motion.name}",
+            summary="Rigid blocks (2.2) under a recorded ground motion; rocking.suites.sensitivity states what is "
+            "changed.",
+            id=f"suites/{chosen.name}/sensitivity/{file.name}",
+            **about,
+        )
+        write_dataset(described, sensitivity)
     print(f"{outcomes}: {found.overturned.size} responses")
 
 

@@ -5,7 +5,11 @@
 
 from __future__ import annotations
 
+import re
 import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
 from http import HTTPStatus
 from typing import Any
 
@@ -19,6 +23,7 @@ from rocking.datasets.catalogue import UnknownDatasetError
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking_api.execution.executor import BusyError, TimeLimitError
 from rocking_api.execution.kernels import NotReadyError
+from rocking_api.models.params import Params, SeveralArgumentsError
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -35,6 +40,23 @@ class SlowBodyError(InvalidArgumentError):
     """The body does not arrive in time."""
 
 
+class InvalidQueryError(Exception):
+    """Parameters that are missing, unknown or no values of their types, and others that are out of range.
+
+    Parameters
+    ----------
+    validation : ValidationError
+        Of pydantic.
+    out_of_range : list of InvalidArgumentError
+        The others.
+    """
+
+    def __init__(self, validation: ValidationError, out_of_range: list[InvalidArgumentError]) -> None:
+        super().__init__(validation, out_of_range)
+        self.validation = validation
+        self.out_of_range = out_of_range
+
+
 STATUS: dict[type[Exception], int] = {
     InvalidArgumentError: HTTPStatus.UNPROCESSABLE_ENTITY,  # OutsideCubeError is one
     TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
@@ -45,6 +67,7 @@ STATUS: dict[type[Exception], int] = {
     BusyError: HTTPStatus.SERVICE_UNAVAILABLE,
     NotReadyError: HTTPStatus.SERVICE_UNAVAILABLE,
     TimeLimitError: HTTPStatus.GATEWAY_TIMEOUT,
+    InvalidQueryError: HTTPStatus.UNPROCESSABLE_ENTITY,
     RequestValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
     ValidationError: HTTPStatus.UNPROCESSABLE_ENTITY,
 }
@@ -69,6 +92,18 @@ MAX_NUMBER = sys.float_info.max
 """Largest number that an error repeats; larger integers become text."""
 
 
+MAX_ERRORS = 20
+"""Parameters that an error names at most."""
+
+
+class InvalidParameter(BaseModel):
+    """A parameter that is missing or wrong."""
+
+    name: str = Field(description="which parameter")
+    value: float | str | None = Field(None, description="what it was")
+    allowed: str = Field(description="what is allowed")
+
+
 class Problem(BaseModel):
     """RFC 9457, with the three parts of every error message."""
 
@@ -79,6 +114,11 @@ class Problem(BaseModel):
     parameter: str | None = Field(None, description="which parameter")
     value: float | str | None = Field(None, description="what it was")
     allowed: str | None = Field(None, description="what is allowed")
+    errors: list[InvalidParameter] | None = Field(
+        None,
+        description="where several parameters are missing or wrong, all of them, at most 20; `parameter`, "
+        "`value` and `allowed` are those of the first",
+    )
 
 
 RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -92,8 +132,9 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
 def problem_response(status: int, detail: str, headers: dict[str, str] | None = None, **parts: Any) -> Response:
     """An error response."""
     value = _plain(parts.pop("value", None))
+    errors = parts.pop("errors", None)
     texts = {name: text[:MAX_TEXT] for name, text in {"detail": detail, **parts}.items() if text is not None}
-    content = Problem(title=HTTPStatus(status).phrase, status=status, value=value, **texts)
+    content = Problem(title=HTTPStatus(status).phrase, status=status, value=value, errors=errors, **texts)
     return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
 
 
@@ -116,13 +157,15 @@ async def error_response(_: Request, error: Exception) -> Response:
     """The response to an exception of the table."""
     status = next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
     headers = HEADERS.get(type(error))
-    if isinstance(error, RequestValidationError):
-        return _of_validation(status, error.errors()[0])
-    if isinstance(error, ValidationError):
-        return _of_validation(status, error.errors(include_url=False)[0])
-    if isinstance(error, InvalidArgumentError):
-        parts = {"parameter": error.parameter, "value": error.value, "allowed": error.allowed}
-        return problem_response(status, str(error), headers, **parts)
+    refusals = _refusals(error)
+    if refusals:
+        first, *others = refusals
+        parts: dict[str, Any] = {"parameter": first.name, "value": first.value, "allowed": first.allowed}
+        if not others:
+            return problem_response(status, first.detail, headers, **parts)
+        named = refusals[:MAX_ERRORS]
+        detail = f"{len(refusals)} parameters are missing or wrong: " + "; ".join(one.detail for one in named)
+        return problem_response(status, detail, headers, **parts, errors=[one.parameter for one in named])
     if isinstance(error, UnknownDatasetError):
         allowed = "a name that /v1/datasets lists"
         detail = f"there is no data set `{error.args[0]}`"
@@ -130,23 +173,79 @@ async def error_response(_: Request, error: Exception) -> Response:
     return problem_response(status, str(error), headers)
 
 
-def _of_validation(status: int, error: pydantic_core.ErrorDetails | dict[str, Any]) -> Response:
+@dataclass(frozen=True)
+class _Refusal:
+    """One parameter that is missing or wrong: a sentence, and its parts."""
+
+    detail: str
+    name: str
+    value: Any
+    allowed: str
+
+    @property
+    def parameter(self) -> InvalidParameter:
+        return InvalidParameter(name=self.name[:MAX_TEXT], value=_plain(self.value), allowed=self.allowed[:MAX_TEXT])
+
+
+def _refusals(error: Exception) -> list[_Refusal]:
+    """The parameters that an error names, each once, in its order; empty if it is not about parameters."""
+    if isinstance(error, InvalidQueryError):
+        found = _refusals(error.validation) + [one for own in error.out_of_range for one in _refusals(own)]
+    elif isinstance(error, SeveralArgumentsError):
+        found = [one for own in error.errors for one in _refusals(own)]
+    elif isinstance(error, InvalidArgumentError):
+        found = [_Refusal(str(error), error.parameter, error.value, error.allowed)]
+    elif isinstance(error, RequestValidationError):
+        found = [_of_validation(one) for one in error.errors()]
+    elif isinstance(error, ValidationError):
+        found = [_of_validation(one) for one in error.errors(include_url=False)]
+    else:
+        found = []
+    once: dict[str, _Refusal] = {}
+    for one in found:  # alternatives of one parameter give an error each
+        once.setdefault(one.name, one)
+    return [*once.values()]
+
+
+def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any]) -> _Refusal:
     kind, context = str(error["type"]), error.get("ctx", {})
-    where = [str(part) for part in error["loc"] if part not in ("query", "body", "path")]
+    place = [part for part in error["loc"] if part not in ("query", "body", "path")]
+    where = [str(part) for part in place]
     name = where[0] if where else "body"  # the rest is the position in an array
+    if len(place) > 2 and isinstance(place[1], int):  # in an array of objects
+        name = f"{name}[{place[1]}].{place[2]}"
     if kind == "missing":
-        return problem_response(status, f"`{name}` is missing", parameter=name, allowed="required")
+        return _Refusal(f"`{name}` is missing", name, None, "required")
     if kind == "extra_forbidden":
-        detail = f"there is no parameter `{name}`"
-        return problem_response(status, detail, parameter=name, value=error["input"], allowed="see /docs")
+        return _Refusal(f"there is no parameter `{name}`", name, error["input"], "see /docs")
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
     elif kind.startswith("float"):
-        allowed = "a number"
+        allowed = "a number" + next((_units()[part] for part in reversed(where) if part in _units()), "")
+    elif kind.startswith("int"):
+        allowed = "an integer"
     else:
         allowed = str(error["msg"])
     text = str(InvalidArgumentError(name, _plain(error["input"]), allowed))
-    return problem_response(status, text, parameter=name, value=error["input"], allowed=allowed)
+    return _Refusal(text, name, error["input"], allowed)
+
+
+@cache
+def _units() -> dict[str, str]:
+    """The units of the parameters of all routes, such as ` [m]`, which their descriptions state."""
+    found = {}
+    for kind in _models(Params):
+        for name, field in kind.model_fields.items():
+            unit = re.search(r" \[[^\]]+\]", field.description or "")
+            if unit and unit[0] != " [-]":
+                found[name] = unit[0]
+    return found
+
+
+def _models(kind: type[Params]) -> Iterator[type[Params]]:
+    for own in kind.__subclasses__():
+        yield own
+        yield from _models(own)
 
 
 async def _handle_http(request: Request, error: Exception) -> Response:

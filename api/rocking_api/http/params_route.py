@@ -21,7 +21,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from rocking.errors import InvalidArgumentError
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import json_response
-from rocking_api.http.errors import STATUS, error_response
+from rocking_api.http.errors import STATUS, InvalidQueryError, error_response
 from rocking_api.models.params import Params
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -76,7 +76,7 @@ def _reader(name: str, hint: Any, default: Any, in_path: bool) -> Reader:
     if kind is Request:
         return lambda request: request
     if isinstance(kind, type) and issubclass(kind, Params):
-        return lambda request: kind.model_validate_strings(query_parameters(request))
+        return lambda request: _params(kind, request)
     validate = TypeAdapter(kind).validate_strings
 
     def read(request: Request) -> Any:
@@ -91,6 +91,30 @@ def _reader(name: str, hint: Any, default: Any, in_path: bool) -> Reader:
             raise InvalidArgumentError(name, given[name], error.errors()[0]["msg"]) from None
 
     return read
+
+
+def _params(kind: type[Params], request: Request) -> Params:
+    """The parameters of a request.
+
+    Raises
+    ------
+    InvalidQueryError
+        If some are missing, unknown or no values of their types; those out of range are then named as well.
+    """
+    given = query_parameters(request)
+    try:
+        return kind.model_validate_strings(given)
+    except ValidationError as error:
+        wrong = {str(part["loc"][0]) for part in error.errors(include_url=False) if part["loc"]}
+        rest = ((name, _number(text)) for name, text in given.items() if name not in wrong)
+        raise InvalidQueryError(error, kind.out_of_range(rest)) from None
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def query_parameters(request: Request) -> dict[str, str]:

@@ -40,6 +40,21 @@ def _housner_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
 HousnerOrNumber = Annotated[Literal["housner"] | float, WrapValidator(_housner_or_number)]
 
 
+def check_block_value(name: str, value: Any) -> None:
+    """Refuse a value in SI units that is out of range, whatever the others are.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is.
+    """
+    if name in RANGES:
+        low, high, unit = RANGES[name]
+        in_range(name, value, low, high, unit=unit)
+    elif value != "housner":
+        check_value(name, value)
+
+
 class BlockParams(Params):
     """A block and a pulse in SI units."""
 
@@ -53,13 +68,9 @@ class BlockParams(Params):
     method: Method = "auto"
     tolerance: Tolerance = 1e-4
 
-    def check(self) -> None:
-        for name, value in self:
-            if name in RANGES:
-                low, high, unit = RANGES[name]
-                in_range(name, value, low, high, unit=unit)
-            elif value != "housner":
-                check_value(name, value)
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        check_block_value(name, value)
 
 
 class BlocksParams(Params):
@@ -71,10 +82,9 @@ class BlocksParams(Params):
     )
     format: Format = None
 
-    def check(self) -> None:
-        check_value("pulse", self.pulse)
-        if self.restitution != "housner":
-            check_value("restitution", self.restitution)
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        check_block_value(name, value)
 
 
 class BlockRow(Params):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from rocking.errors import in_range
+from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_names
 from rocking.model import parameters
 from rocking.model.checks import check
@@ -80,10 +80,49 @@ Format = Annotated[
 ]
 
 
+class SeveralArgumentsError(InvalidArgumentError):
+    """Several invalid parameters of one request; parameter, value and allowed are those of the first.
+
+    Parameters
+    ----------
+    errors : sequence of InvalidArgumentError
+        One for each, at least one.
+    """
+
+    def __init__(self, errors: list[InvalidArgumentError]) -> None:
+        super().__init__(errors[0].parameter, errors[0].value, errors[0].allowed)
+        self.errors = errors
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.errors,)
+
+
 class Params(BaseModel):
     """Base of all parameter models. Unknown parameters are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        """Refuse a value that is out of range, whatever the others are.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If it is.
+        """
+        check_value(name, value)
+
+    @classmethod
+    def out_of_range(cls, values: Iterable[tuple[str, Any]]) -> list[InvalidArgumentError]:
+        """The errors of `check_field` for names and values."""
+        found = []
+        for name, value in values:
+            try:
+                cls.check_field(name, value)
+            except InvalidArgumentError as error:
+                found.append(error)
+        return found
 
     def check(self) -> None:
         """Refuse values out of range, before any work is queued.
@@ -91,10 +130,11 @@ class Params(BaseModel):
         Raises
         ------
         InvalidArgumentError
-            For the first that is.
+            If some are; `SeveralArgumentsError` if several are.
         """
-        for name, value in self:
-            check_value(name, value)
+        errors = self.out_of_range(self)
+        if errors:
+            raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
 
 
 class LookupOptions(Params):
@@ -206,13 +246,12 @@ def check_point(params: ResponseParams) -> None:
     Raises
     ------
     InvalidArgumentError
-        For the first invalid parameter.
+        As `Params.check`, which is slower.
     """
-    if params.pulse not in _KNOWN:
-        get_pulse(params.pulse)
-    if not SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper:
-        check(SLENDERNESS, params.slenderness)
-    if not FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper:
-        check(FREQUENCY_RATIO, params.frequency_ratio)
-    if not RESTITUTION.lower <= params.restitution <= RESTITUTION.upper:
-        check(RESTITUTION, params.restitution)
+    if not (
+        params.pulse in _KNOWN
+        and SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper
+        and FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper
+        and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
+    ):
+        params.check()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, Field
 
@@ -11,9 +11,9 @@ from rocking.dimensional.record_scales import HIGHEST_SCALE
 from rocking.errors import in_range, one_of
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
 from rocking.excitation.records.record import UNITS
-from rocking_api.models.blocks import RANGES, HousnerOrNumber, quantity
+from rocking_api.models.blocks import RANGES, HousnerOrNumber, check_block_value, quantity
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Format, Params, check_value
+from rocking_api.models.params import Format, Params
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, Motion
 
 SMALLEST_SCALE = 1e-6
@@ -41,6 +41,9 @@ Unit = Annotated[
 class RecordFileParams(Params):
     """A block in SI units, and what the file of the record does not state."""
 
+    BOUNDS: ClassVar[dict[str, tuple[float, float]]] = {"baseline_order": (0, MAX_BASELINE_ORDER)}
+    """Ranges of the parameters that are numbers without unit, both ends included [-]."""
+
     half_width: float = quantity("half_width", "b; the base is 2b wide", examples=[0.2])
     half_height: float = quantity("half_height", "h", examples=[0.8])
     restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
@@ -55,27 +58,22 @@ class RecordFileParams(Params):
         json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
     )
 
-    def check(self) -> None:
-        for name, value in self:
-            if name in RANGES:
-                low, high, unit = RANGES[name]
-                in_range(name, value, low, high, unit=unit)
-            elif name == "restitution" and value != "housner":
-                check_value(name, value)
-        if self.unit is not None:
-            one_of("unit", self.unit, UNITS)
-        if self.baseline_order is not None:
-            in_range("baseline_order", self.baseline_order, 0, MAX_BASELINE_ORDER)
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        if name in cls.BOUNDS and value is not None:
+            in_range(name, value, *cls.BOUNDS[name])
+        elif name == "unit" and value is not None:
+            one_of(name, value, UNITS)
+        elif name in RANGES or name == "restitution":
+            check_block_value(name, value)
 
 
 class RecordParams(RecordFileParams):
     """The same, and a factor of the record."""
 
-    scale: float = Field(1.0, description="factor of the record [-]", json_schema_extra=_SCALE)
+    BOUNDS: ClassVar = {**RecordFileParams.BOUNDS, "scale": (SMALLEST_SCALE, HIGHEST_SCALE)}
 
-    def check(self) -> None:
-        super().check()
-        in_range("scale", self.scale, SMALLEST_SCALE, HIGHEST_SCALE)
+    scale: float = Field(1.0, description="factor of the record [-]", json_schema_extra=_SCALE)
 
 
 class RecordResponseParams(RecordParams):
@@ -100,6 +98,12 @@ class RecordHistoryParams(RecordParams):
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
+    BOUNDS: ClassVar = {
+        **RecordFileParams.BOUNDS,
+        **dict.fromkeys(("scale_min", "scale_max"), (SMALLEST_SCALE, HIGHEST_SCALE)),
+        "points": (2, MAX_SCALES),
+    }
+
     scale_min: float | None = Field(
         None, description="smallest factor [-]; absent: that of uplift", json_schema_extra=_SCALE
     )
@@ -113,22 +117,13 @@ class RecordScalesParams(RecordFileParams):
     )
     format: Format = None
 
-    def check(self) -> None:
-        super().check()
-        for name in ("scale_min", "scale_max"):
-            if (value := getattr(self, name)) is not None:
-                in_range(name, value, SMALLEST_SCALE, HIGHEST_SCALE)
-        in_range("points", self.points, 2, MAX_SCALES)
-
 
 class RecordPulseParams(RecordParams):
     """The same, and the samples for a drawing."""
 
-    samples: int = Field(2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2})
+    BOUNDS: ClassVar = {**RecordParams.BOUNDS, "samples": (2, MAX_DRAWN)}
 
-    def check(self) -> None:
-        super().check()
-        in_range("samples", self.samples, 2, MAX_DRAWN)
+    samples: int = Field(2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2})
 
 
 class RecordDescription(BaseModel):

@@ -104,6 +104,50 @@ class RotationQuantile(BaseModel):
     )
 
 
+class RecordSensitivity(BaseModel):
+    """A block under one record at a level, and with other restitution or sampling."""
+
+    record: str = Field(description="name of the record")
+    overturned: bool = Field(description="whether the block overturns")
+    peak_rotation: float | None = Field(description="peak |theta|/alpha [-]; null if the block overturns")
+    friction_demand: float | None = Field(
+        description="largest friction demand |H|/N [-], impacts excluded; null if the block lifts off the ground"
+    )
+    overturned_low_restitution: bool = Field(description="whether it overturns with the smaller restitution")
+    overturned_high_restitution: bool = Field(description="whether it overturns with the larger restitution")
+    overturned_resampled: bool = Field(
+        description="whether it overturns under the record interpolated band-limited at half its step"
+    )
+
+
+class Sensitivity(BaseModel):
+    """A block at one level: friction demand, and the effect of restitution and sampling on the share that overturns."""
+
+    intensity: float = Field(description="level of intensity [unit of the measure]")
+    exceedances: int = Field(description="number of records that overturn the block [-]")
+    fraction: float = Field(description="share of the records that overturn it [-]")
+    fraction_lower: float = Field(description="lower end of the Clopper-Pearson interval of the probability [-]")
+    fraction_upper: float = Field(description="upper end of the Clopper-Pearson interval of the probability [-]")
+    restitution_low: float = Field(description="smaller coefficient of restitution [-]")
+    fraction_low_restitution: float = Field(description="share that overturns it with the smaller restitution [-]")
+    changed_low_restitution: int = Field(description="number of records whose outcome is then another one [-]")
+    restitution_high: float = Field(description="larger coefficient of restitution [-]")
+    fraction_high_restitution: float = Field(description="share that overturns it with the larger restitution [-]")
+    changed_high_restitution: int = Field(description="number of records whose outcome is then another one [-]")
+    fraction_resampled: float = Field(
+        description="share that overturns it with the records interpolated band-limited at half their step [-]"
+    )
+    changed_resampled: int = Field(description="number of records whose outcome is then another one [-]")
+    records_changed_by_sampling: list[str] = Field(description="names of these records")
+    friction_demand_median: float | None = Field(
+        description="largest friction demand |H|/N that half of the records do not exceed [-]; null if infinite"
+    )
+    friction_demand_largest: float | None = Field(
+        description="largest friction demand |H|/N under all records [-]; null if the block lifts off"
+    )
+    records: list[RecordSensitivity] = Field(description="each record")
+
+
 class SuiteBlock(BaseModel):
     """A block under the records of a suite."""
 
@@ -117,6 +161,9 @@ class SuiteBlock(BaseModel):
     limit_states: list[LimitState] = Field(description="counts, intervals and curves of each limit state")
     margins: list[RecordMargin] = Field(description="margin of each record")
     rotation_quantiles: list[RotationQuantile] = Field(description="quantiles of the peak rotation")
+    sensitivity: list[Sensitivity] = Field(
+        description="friction demand, and the effect of restitution and sampling, at the levels that the suite asks for"
+    )
 
 
 class SuiteResponse(BaseModel):

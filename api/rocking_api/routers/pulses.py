@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Query
@@ -33,8 +33,9 @@ class PulsesParams(Params):
         65, description="samples of each pulse [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
     )
 
-    def check(self) -> None:
-        in_range("samples", self.samples, 2, MAX_DRAWN)
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        in_range(name, value, 2, MAX_DRAWN)
 
 
 class PulseParameter(BaseModel):

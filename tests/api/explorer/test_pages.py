@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from tests.api.conftest import NAMES
+
 
 def test_data_sets_are_listed_and_filtered(open_page):
     page = open_page("/datasets")
     status = page.locator("#status")
-    expect(status).to_have_text("5 of 5 data sets")
+    expect(status).to_have_text(f"{len(NAMES)} of {len(NAMES)} data sets")
     page.locator("#filter").fill("cosine")
-    expect(status).to_have_text("1 of 5 data sets")
+    expect(status).to_have_text(f"1 of {len(NAMES)} data sets")
     row = page.locator("#rows tr:visible")
     expect(row).to_contain_text("spectra/cosine/eta-0.90")
     expect(row).to_contain_text("ω 0.5 to 12")
@@ -39,12 +41,23 @@ def test_a_suite_is_reported_for_each_limit_state(open_page):
     expect(report).to_contain_text("neither slides nor leaves the ground")
     assert report.locator("canvas").count() == 2
     found = page.request.get("/v1/suites/demonstration").json()
+    at = found["blocks"][1]["sensitivity"][0]
+    row = report.locator("tr", has_text=f"{at['friction_demand_largest']:.3g}")
+    count = round(4 * at["fraction_low_restitution"])
+    expect(row).to_contain_text(f"{count} of 4")
+    expect(report).to_contain_text(f"with η = {at['restitution_low']:.3g}")
     curve = found["blocks"][0]["limit_states"][0]["curves"][0]
     expect(report).to_contain_text(f"{curve['median_intensity']:.3g} (")
     page.locator("#demand").select_option("0.5 alpha")
     expect(report).to_contain_text("the block rocks beyond 0.5 α")
     expect(report).not_to_contain_text("Margin of each record")
     assert page.url.endswith("demand=0.5+alpha")
+    page.locator("#block").select_option(label="80 cm by 4 m")
+    expect(report).not_to_contain_text("Block of 50 cm by 2 m")
+    assert report.locator("canvas").count() == 1
+    page.reload()
+    expect(report).to_contain_text("Block of 80 cm by 4 m")
+    expect(report).not_to_contain_text("Block of 50 cm by 2 m")
     page.emulate_media(media="print")
     expect(page.locator("nav")).to_be_hidden()
     expect(page.locator("#choice")).to_be_hidden()

@@ -1,4 +1,4 @@
-// The page of suites of records: a report of one suite and one limit state, to print.
+// The page of suites of records: a report of one suite, one limit state, and one block or all of them, to print.
 
 import { ask } from "./api.js";
 import { chartsReady } from "./chart.js";
@@ -29,14 +29,14 @@ async function start() {
     const given = new URLSearchParams(location.search);
     form.elements.name.replaceChildren(...suites.map(({ name }) => element("option", name, { value: name })));
     if (suites.some(({ name }) => name === given.get("name"))) form.elements.name.value = given.get("name");
-    await show(given.get("demand"));
+    await show(given.get("demand"), given.get("block"));
   } catch (problem) {
     setStatus(status, problem, start);
   }
 }
 
-/** Show the suite of the form, at a limit state if it has that. */
-async function show(demand) {
+/** Show the suite of the form, at a limit state and for a block, if it has these. */
+async function show(demand, block) {
   asked.abort();
   asked = new AbortController();
   const { signal } = asked;
@@ -49,18 +49,22 @@ async function show(demand) {
     const demands = found.blocks[0].limit_states.map((one) => one.demand);
     form.elements.demand.replaceChildren(...demands.map((one) => element("option", limit(one), { value: one })));
     if (demands.includes(demand)) form.elements.demand.value = demand;
+    const blocks = found.blocks.map((one, at) => element("option", nameOf(one), { value: String(at + 1) }));
+    form.elements.block.replaceChildren(element("option", "All", { value: "" }), ...blocks);
+    if (found.blocks[Number(block) - 1]) form.elements.block.value = block;
     draw(found);
   } catch (problem) {
-    if (!signal.aborted) setStatus(status, problem, () => show(demand));
+    if (!signal.aborted) setStatus(status, problem, () => show(demand, block));
   }
 }
 
 function draw(found) {
   const demand = form.elements.demand.value;
-  history.replaceState(null, "", `?${new URLSearchParams({ name: found.name, demand })}`);
+  const block = form.elements.block.value;
+  history.replaceState(null, "", `?${new URLSearchParams({ name: found.name, demand, ...(block && { block }) })}`);
   const unit = UNITS[found.unit] ?? found.unit;
   const view = { ...found, unit, quantity: unit ? `${found.measure_meaning} [${unit}]` : found.measure_meaning, demand };
-  const parts = found.blocks.map((block) => ofBlock(view, block));
+  const parts = found.blocks.filter((_, at) => !block || at + 1 === Number(block)).map((one) => ofBlock(view, one));
   report.replaceChildren(
     section({ heading: found.title, pairs: about(view) }),
     ...parts.map(({ place }) => place),
@@ -95,16 +99,21 @@ function about({ name, records: all, quantity, intensity, confidence, demand }) 
 
 function ofBlock(view, block) {
   const state = block.limit_states.find(({ demand }) => demand === view.demand);
-  const name = `Block of ${length(2 * block.half_width)} by ${length(2 * block.half_height)}`;
+  const name = `Block of ${nameOf(block)}`;
   const chart = element("div", "", { class: "chart" });
   const words = `Share of ${view.records.length} records with which the block ${limit(view.demand)}, against ${view.quantity}`;
   const figure = element("figure", [chart, element("figcaption", caption(view, words))]);
   const place = section({ heading: name, pairs: [...geometry(block), ...curves(view, state)] });
   place.append(figure, element("h3", "Records at each level"), levels(view, block, state));
   if (view.demand === "overturning") place.append(element("h3", "Margin of each record"), margins(view, block));
+  if (block.sensitivity.length) place.append(element("h3", "Friction, restitution and sampling"), ...sensitivity(view, block));
   const named = state.records_surviving_above_first;
   if (named.length) place.append(element("p", `Not monotone: it does not, at a level above the first at which it does, with ${named.join(", ")}.`, { class: "small" }));
   return { place, chart, state };
+}
+
+function nameOf(block) {
+  return `${length(2 * block.half_width)} by ${length(2 * block.half_height)}`;
 }
 
 function geometry(block) {
@@ -166,6 +175,29 @@ function margins({ quantity }, block) {
   return table(heads, rows);
 }
 
+/** Overturning with other restitution and sampling, and the friction that rocking needs, at the levels of the suite. */
+function sensitivity({ quantity, unit, records: all }, block) {
+  const share = (fraction) => `${Math.round(fraction * all.length)} of ${all.length}`;
+  const friction = (demand) => (demand === null ? "lifts off" : number(demand));
+  const [{ restitution_low: low, restitution_high: high }] = block.sensitivity;
+  const heads = [
+    quantity, "overturn", `with η = ${number(low)}`, `with η = ${number(high)}`, "with band-limited samples",
+    "friction for half of the records", "friction for all records",
+  ];
+  const rows = block.sensitivity.map((one) => [
+    number(one.intensity), share(one.fraction), share(one.fraction_low_restitution), share(one.fraction_high_restitution),
+    share(one.fraction_resampled), friction(one.friction_demand_median), friction(one.friction_demand_largest),
+  ]);
+  const changed = block.sensitivity.filter(({ records_changed_by_sampling: names }) => names.length);
+  const named = changed.map((one) => `${one.records_changed_by_sampling.join(", ")} at ${`${number(one.intensity)} ${unit}`.trim()}`);
+  const notes = [
+    `η: coefficient of restitution, ${number(block.restitution)} otherwise. Band-limited: each record interpolated at half its step, instead of linear between its samples.`,
+    "Friction: coefficient that keeps the block from sliding during the whole motion, impacts excluded.",
+    ...(named.length ? [`The sampling decides the outcome under ${named.join("; ")}.`] : []),
+  ];
+  return [table(heads, rows), element("p", notes.join(" "), { class: "small" })];
+}
+
 function records({ records: all }) {
   const heads = ["Record", "PGA [m/s²]", "PGV [m/s]", "mean period [s]", "step [s]"];
   const rows = all.map((one) => {
@@ -187,8 +219,10 @@ function limit(demand) {
   return LIMITS[demand] ?? `rocks beyond ${demand.replace(" alpha", " α")}`;
 }
 
-form.elements.name.addEventListener("change", () => show(form.elements.demand.value));
-form.elements.demand.addEventListener("change", () => show(form.elements.demand.value));
+form.elements.name.addEventListener("change", () => show(form.elements.demand.value, null));
+for (const name of ["demand", "block"]) {
+  form.elements[name].addEventListener("change", () => show(form.elements.demand.value, form.elements.block.value));
+}
 form.addEventListener("submit", (event) => event.preventDefault());
 print.addEventListener("click", () => window.print());
 start();
