@@ -10,6 +10,7 @@ from types import FrameType
 from typing import Any
 
 import typer
+import uvicorn  # noqa: F401  (`rocking serve` names the extra if this import fails; the server is imported by `main`)
 from pydantic import ValidationError
 
 from rocking_api.settings import Settings
