@@ -69,7 +69,8 @@ def connect_to(server, worker):
 def _socket_of(port, client_port):
     """What the descriptor of a connection is called in the process that has accepted it on a port."""
     rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    (inode,) = (row[9] for row in rows if [int(end[-4:], 16) for end in row[1:3]] == [port, client_port])
+    established = (row for row in rows if row[3] == "01")  # former connections of the two ports are listed as well
+    (inode,) = (row[9] for row in established if [int(end[-4:], 16) for end in row[1:3]] == [port, client_port])
     return f"socket:[{inode}]"
 
 
@@ -246,7 +247,7 @@ import os, signal, socket, sys, time
 from rocking_api.workers import Workers
 
 def work(_):
-    print(os.getpid(), flush=True)
+    os.write(1, f"{os.getpid()}\\n".encode())  # at once: both workers write to this pipe
     if sys.argv[1] == "fails":
         sys.exit(3)
     while True:

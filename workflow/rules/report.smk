@@ -78,8 +78,9 @@ rule check_results:
         "logs/check_results.log",
     benchmark:
         "logs/benchmarks/check_results.tsv"
+    threads: 2
     resources:
-        mem_mb=memory(800),
+        mem_mb=memory(1200),
         runtime=60,
     params:
         code=CHECKS_CODE,
