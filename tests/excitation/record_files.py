@@ -191,6 +191,13 @@ DAMAGED = {
     "knet with a scale of zero": File(
         KNET_HEADER.replace("2000(gal)", "0(gal)") + KNET_ROWS, error="line 14: found 0; expected a positive"
     ),
+    "knet with an infinite number of values": File(
+        KNET_HEADER.replace("0.24", "1e308") + KNET_ROWS, error="line 12: found 1e308; expected a duration"
+    ),
+    "knet with an infinite scale": File(
+        KNET_HEADER.replace("2000(gal)", "1e308(gal)").replace("8388608", "1e-9") + KNET_ROWS,
+        error="line 14: found 1e308",
+    ),
     "knet that is too short": File(
         KNET_HEADER.replace("0.24", "300") + KNET_ROWS, error="line 12: found 30000 stated, 24 values"
     ),

@@ -5,7 +5,10 @@ The counts include the offset of the instrument; it is not removed (`Record.base
 
 from __future__ import annotations
 
+import math
 import re
+
+import numpy as np
 
 from rocking.excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, joined, parse_unit
 from rocking.excitation.records.record import Record
@@ -41,14 +44,21 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     if stated is None:
         raise file.error(line, scale[2], "a unit of acceleration, such as gal")
     agreed = agreed_unit(file, line, stated, unit)
+    scale_line, scale_text = line, text
     most, counts = (file.positive(line, scale[part], "a positive number in the scale") for part in (1, 3))
-    duration_line, duration_text = entry("Duration Time")
-    duration = file.positive(duration_line, duration_text.removeprefix("(s)").strip(), "the duration [s]")
+    duration_line, text = entry("Duration Time")
+    duration_text = text.removeprefix("(s)").strip()
+    duration = file.positive(duration_line, duration_text, "the duration [s]")
     values = file.values(HEADER_LINES)
-    remark = file.checked_count(values, round(duration * frequency), duration_line)
+    with np.errstate(over="ignore", invalid="ignore"):
+        accelerations = values * (most / counts)
+    if not np.isfinite(accelerations).all():
+        raise file.error(scale_line, scale_text, "a scale with which the accelerations are finite")
+    samples = duration * frequency
+    if not math.isfinite(samples):
+        raise file.error(duration_line, duration_text, "a duration [s] that agrees with the number of values")
+    remark = file.checked_count(values, round(samples), duration_line)
     station, direction = entry("Station Code")[1], entry("Dir.")[1]
     name = " ".join(part for part in (station, direction) if part) or file.name
     event = entry("Origin Time")[1]
-    return Record(
-        values * (most / counts), step, agreed, name=name, source=joined([f"{file.name} (K-NET)", event, remark])
-    )
+    return Record(accelerations, step, agreed, name=name, source=joined([f"{file.name} (K-NET)", event, remark]))
