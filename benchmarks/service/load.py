@@ -63,19 +63,34 @@ def _wrk(port: int, path: str, connections: int, seconds: float, core: int | Non
     return _record("wrk", connections, count, microseconds / 1e6, [median / 1e3, last / 1e3], errors)
 
 
+def point_request(path: str, random: np.random.Generator) -> bytes:
+    """A request for one block, at a random place of the window; `path` has places for 1/a and omega."""
+    s = WINDOW["low"] + WINDOW["width"] * random.random()
+    w = WINDOW["first"] * np.exp(WINDOW["octaves"] * random.random())
+    return f"GET {path % (s, w)} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode()
+
+
+async def send(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: bytes) -> bytes:
+    """Send a request and read the whole response; return its head."""
+    writer.write(request)
+    head = await reader.readuntil(b"\r\n\r\n")
+    length = re.search(rb"content-length: (\d+)", head, re.IGNORECASE)
+    await reader.readexactly(int(length[1]) if length else 0)
+    return head
+
+
 async def _run_client(port: int, path: str, connections: int, seconds: float) -> dict[str, Any]:
     times: list[float] = []
     random = np.random.default_rng(connections)
 
-    def request() -> bytes:
-        s = WINDOW["low"] + WINDOW["width"] * random.random()
-        w = WINDOW["first"] * np.exp(WINDOW["octaves"] * random.random())
-        return f"GET {path % (s, w)} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode()
-
     began = time.perf_counter()
     until = began + seconds
 
-    errors = sum(await asyncio.gather(*(_request_until(port, request, until, times) for _ in range(connections))))
+    errors = sum(
+        await asyncio.gather(
+            *(_request_until(port, lambda: point_request(path, random), until, times) for _ in range(connections))
+        )
+    )
     took = time.perf_counter() - began
     return _record("asyncio", connections, len(times), took, (1e3 * np.quantile(times, [0.5, 0.99])).tolist(), errors)
 
@@ -86,10 +101,7 @@ async def _request_until(port: int, request: Callable[[], bytes], until: float, 
     errors = 0
     while time.perf_counter() < until:
         began = time.perf_counter()
-        writer.write(request())
-        head = await reader.readuntil(b"\r\n\r\n")
-        length = re.search(rb"content-length: (\d+)", head, re.IGNORECASE)
-        await reader.readexactly(int(length[1]) if length else 0)
+        head = await send(reader, writer, request())
         times.append(time.perf_counter() - began)
         errors += b" 200 " not in head[:16]
     writer.close()

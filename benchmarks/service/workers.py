@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.measure import progress, save, spread, versions
-from benchmarks.service.load import WINDOW, load
+from benchmarks.service.load import load, point_request, send
 
 POINT = "/v1/response?pulse=%s&restitution=0.85&slenderness=%%.9f&frequency_ratio=%%.9f"
 BATCH_POINTS = 20_000
@@ -189,20 +189,12 @@ def kill_under_load(one: Service, pulse: str, connections: int, seconds: float) 
     times: list[float] = []
     random = np.random.default_rng(connections)
 
-    def request() -> bytes:
-        s = WINDOW["low"] + WINDOW["width"] * random.random()
-        w = WINDOW["first"] * np.exp(WINDOW["octaves"] * random.random())
-        return f"GET {POINT % pulse % (s, w)} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode()
-
     async def connection(until: float) -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", one.port)
         try:
             while time.perf_counter() < until:
                 began = time.perf_counter()
-                writer.write(request())
-                head = await reader.readuntil(b"\r\n\r\n")
-                length = re.search(rb"content-length: (\d+)", head, re.IGNORECASE)
-                await reader.readexactly(int(length[1]) if length else 0)
+                head = await send(reader, writer, point_request(POINT % pulse, random))
                 outcomes[head[9:12].decode()] += 1
                 times.append(time.perf_counter() - began)
         finally:
