@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.search import Floats, classifier, outcomes_along
+from rocking.boundary.search import UNCOUNTED, Floats, classifier, counted_code, outcomes_along
 from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check
-from rocking.model.outcome_code import decode_outcomes
+from rocking.model.outcome_code import SURVIVES, decode_outcomes
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION
 
 
@@ -61,9 +61,10 @@ def critical_amplitude(
     Returns
     -------
     Thresholds
-        Each good to `RESOLUTION` in 1/a. A region of one way of overturning narrower than 1/2000 of the range and
-        surrounded by a single other outcome can be missed; a safe band between two ways of overturning is not, unless
-        it is narrower than `RESOLUTION`.
+        Each good to `RESOLUTION` in 1/a, or to `ELASTIC_RESOLUTION` where an elastic block overturns after more than
+        `MOST_COUNTED` impacts. A region of one way of overturning narrower than 1/2000 of the range and surrounded by a
+        single other outcome can be missed; a safe band between two ways of overturning, of which all with more than
+        `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`.
 
     Raises
     ------
@@ -77,8 +78,15 @@ def critical_amplitude(
     eta = float(check(RESTITUTION, restitution))
     lowest = 1.0 / highest_amplitude
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classifier(as_pulse(pulse), alpha, stop))
-    edge = np.flatnonzero((codes[1:] == 0) != (codes[:-1] == 0))[::-1]
-    above = codes[edge] > 0  # 1/a falls as the amplitude rises
+    made = as_pulse(pulse)
+    classify = classifier(made, alpha, stop, counted_code)
+    grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classify)
+    overturns = codes != SURVIVES
+    edge = np.flatnonzero(overturns[1:] != overturns[:-1])[::-1]
+    above = overturns[edge]  # 1/a falls as the amplitude rises
     overturned = np.where(above, edge, edge + 1)
-    return Thresholds(1.0 / grid[overturned], above, *decode_outcomes(codes[overturned]))
+    place, met = grid[overturned], codes[overturned]
+    many = met == UNCOUNTED
+    if many.any():
+        met[many], _ = classifier(made, alpha, stop)(place[many], *np.array([log_omega, eta]))
+    return Thresholds(1.0 / place, above, *decode_outcomes(met))

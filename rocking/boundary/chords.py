@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.boundary.chains import Chains
-from rocking.boundary.columns import ELASTIC_RESOLUTION, THINNEST, Index
-from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
+from rocking.boundary.columns import THINNEST, Index
+from rocking.boundary.search import ELASTIC_RESOLUTION, RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
 SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
 """Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the

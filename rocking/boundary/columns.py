@@ -7,16 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.boundary.search import RESOLUTION, UNCOUNTED, Classify, Codes, Floats, Nodes, refine_lines, without_layers
+from rocking.boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, refine_lines, without_layers
 
 THINNEST = 1e-6
 """Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
-
-ELASTIC_RESOLUTION = 1e-6
-"""In place of `RESOLUTION` for elastic blocks, where one of the two regions has more than `MOST_IMPACTS` impacts [-].
-
-Where a wavelet has just uplifted an elastic block, it strikes 200,000 times before the main part of the pulse.
-"""
 
 Index = NDArray[np.intp]
 
@@ -121,8 +115,7 @@ class Lines:
         """Take in classified nodes, refine all changes between neighbours, and give the columns of these lines."""
         touched = np.unique(new.line).tolist()
         nodes = Nodes.merged([new, *(self.nodes[k] for k in touched if k in self.nodes)])
-        uncounted = np.where(self.points[:, 2] == 1.0, ELASTIC_RESOLUTION, RESOLUTION)
-        nodes = refine_lines(0, self.points, nodes, self.classify, THINNEST, 0.5 * self.thinnest, uncounted)
+        nodes = refine_lines(0, self.points, nodes, self.classify, THINNEST, 0.5 * self.thinnest)
         edge = (np.diff(nodes.line) != 0) | (np.diff(nodes.codes) != 0)
         nodes = nodes.take(np.append(True, edge) | np.append(edge, True))  # the ends of every run
         bounds = np.append(np.searchsorted(nodes.line, touched), nodes.line.size).tolist()

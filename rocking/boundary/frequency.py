@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.search import Floats, classifier, outcomes_along
+from rocking.boundary.search import Floats, classifier, counted_code, outcomes_along
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check
+from rocking.model.outcome_code import SURVIVES
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 NODES_PER_DECADE = 1000
@@ -67,8 +68,10 @@ def critical_frequency_ratio(
     Returns
     -------
     FrequencyThresholds
-        Each good to a relative `RESOLUTION`. A region narrower than 1/1000 of a decade that lies between equal outcomes
-        can be missed; a safe band between two ways of overturning is not, unless it is narrower than `RESOLUTION`.
+        Each good to a relative `RESOLUTION`, or to `ELASTIC_RESOLUTION` where an elastic block overturns after more
+        than `MOST_COUNTED` impacts. A region narrower than 1/1000 of a decade that lies between equal outcomes can be
+        missed; a safe band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are one,
+        is not, unless it is narrower than `RESOLUTION`.
 
     Raises
     ------
@@ -84,8 +87,8 @@ def critical_frequency_ratio(
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
     point = float(check(SLENDERNESS, slenderness)), float(nodes[0]), float(check(RESTITUTION, restitution))
-    grid, codes = outcomes_along(1, point, nodes, classifier(made, alpha, stop))
-    overturns = codes != 0
+    grid, codes = outcomes_along(1, point, nodes, classifier(made, alpha, stop, counted_code))
+    overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])
     above = overturns[edge + 1]
     return FrequencyThresholds(

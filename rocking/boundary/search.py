@@ -25,6 +25,12 @@ from rocking.solver.state import FULL_PRECISION
 RESOLUTION = 1e-12
 """Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
 
+ELASTIC_RESOLUTION = 1e-6
+"""In place of `RESOLUTION` for elastic blocks, where one of the two regions has uncounted impacts [-].
+
+Where a wavelet has just uplifted an elastic block, it strikes 200,000 times before the main part of the pulse.
+"""
+
 ROUNDS = 32
 """Times that brackets on a line are refined: each may uncover a further outcome between the two at its ends."""
 
@@ -33,6 +39,13 @@ MANY_IMPACTS = 12
 
 MOST_IMPACTS = 32
 """Overturning after more impacts than this is not told apart even on one line [-]."""
+
+MOST_COUNTED = 200
+"""Overturning after more impacts than this is not told apart where the outcomes of one block are listed [-].
+
+Of 495 lines of all pulses, 5 lose thresholds against an unlimited count, 22 with 64; without a limit 12 lines at
+restitutions of 0.99 and more take over 5 s, since each of thousands of counts is a region of its own.
+"""
 
 UNCOUNTED = -1
 """Region code of overturning whose impacts are not counted, and the `impacts` of its curves."""
@@ -93,6 +106,12 @@ def region_code(found: Outcomes) -> Codes:
 def without_layers(codes: Codes) -> Codes:
     """Region codes from layer codes."""
     return np.where(impacts_of_code(codes) > MANY_IMPACTS, UNCOUNTED, codes)
+
+
+def counted_code(found: Outcomes) -> Codes:
+    """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
+    codes = outcome_code(found)
+    return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
 class Work:
@@ -311,11 +330,10 @@ def refine_lines(
     classify: Classify,
     thinnest: float = RESOLUTION,
     layers: Floats | float = RESOLUTION,
-    uncounted: Floats | float = RESOLUTION,
 ) -> Nodes:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
 
-    Where `layers` or `uncounted` hold, they may lie so far apart.
+    Where `layers` or `ELASTIC_RESOLUTION` hold, they may lie so far apart.
 
     Parameters
     ----------
@@ -331,15 +349,14 @@ def refine_lines(
         Width below which a region between two others need not be found [-].
     layers : float or float array (lines,)
         Distance of the two nodes where two layers of one region meet, see `region_code` [-].
-    uncounted : float or float array (lines,)
-        Distance of the two nodes where a region of uncounted impacts meets another region [-].
 
     Returns
     -------
     Nodes
         The nodes and both ends of every bracket in which the outcome changes.
     """
-    layers, uncounted = (np.broadcast_to(each, len(points)) for each in (layers, uncounted))
+    layers = np.broadcast_to(layers, len(points))
+    uncounted = np.where(points[:, 2] == 1.0, ELASTIC_RESOLUTION, RESOLUTION)
 
     def resolution_at(line: Index, below: Codes, above: Codes) -> Floats:
         many = np.where((below == UNCOUNTED) | (above == UNCOUNTED), uncounted[line], RESOLUTION)
@@ -393,7 +410,7 @@ def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tu
 def outcomes_along(
     axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
 ) -> tuple[Floats, Codes]:
-    """Outcomes along one line of the control space, and where they change.
+    """Outcomes along one line of the control space, and where they change, see `refine_lines`.
 
     Parameters
     ----------

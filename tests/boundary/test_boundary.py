@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from rocking import Outcome, closed_form
-from rocking.boundary.search import MANY_IMPACTS, RESOLUTION, UNCOUNTED, region_code
+from rocking.boundary.search import ELASTIC_RESOLUTION, MANY_IMPACTS, MOST_COUNTED, RESOLUTION, UNCOUNTED, region_code
 from rocking.boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD
 from rocking.model.outcome_code import outcome_codes
 
@@ -233,6 +233,20 @@ def test_thresholds_and_curves_agree(pulse, omega):
     s, frequency_ratio, _, neighbour = curves(boundary)
     middle = (np.abs(frequency_ratio / omega - 1) < 1e-12) & (neighbour == 0)
     np.testing.assert_allclose(np.unique(s[middle].round(13)), np.sort(1 / found.amplitude), rtol=0, atol=1e-10)
+
+
+def test_thresholds_of_a_block_that_strikes_thousands_of_times():
+    # when each of the thousands of numbers of impacts was a region of its own, this took minutes
+    case = {"frequency_ratio": 2.062, "restitution": 1.0}
+    found = rocking.critical_amplitude("ricker", **case)
+    assert found.impacts.max() > MOST_COUNTED
+    assert (found.overturns_above[1:] != found.overturns_above[:-1]).all()
+    beyond = np.where(found.overturns_above, 2.0, -2.0) * ELASTIC_RESOLUTION
+    inside, outside = (
+        rocking.peak_response("ricker", slenderness=1 / found.amplitude + step, **case) for step in (0.0, beyond)
+    )
+    assert inside.overturned.all()
+    assert not outside.overturned.any()
 
 
 def test_thresholds_up_to_the_highest_amplitude_only():
