@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 from rocking.boundary.curves import curves_at
 from rocking.closed_form import limit_amplitude
@@ -54,9 +55,10 @@ def main(
     """
     two_blocks = read_dataset(similar_blocks)
     pulses, eta = two_blocks.attrs["pulse_names"].split(), float(two_blocks.attrs["restitution"])  # of sections 5 and 6
+    of_sine = [read_spectrum(path) for path in cubes]
     claims = [
-        *section_3([*boundaries], [*cubes], restitution),
-        *section_4([*cubes], collapse),
+        *section_3([*boundaries], of_sine, restitution),
+        *section_4(of_sine, collapse),
         *non_slender.uplift(*non_slender.uplifts()),
         *non_slender.collapse(two_blocks),
         *non_slender.dependence_on_alpha(non_slender.threshold_cases(eta)),
@@ -74,10 +76,10 @@ def main(
     text.write_text(as_markdown(claims), encoding="utf-8")
 
 
-def section_3(boundaries: Sequence[Path], cubes: Sequence[Path], restitution: Sequence[float]) -> Iterator[Claim]:
+def section_3(boundaries: Sequence[Path], cubes: Sequence[xr.Dataset], restitution: Sequence[float]) -> Iterator[Claim]:
     """Overturning of the slender block."""
     yield from curves.exact_curves([curves_at(read_dataset(path), 0.0) for path in boundaries])
-    yield from curves.completeness([read_spectrum(path) for path in cubes])
+    yield from curves.completeness(cubes)
     yield from curves.limit_separates(*curves.sides_of_limit())
     omega = np.linspace(2.0, 12.0, 201)
     yield from curves.limit_value(omega, 1 / limit_amplitude(omega))
@@ -92,7 +94,7 @@ def section_3(boundaries: Sequence[Path], cubes: Sequence[Path], restitution: Se
     yield from impact_times.end_of_case_1_1(*impact_times.ends_of_case_1_1())
 
 
-def section_4(cubes: Sequence[Path], collapse: Path) -> Iterator[Claim]:
+def section_4(cubes: Sequence[xr.Dataset], collapse: Path) -> Iterator[Claim]:
     """Orientation, self-similarity and the spectra of the slender block."""
     yield from similarity.table(similarity.computed_table())
     yield from similarity.homogeneous_equations(similarity.equation_tests())
@@ -101,7 +103,7 @@ def section_4(cubes: Sequence[Path], collapse: Path) -> Iterator[Claim]:
     yield from similarity.groups(similarity.group_tests())
     yield from similarity.collapse(read_dataset(collapse))
     yield from similarity.any_excitation(similarity.histories_of_pulses())
-    of_sine = spectra.spectra_of([read_spectrum(path) for path in cubes])
+    of_sine = spectra.spectra_of(cubes)
     for judge in (
         spectra.closed_form,
         spectra.peak_after_pulse,

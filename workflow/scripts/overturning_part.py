@@ -13,7 +13,6 @@ import xarray as xr
 
 from rocking.boundary.curves import join_curves
 from rocking.boundary.tracing import overturning_boundaries
-from rocking.closed_form import overturning_amplitudes
 from rocking.datasets.cube import MODEL_RESULT, write_dataset
 from rocking.model.response import Outcome
 from workflow.scripts.job import run
@@ -82,14 +81,16 @@ def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> d
     rows = traced.row_size.values
     outcome, impacts = (np.repeat(traced[name].values, rows) for name in ("outcome", "impacts"))
     s, omega = traced.slenderness.values, traced.frequency_ratio.values
-    closed = overturning_amplitudes(omega, restitution)
-    once = [1 / closed.falls_from, 1 / closed.safe_again]  # the curve of one impact has two branches: the nearer one
-    nearer = np.where(np.abs(once[0] - s) <= np.abs(once[1] - s), once[0], once[1])
-    nearer = np.where(np.isnan(once[0]), np.nan, nearer)
-    expected = np.where(
-        outcome == Outcome.OVERTURNED_DIRECTLY, 1 / closed.direct, np.where(impacts == 1, nearer, np.nan)
-    )
-    expected = expected if slender else np.full(s.size, np.nan)
+    expected = np.full(s.size, np.nan)
+    if slender:
+        from rocking.closed_form import overturning_amplitudes  # noqa: PLC0415  # 0.3 s, only for this block
+
+        closed = overturning_amplitudes(omega, restitution)
+        once = [1 / closed.falls_from, 1 / closed.safe_again]  # one impact: a curve of two branches, the nearer one
+        nearer = np.where(np.abs(once[0] - s) <= np.abs(once[1] - s), once[0], once[1])
+        nearer = np.where(np.isnan(once[0]), np.nan, nearer)
+        directly = outcome == Outcome.OVERTURNED_DIRECTLY
+        expected = np.where(directly, 1 / closed.direct, np.where(impacts == 1, nearer, np.nan))
     island = np.where(np.isin(traced.impacts.values, (0, 1)), 0, 1).astype(np.int8)
     return {
         "closed_form_slenderness": xr.Variable(
