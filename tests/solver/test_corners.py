@@ -1,11 +1,14 @@
 """Corners of the parameter space: each has a response, without exception, endless loop or unexplained nan."""
 
 import itertools
+import math
 
 import numpy as np
 import pytest
 
 import rocking
+from rocking import Outcome
+from rocking.excitation.pulses import SinusoidalPulse
 from rocking.model import parameters
 
 SLENDERNESS = (parameters.SLENDERNESS.lower, 1e-3, 0.5, 0.999, 1 - 1e-15)
@@ -41,3 +44,42 @@ def test_arguments_beyond_the_corners_are_rejected(name: str, value: float) -> N
     with pytest.raises(rocking.InvalidArgumentError) as refusal:
         rocking.peak_response("sine", **question)
     assert refusal.value.parameter == name
+
+
+def neighbours(value, count):
+    """The doubles around a value."""
+    around = [value]
+    for _ in range(count):
+        around = [np.nextafter(around[0], 0.0), *around, np.nextafter(around[-1], 2.0)]
+    return np.array(around)
+
+
+GROWING = SinusoidalPulse("growing", 0.4, 5.0, (0.5 * np.pi, 1.5 * np.pi), ((1.0, 1.0, 0.5 * np.pi),))
+FALLING = SinusoidalPulse("falling", 0.4, 5.0, (np.pi,), ((1.0, 1.0, 0.0),))
+
+
+@pytest.mark.parametrize("alpha", [None, 0.05, 0.3, math.pi / 4, 1.2])
+@pytest.mark.parametrize("pulse", ["c1", "-c2", GROWING, FALLING], ids=str)
+def test_a_pulse_that_starts_where_the_block_just_uplifts(pulse, alpha):
+    """Within rounding of |a f| = 1 at the start a flight may be shorter than rounding; they followed each other."""
+    started = rocking.get_pulse(pulse) if isinstance(pulse, str) else pulse
+    case = {"frequency_ratio": np.array([[0.15], [1.0], [3.0]]), "alpha": alpha}
+    at_start = neighbours(abs(started.shape(started.start)), 4)
+    for eta in (0.0, 0.7, 0.85):
+        found = rocking.peak_response(pulse, slenderness=at_start, restitution=eta, **case)
+        assert (found.outcome > Outcome.NO_UPLIFT).all()
+        assert found.impacts.max() < 1000
+        assert (found.overturned == found.overturned[:, :1]).all()
+
+
+@pytest.mark.parametrize("alpha", [None, 0.3, math.pi / 4])
+def test_uplift_at_the_start_of_a_growing_pulse_is_not_missed(alpha):
+    """With f = 1/a at the start exactly, the interval of uplift was missing for rigid blocks."""
+    at_start = neighbours(abs(GROWING.shape(GROWING.start)), 3)
+    for omega in (0.15, 1.0, 6.0):
+        found = rocking.peak_response(
+            GROWING, slenderness=at_start, frequency_ratio=omega, restitution=0.85, alpha=alpha
+        )
+        assert np.ptp(found.outcome) == np.ptp(found.impacts) == 0
+        np.testing.assert_allclose(found.uplift_time, 0.0, atol=1e-14)
+        np.testing.assert_allclose(found.peak_rotation, found.peak_rotation[0], rtol=1e-12)

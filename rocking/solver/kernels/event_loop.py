@@ -27,6 +27,9 @@ IMPACT_LIMIT = 200_000
 MODES_PER_UPLIFT = 65536
 """Number of peak modes reserved for the motion between two uplifts from rest."""
 
+ROUNDING = 1e-15
+"""Excess of |a f| over 1 at the start of the pulse that is within rounding [-]."""
+
 NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
 
@@ -105,6 +108,16 @@ def on_impact(flight: Record, w: float, eta: float) -> None:
     flight.next_phase, flight.next_w, flight.next_sign = phase, -eta * w, -flight.sign  # (2.3)
     while flight.interval < flight.interval_count - 1 and phase >= flight.interval_phase[flight.interval + 1]:
         flight.interval += 1
+    if (
+        flight.interval_level[flight.interval] * flight.sign < 0.0
+        and flight.phase >= flight.interval_phase[flight.interval]
+    ):
+        # no flight in the direction of the destabilising force ends in its interval: what remains is within rounding
+        flight.interval += 1
+        flight.next_phase = phase = flight.interval_phase[flight.interval]
+    if flight.interval == flight.interval_count:
+        flight.at_rest = 1
+        return
     if flight.by_arcs == 1:
         set_angles(flight, phase, flight.cosine0, flight.sine0)
     flight.at_rest = 0
@@ -128,7 +141,11 @@ def start_flight(flight: Record) -> bool:
     """Start the next flight; False if there is none."""
     if flight.at_rest == 1 and not next_uplift(flight):
         return False
-    flight.starts_at_uplift = int(flight.at_rest == 1 and flight.interval > 0)
+    # through |a f| = 1, unless the pulse starts with a jump beyond it
+    through = flight.interval > 0 or (
+        flight.interval_slope[0] * flight.end_shape[0] > 0.0 and flight.a * abs(flight.end_shape[0]) <= 1.0 + ROUNDING
+    )
+    flight.starts_at_uplift = int(flight.at_rest == 1 and through)
     flight.phase, flight.w0, flight.sign = flight.next_phase, flight.next_w, flight.next_sign
     if flight.by_arcs == 1:
         start_arc(flight)

@@ -81,7 +81,8 @@ def split_into_intervals(slenderness: float, flight: Record) -> int:
         count += 1
         for turn in (-rise, rise):
             target = turn * slenderness
-            if not min(f_left, f_right) < target < max(f_left, f_right):
+            entered = f_left == target and turn == rise  # where the pulse starts at |a f| = 1 and |f| grows
+            if not (entered or min(f_left, f_right) < target < max(f_left, f_right)):
                 continue
             level += rise
             if single:
@@ -91,7 +92,7 @@ def split_into_intervals(slenderness: float, flight: Record) -> int:
                 set_interval(flight, count, flight.half_period_phase[piece] + distance, level, rise)
                 flight.interval_cosine[count, 0], flight.interval_sine[count, 0] = value, cosine * root
             else:
-                phi = find_crossing(target, left, right, rise > 0.0, flight)
+                phi = left if entered else find_crossing(target, left, right, rise > 0.0, flight)
                 set_interval(flight, count, phi, level, rise)
                 for k in range(terms):
                     angle = flight.multiple[k] * phi + flight.shift[k]

@@ -17,6 +17,9 @@ from rocking.solver.records.samples import SHAPE, extremes_in_window, next_excee
 NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
 
+ROUNDING = 1e-15
+"""Share of a sample interval in which a flight is within rounding [-]."""
+
 MAX_UPLIFT_MODE = 32_767
 """Largest number of uplifts that the mode of a peak counts: it is an int32."""
 
@@ -103,9 +106,10 @@ def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) ->
     """Impact with velocity w < 0 at time `s` in the interval `k`: set the start of the next flight, or rest."""
     h = block.h
     if block.impacts == 0:
-        block.first_impact_time = block.h * k + s - block.uplift_time
+        block.first_impact_time = h * k + s - block.uplift_time
         block.first_impact_velocity = block.sign * w
     block.impacts += 1
+    stuck = k == block.interval and s <= block.s + ROUNDING * h
     block.interval, block.s = k, s
     block.w0, block.sign, block.at_rest = -block.eta * w, -block.sign, 0  # (2.3)
     f = samples[SHAPE]
@@ -115,6 +119,8 @@ def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) ->
             block.at_rest = 1
         elif block.impacts >= IMPACT_LIMIT or chatter_ends_in_rest(block, samples, u):
             block.at_rest, block.chatter = 1, 1
+    elif block.w0 <= 0.0 and stuck:  # |u| = 1 within rounding: such a flight would follow such a flight, without end
+        block.at_rest, block.s = 1, s + ROUNDING * h
     elif block.w0 <= 0.0:  # eta = 0 while the block is destabilised: immediate uplift
         block.sign, block.w0 = (-1.0 if u > 0.0 else 1.0), 0.0
 

@@ -217,3 +217,22 @@ def test_the_order_of_the_taylor_steps_rises_with_the_interval() -> None:
     assert orders[-1] == 22
     assert math.isclose((2 * 0.01) ** 8 / math.factorial(8), 6.3e-19, rel_tol=0.01)
     assert orders[1] == 8
+
+
+@pytest.mark.parametrize("alpha", [None, 0.2, 1.2])
+def test_a_sample_that_just_uplifts_the_block(alpha):
+    """Where |u| = 1 within rounding at a sample, flights of an inelastic block followed each other without end."""
+    rng = np.random.default_rng(3)
+    levels = np.array([-1.5, -1.0, -1 - 2**-52, -0.5, 0.0, 0.5, 1 - 2**-53, 1.0, 1 + 2**-52, 1.5])
+    for _ in range(60):
+        samples = np.append(rng.choice(levels, rng.integers(3, 12)), 1.5)
+        motion = rocking.Record(samples, float(rng.choice([0.005, 0.1, 1.0])), unit="m/s2")
+        ties = np.unique(np.abs(samples[samples != 0.0])) / 1.5
+        found = rocking.record_response(
+            motion,
+            frequency_parameter=float(rng.choice([0.5, 2.0, 5.0])),
+            slenderness=np.concatenate([ties, np.nextafter(ties, 0.0), np.nextafter(ties, 2.0)])[:, None],
+            restitution=[0.0, 0.5, 1.0],
+            alpha=alpha,
+        )
+        assert np.array_equal(np.isnan(found.peak_rotation), found.overturned)
