@@ -10,6 +10,8 @@ import rocking
 from rocking import Outcome
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.model import parameters
+from rocking.solver.kernels.event_loop import on_impact, start_flight
+from tests.kernels import cell
 
 SLENDERNESS = (parameters.SLENDERNESS.lower, 1e-3, 0.5, 0.999, 1 - 1e-15)
 FREQUENCY_RATIO = (parameters.FREQUENCY_RATIO.lower, 1e-3, 1.0, 1e3, parameters.FREQUENCY_RATIO.upper)
@@ -83,3 +85,26 @@ def test_uplift_at_the_start_of_a_growing_pulse_is_not_missed(alpha):
         assert np.ptp(found.outcome) == np.ptp(found.impacts) == 0
         np.testing.assert_allclose(found.uplift_time, 0.0, atol=1e-14)
         np.testing.assert_allclose(found.peak_rotation, found.peak_rotation[0], rtol=1e-12)
+
+
+@pytest.mark.parametrize(("growing", "starts_at_uplift"), [(True, 0), (True, 1), (False, 0)])
+def test_a_flight_within_rounding_of_the_end_of_an_interval(growing, starts_at_uplift):
+    """Where |f| grows the block uplifts anew from rest there, once; where |f| falls the next interval follows."""
+    flight = cell("sine", 0.5, 3.0, alpha=0.3)
+    slope = 1.0 if growing else -1.0
+    interval = next(
+        i
+        for i in range(flight["interval_count"])
+        if flight["interval_level"][i] * flight["interval_slope"][i] == slope and flight["interval_level"][i] != 0.0
+    )
+    flight["outcome"], flight["impacts"], flight["interval"] = Outcome.SAFE, 3, interval
+    flight["starts_at_uplift"], flight["length"] = starts_at_uplift, 0.0
+    flight["phase"], flight["sign"] = flight["interval_phase"][interval], -flight["interval_level"][interval]
+    on_impact(flight, -1e-30, 0.9)
+    assert flight["impacts"] == 4
+    again = growing and starts_at_uplift == 0
+    assert flight["interval"] == (interval if again else interval + 1)
+    assert flight["at_rest"] == again
+    assert start_flight(flight)
+    assert flight["phase"] == flight["interval_phase"][flight["interval"]]
+    assert flight["starts_at_uplift"] == again

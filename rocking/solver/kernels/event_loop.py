@@ -112,7 +112,13 @@ def on_impact(flight: Record, w: float, eta: float) -> None:
         flight.interval_level[flight.interval] * flight.sign < 0.0
         and flight.phase >= flight.interval_phase[flight.interval]
     ):
-        # no flight in the direction of the destabilising force ends in its interval: what remains is within rounding
+        # no flight in the direction of the destabilising force ends in its interval: it started within rounding of
+        # |a f| = 1, where the interval starts (|f| grows: uplift from rest there) or where it ends (to the next one)
+        if flight.interval_level[flight.interval] * flight.interval_slope[flight.interval] > 0.0 and (
+            flight.starts_at_uplift == 0
+        ):
+            flight.at_rest = 1
+            return
         flight.interval += 1
         flight.next_phase = phase = flight.interval_phase[flight.interval]
     if flight.interval == flight.interval_count:

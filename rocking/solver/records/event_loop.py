@@ -119,7 +119,7 @@ def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) ->
             block.at_rest = 1
         elif block.impacts >= IMPACT_LIMIT or chatter_ends_in_rest(block, samples, u):
             block.at_rest, block.chatter = 1, 1
-    elif block.w0 <= 0.0 and stuck:  # |u| = 1 within rounding: such a flight would follow such a flight, without end
+    elif block.w0 <= 0.0 and stuck:  # |u| = 1 within rounding: flights without length, without end
         block.at_rest, block.s = 1, s + ROUNDING * h
     elif block.w0 <= 0.0:  # eta = 0 while the block is destabilised: immediate uplift
         block.sign, block.w0 = (-1.0 if u > 0.0 else 1.0), 0.0
