@@ -90,7 +90,7 @@ class DimensionalProblem:
             events = [_impact(sign, start), *([_overturned] if self.rigid else [])]
             arc = solve_ivp(
                 self._rate, (start, stop), state, args=(sign,), method="DOP853", rtol=1e-11, atol=1e-14,
-                max_step=self.pulse_period / 50, events=events, **options,
+                max_step=self.pulse_period / 50 if start < self.pulse_end else np.inf, events=events, **options,
             )  # fmt: skip
             yield arc
             start, state = arc.t[-1], arc.y[:, -1].copy()

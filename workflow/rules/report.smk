@@ -78,7 +78,6 @@ rule check_results:
         "logs/check_results.log",
     benchmark:
         "logs/benchmarks/check_results.tsv"
-    threads: 2
     resources:
         mem_mb=memory(1200),
         runtime=60,

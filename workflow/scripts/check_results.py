@@ -21,16 +21,16 @@ class Verdicts:
             self.lines.append(f"{report.outcome} {report.nodeid.rpartition('/')[2]}")
 
 
-def main(*, manifest: Path, tests: Sequence[Path], report: Path, code: str, threads: int) -> None:
-    """Test the results beside `manifest` in some processes; write one line per test to `report` if all pass.
+def main(*, manifest: Path, tests: Sequence[Path], report: Path, code: str) -> None:
+    """Test the results beside `manifest`; write one line per test to `report` if all pass.
 
     The job fails if a test does.
     """
     os.environ["ROCKING_RESULTS"] = str(manifest.parent.resolve())
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # seconds for plugins that these tests do not use
     verdicts = Verdicts()
     files = [str(path) for path in tests if path.name.startswith("test_")]
-    options = ["-q", "-p", "no:cacheprovider", "--numprocesses", str(threads if threads > 1 else 0)]
-    status = pytest.main([*options, *files], plugins=[verdicts])
+    status = pytest.main(["-q", "-p", "no:cacheprovider", *files], plugins=[verdicts])
     if status != 0:
         sys.exit(f"the finished products failed their tests (pytest status {int(status)})")
     report.write_text("\n".join([*sorted(verdicts.lines), f"code {code}"]) + "\n", encoding="utf-8")
