@@ -9,9 +9,9 @@ process that loads the caller from the cache has only the copy. Both are correct
 other multiplications and additions, so that results differed in the last bits between the two processes. Here the
 copies have internal linkage in the module of the entry, and every process runs the same instructions.
 
-The cache of numba tracks the file of the called function, not the files of the kernels that it calls. Here the name of
-the cache folder contains a digest of the sources of the kernels and of the modules of the package that they import, so
-that a change in any of them leads to recompilation.
+The cache of numba tracks the file of the called function, its place and its time, not the files of the kernels that it
+calls. Here the name of the cache folder contains a digest of the sources of the kernels and of the modules of the
+package that they import: a change in any of them leads to recompilation, a copy of the package does not.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from typing import Any
 import numba
 import numpy as np
 from llvmlite import binding  # type: ignore[import-untyped]
+from numba.core.caching import UserProvidedCacheLocator
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
@@ -167,6 +168,27 @@ class _KernelCompiler(_Compiler):
     select = _UseLinkedLibrary
 
 
+class PackageCacheLocator(UserProvidedCacheLocator):
+    """Where numba keeps the entries of this package: in files that do not depend on where and when it was installed.
+
+    numba finds it by its name; any other file has the place and the time of numba's own cache.
+    """
+
+    def __init__(self, function: Callable[..., Any], file: str) -> None:
+        super().__init__(function, file)
+        folder = Path(self._cache_path).parent
+        self._cache_path = str(folder / function.__module__)
+
+    def get_source_stamp(self) -> str:
+        """The same at any time: the folder is that of the sources."""
+        return ""
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> PackageCacheLocator | None:
+        """The locator, or None for a function outside this package."""
+        return cls(function, file) if Path(file).is_relative_to(_PACKAGE) else None
+
+
 class _Kernel(CPUDispatcher):
     """A kernel: inside entries code to be linked; from Python a function of its own, compiled when it is called."""
 
@@ -216,12 +238,13 @@ def _cached(function: Callable[..., Any], options: dict[str, Any]) -> Callable[.
     folder = cache_folder()
     compile_ = numba.njit(pipeline_class=_EntryCompiler, cache=folder is not None, **options)
     config: Any = numba.config  # its attributes are made at run time
-    before = config.CACHE_DIR
-    config.CACHE_DIR = folder or before
+    before = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+    config.CACHE_DIR = folder or config.CACHE_DIR
+    config.CACHE_LOCATOR_CLASSES = f"{__name__}.{PackageCacheLocator.__name__},{UserProvidedCacheLocator.__name__}"
     try:
         compiled: Callable[..., Any] = compile_(function)
     finally:
-        config.CACHE_DIR = before
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
     return compiled
 
 

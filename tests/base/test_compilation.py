@@ -128,6 +128,25 @@ def digest_of(package):
     return rocking._numba.compilation._digest(package)
 
 
+def test_a_copy_of_the_package_needs_no_compilation(tmp_path):
+    """Also one whose files are newer, such as an installation of the same version."""
+    precompile.main()
+    package = Path(rocking.__file__).parent
+    shutil.copytree(package, tmp_path / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
+    for file in (tmp_path / "rocking").rglob("*.py"):
+        file.touch()
+    code = f"""
+import sys
+sys.path.insert(0, {str(tmp_path)!r})
+import rocking
+from rocking.solver.kernels.batch import solve_batch
+assert rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.8, alpha=0.3).impacts > 0
+print(rocking.__file__, sum(solve_batch.stats.cache_hits.values()), sum(solve_batch.stats.cache_misses.values()))"""
+    kept = Path(rocking._numba.compilation.cache_folder()).parent
+    found = script(code, NUMBA_CACHE_DIR=str(kept)).split()
+    assert found == [str(tmp_path / "rocking/__init__.py"), "1", "0"]
+
+
 def test_the_cache_folder_depends_on_kernel_sources_and_their_imports(tmp_path):
     (tmp_path / "inner").mkdir()
     one, constants = tmp_path / "inner" / "one.py", tmp_path / "inner" / "constants.py"
