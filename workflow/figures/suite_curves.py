@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.datasets.cube import read_dataset
-from rocking.plot.fragility import CURVES, POINTS, draw_fractions
+from rocking.plot.pictures.fragility import CURVES, POINTS, draw_fractions
 from rocking.plot.style import WIDTH
 from rocking.suites.curve import curve_probability
 from workflow.figures.style import panel_letters, plotted

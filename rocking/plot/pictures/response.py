@@ -13,7 +13,7 @@ from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import AbstractPulse
 from rocking.model.outcome import Outcome
 from rocking.model.response import Response
-from rocking.plot.spectrum import shade_overturned
+from rocking.plot.pictures.spectrum import shade_overturned
 from rocking.plot.style import BLUE, GREY, LABELS, VERMILION, axes_of
 from rocking.solver.peak_response import peak_response
 

@@ -1,0 +1,1 @@
+"""One module for each picture; `rocking.plot` gives their functions."""
