@@ -46,6 +46,7 @@ def project(folder: Path) -> Path:
     folder.mkdir()
     for name in ("Makefile", "Snakefile", "environment.lock", "pyproject.toml"):
         shutil.copy2(PROJECT / name, folder)
+        os.utime(folder / name, (0, 0))  # older than the environment, or make would install this copy into it
     for name in ("rocking", "workflow", "profiles"):  # with the compiled kernels
         shutil.copytree(PROJECT / name, folder / name)
     (folder / ".venv").symlink_to(PROJECT / ".venv")
