@@ -4,10 +4,11 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce verify test browser serve docs bench stress slurm fuzz mutants lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify test browser serve docs bench stress slurm fuzz mutants lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
+RESULTS ?= results
 
 # The lock is resolved for Python 3.11; a newer version is used only if there is no 3.11.
 PYTHON ?= $(shell for p in python3.11 python3; do \
@@ -21,13 +22,20 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 RUN := ROCKING_RUN=$$PPID python -m workflow.run
 
 help: ## list the targets
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 18
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 18
 
 reproduce: .venv/project ## make data sets, figures and claims of the paper in results/ (CONFIG=FILE: another configuration)
 	$(RUN) $(if $(CONFIG),--configfile $(CONFIG))
 
-verify: .venv/project ## compare every file in results/ with the manifest and list differences
-	python -m workflow.verify
+# Data sets of all pulses lie in folders of their own: `make serve RESULTS=atlas-small/results`.
+atlas-small atlas: .venv/project
+	$(RUN) --directory $@ --configfile workflow/config/$@.yaml
+
+atlas-small: ## make data sets of all nine pulses in atlas-small/results, some ten minutes
+atlas: ## the same on a fine grid, 27 restitutions and 10 angles, in atlas/results, some hours; it may be interrupted
+
+verify: .venv/project ## compare every file in results/ with the manifest and list differences (RESULTS=: others)
+	python -m workflow.verify $(dir $(RESULTS))
 
 test: .venv/project browser ## run format, lint and type checks and all tests, including a small run of the workflow
 	ruff format --check .
@@ -39,8 +47,8 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 browser: .venv/project ## fetch Chromium for the tests of the web page if there is none (ROCKING_NO_BROWSER=1: skip them)
 	@test -n '$(ROCKING_NO_BROWSER)' || { python -m tests.api.explorer.chromium && python -m tests.api.explorer.axe; }
 
-serve: .venv/project | results/manifest.json ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=)
-	rocking serve --host $(HOST) --port $(PORT) --results results
+serve: .venv/project | $(RESULTS)/manifest.json ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=, RESULTS=)
+	rocking serve --host $(HOST) --port $(PORT) --results $(RESULTS)
 
 docs: .venv/project | results/manifest.json ## build the guide in build/docs; its examples read results/, which is made first if missing
 	sphinx-build -W --keep-going -q -b html docs build/docs
@@ -80,6 +88,9 @@ UV := $(or $(shell command -v uv),build/uv/bin/uv)
 
 results/manifest.json: | .venv/project
 	$(MAKE) reproduce
+
+%/results/manifest.json: | .venv/project
+	$(MAKE) $*
 
 # No isolation: packages without a wheel are built with the pinned build tool, which is installed first; with isolation
 # pip would fetch an unpinned one.

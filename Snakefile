@@ -20,7 +20,11 @@ if "suite" in config:
 else:
 
     include: "workflow/rules/datasets.smk"
-    include: "workflow/rules/figures.smk"
+
+    if "figures" in config:
+
+        include: "workflow/rules/figures.smk"
+        include: "workflow/rules/claims.smk"
     include: "workflow/rules/report.smk"
     include: "workflow/rules/benchmarks.smk"
 

@@ -234,12 +234,14 @@ FIGURES = section(
     }
 )
 
-CONFIGURATION = section(
-    {"tile_rows": integer(1, NODES)},  # rows of the spectrum cubes that one job computes; products do not depend on it
-    title=leaf("a text", lambda value: isinstance(value, str)),
-    pulses=PULSE_LIST,
-    restitution=Annotated[several(ETA, ascending=True), AfterValidator(_two_decimals)],
-    grid=section(
+OPTIONAL = {"tile_rows": integer(1, NODES)}
+"""Rows of the spectrum cubes that one job computes; the products do not depend on it."""
+
+DATA_SETS = {
+    "title": leaf("a text", lambda value: isinstance(value, str)),
+    "pulses": PULSE_LIST,
+    "restitution": Annotated[several(ETA, ascending=True), AfterValidator(_two_decimals)],
+    "grid": section(
         alpha_deg=Annotated[several(number(0.01, 89, zero=True), ascending=True), AfterValidator(_with_slender_limit)],
         slenderness=Annotated[
             section(breaks=several(SLENDERNESS, 2, ascending=True), steps=list[number(1e-6, 10)]),  # type: ignore[misc]
@@ -247,15 +249,16 @@ CONFIGURATION = section(
         ],
         frequency_ratio=_range(OMEGA, points=integer(4, NODES)),
     ),
-    boundary=section(
+    "boundary": section(
         nodes=NODES_OF_BOUNDARY,  # for the slender limit
         nodes_rigid=NODES_OF_BOUNDARY,  # for alpha > 0
         slenderness=_range(SLENDERNESS_OF_BOUNDARY),
         frequency_ratio=_range(OMEGA),
     ),
-    figures=FIGURES,
-    claims=section(restitution=ETAS),
-)
+}
+
+PAPER = {"figures": FIGURES, "claims": section(restitution=ETAS)}
+"""Sections of a configuration that makes more than the data sets: both or none of them."""
 
 
 def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
@@ -264,7 +267,8 @@ def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
     Parameters
     ----------
     config : mapping
-        Of the data sets and figures of the paper; or of a suite of records, with the keys `title` and `suite`.
+        Of data sets, with the figures and claims of the paper or without; or of a suite of records, with the keys
+        `title` and `suite`.
     folder : path
         Folder of the file of the configuration.
 
@@ -276,14 +280,15 @@ def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
     if "suite" in config:
         _check_suite(config, folder)
         return
+    of_paper = not PAPER.keys().isdisjoint(config)
     try:
-        CONFIGURATION.model_validate(config)
+        section(OPTIONAL, **DATA_SETS, **(PAPER if of_paper else {})).model_validate(config)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key, value = ".".join(map(str, first["loc"])) or "configuration", first["input"]
         stated = key if isinstance(value, dict) else f"{key} = {reprlib.repr(value)}"
         raise ConfigurationError(f"{stated}: {first['msg'].removeprefix('Value error, ')}") from None
-    for conflict in chain(_too_large(config), _not_made(config)):
+    for conflict in chain(_too_large(config), _not_made(config) if of_paper else ()):
         raise ConfigurationError(conflict)
 
 

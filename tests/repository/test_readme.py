@@ -87,14 +87,23 @@ def test_every_command_has_a_test() -> None:
         ("environment", ":"),
         ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
         ("test", "pytest"),
-        ("serve", "rocking serve"),
+        ("serve", "rocking serve --host 127.0.0.1 --port 8000 --results results"),
         ("docs", "echo 'open build/docs/index.html"),
+        ("atlas-small", "ROCKING_RUN=$PPID python -m workflow.run --directory atlas-small --configfile"),
+        ("serve RESULTS=atlas-small/results", "rocking serve --host 127.0.0.1 --port 8000 --results atlas-small/"),
     ],
 )
 def test_make_targets_of_the_readme(target: str, program: str) -> None:
-    assert ["make", target] in MAKE
-    assert len(MAKE) == 5
-    assert recipe(target).startswith(program)
+    assert ["make", *target.split()] in MAKE
+    assert len(MAKE) == 7
+    assert recipe(*target.split()).startswith(program)
+
+
+def test_data_sets_are_made_before_they_are_served() -> None:
+    done = subprocess.run(
+        ["make", "--dry-run", "serve", "RESULTS=atlas/results"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert (ROOT / "atlas/results/manifest.json").exists() or "--configfile workflow/config/atlas.yaml" in done.stdout
 
 
 @pytest.mark.parametrize("command", ROCKING, ids=" ".join)

@@ -9,9 +9,10 @@ import shutil
 from pathlib import Path
 
 import pytest
+import yaml
 
 from rocking.datasets.cube import read_spectrum
-from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
+from tests.workflow_fixtures import PROJECT, SMOKE, reproduce, rules_to_run, snakemake
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -104,10 +105,29 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
         (project / module).write_text(before)
 
 
-@pytest.mark.parametrize("name", ["paper", "atlas"])
+@pytest.mark.parametrize("name", ["paper", "atlas", "atlas-small"])
 def test_other_configurations_are_valid(name: str, tmp_path: Path) -> None:
     planned = snakemake(tmp_path, "--dry-run", "--quiet", configuration=PROJECT / f"workflow/config/{name}.yaml")
     assert planned.returncode == 0, planned.stdout
+
+
+def test_data_sets_are_made_without_figures_and_claims(tmp_path: Path) -> None:
+    configuration = yaml.safe_load(SMOKE.read_text())
+    for name in ("figures", "claims", "tile_rows"):
+        del configuration[name]
+    configuration |= {"title": "Data sets", "pulses": ["half_sine"], "restitution": [0.85]}
+    configuration["grid"] |= {"slenderness": {"breaks": [0.2, 0.8], "steps": [0.05]}}
+    configuration["grid"]["frequency_ratio"]["points"] = 21
+    written = tmp_path / "data.yaml"
+    written.write_text(yaml.safe_dump(configuration))
+    finished = snakemake(tmp_path, module="workflow.run", configuration=written)
+    assert finished.returncode == 0, finished.stdout
+    listed = json.loads((tmp_path / "results/manifest.json").read_text())["products"]
+    assert set(listed) == {f"{kind}/half_sine/eta-0.85.nc" for kind in ("spectra", "overturning")}
+    verdicts = (tmp_path / "results/checks.txt").read_text()
+    assert "failed" not in verdicts
+    for name in listed:
+        assert f"[{name}]" in verdicts
 
 
 def test_each_rule_has_a_message_log_and_benchmark() -> None:

@@ -44,6 +44,7 @@ def test_configurations_of_the_repository_are_accepted(path: Path) -> None:
         ("figures/figure-08/ours/restitutoin", 1, "figures.figure-08.ours: unknown key restitutoin"),
         ("figures/table-1/colour", 1, "figures.table-1: unknown key colour"),
         ("claims", MISSING, "configuration: missing key claims"),
+        ("figures", MISSING, "configuration: missing key figures"),
         ("figures/figure-04", MISSING, "figures: missing key figure-04"),
         ("grid/frequency_ratio", 3, "grid.frequency_ratio = 3: missing key"),
         ("grid/frequency_ratio/low", 50.0, "grid.frequency_ratio: low = 50, high = 12; allowed: low < high"),

@@ -38,6 +38,7 @@ except ConfigurationError as error:
     sys.exit(f"Configuration refused: {error}")  # one line; WorkflowError would add where in this file it was raised
 
 PRODUCTS = {}  # path -> rule and digests, for the manifest
+RECORDS = []  # of the jobs that make products
 FINISHED = []  # files of a complete run
 # of this process; an engine on several machines has no number of cores
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

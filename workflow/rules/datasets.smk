@@ -129,3 +129,9 @@ rule spectra:
         "Spectrum cubes of the {wildcards.pulse} pulse"
     script:
         "../scripts/spectra.py"
+
+
+RECORDS += [
+    *expand(rules.overturning.output.record, pulse=PULSES),
+    *expand(rules.spectra.output.record, pulse=PULSES),
+]

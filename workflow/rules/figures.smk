@@ -14,12 +14,10 @@ FIGURE_INPUTS = {
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
 READ_BY_CLAIMS = ["figure-06", "figure-09", "figure-11", "figure-12", "figure-master-spectra", "figure-master-housner"]
 
-FIGURE_RECORDS = []
-
 for _figure, _files in FIGURES.items():
     _name = _figure.replace("-", "_")
     _provenance = provenance(_name, ["scripts/figure.py", f"figures/{_name}.py"], _figures[_figure], _files.values())
-    FIGURE_RECORDS.append(record_of(f"figures/{_figure}", _provenance))
+    RECORDS.append(record_of(f"figures/{_figure}", _provenance))
 
     rule:
         name:
@@ -28,7 +26,7 @@ for _figure, _files in FIGURES.items():
             **FIGURE_INPUTS.get(_figure, {}),
         output:
             **_files,
-            record=FIGURE_RECORDS[-1],
+            record=RECORDS[-1],
         log:
             f"logs/figures/{_figure}.log",
         benchmark:

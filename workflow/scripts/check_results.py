@@ -18,7 +18,7 @@ class Verdicts:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.when == "call" or report.outcome != "passed":
-            self.lines.append(f"{report.outcome} {report.nodeid.rpartition('/')[2]}")
+            self.lines.append(f"{report.outcome} {report.nodeid.partition('::')[2]}")
 
 
 def main(*, manifest: Path, tests: Sequence[Path], report: Path, code: str) -> None:
