@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 from itertools import chain
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from rocking.datasets.cube import read_dataset, write_dataset
 from rocking.model.block import Block
 from rocking.model.response import Outcome
 from rocking.plot.boundary_lines import Lines
+from rocking.plot.output import style
 from rocking.solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT, SMOKE
 from workflow.figures import figure_04, figure_09, figure_10, similar_histories
@@ -46,6 +48,32 @@ def test_figure_lists_values_chosen_here_and_has_a_caption(name: str, smoke_resu
     attributes = read_dataset(smoke_results / f"figures/{name}.nc").attrs
     assert attributes.get("values_chosen_here", "") == ", ".join(CONFIGURED[name].get("ours", {}))
     assert f"[{name}](#" in (PROJECT / "docs/figures.md").read_text()
+
+
+@pytest.mark.parametrize("name", ["figure-09", "figure-10"])
+def test_no_curve_crosses_the_labels_of_an_inset(name: str, smoke_results: Path) -> None:
+    module = importlib.import_module(f"workflow.figures.{name.replace('-', '_')}")
+    with style():
+        figure = module.draw(read_dataset(smoke_results / f"figures/{name}.nc"))
+        figure.draw_without_rendering()
+    crossed, labels = [], 0
+    for panel in figure.axes:
+        for inset in panel.child_axes:
+            shown = [
+                tick.label1
+                for axis in (inset.xaxis, inset.yaxis)
+                for tick in axis.get_major_ticks()
+                if axis.get_view_interval()[0] <= tick.get_loc() <= axis.get_view_interval()[1]
+            ]
+            labels += len(shown)
+            for label in shown:
+                box = label.get_window_extent()
+                for line in panel.lines:
+                    path = line.get_transform().transform_path(line.get_path())
+                    if path.intersects_bbox(box, filled=False):
+                        crossed.append((label.get_text(), line.get_label()))
+    assert labels > 3
+    assert crossed == []
 
 
 def test_two_blocks_collapse_to_the_master_curve(smoke_results: Path) -> None:
