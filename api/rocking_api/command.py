@@ -45,6 +45,9 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
         allowed = wrong.get("ctx", {}).get("error", wrong["msg"])
         typer.echo(f"Error: {name} = {wrong['input']!r} is not allowed; allowed: {allowed}", err=True)
         raise typer.Exit(2) from None
+    if results is not None and not settings.results.is_dir():
+        typer.echo(f"Error: --results = {results!r} is not allowed; allowed: a folder that exists", err=True)
+        raise typer.Exit(2)
     with ExitStack() as stack:
         if workers > 1:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="rocking-metrics-"))

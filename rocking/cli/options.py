@@ -62,7 +62,10 @@ class ProblemOptions(ShapeOptions):
     slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
     frequency_ratio: Annotated[float | None, _in_groups(f"{FREQUENCY_RATIO.help}.")] = None
     peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
-    pulse_period: Annotated[str | None, _with_units("T_p, such as 0.5s.")] = None
+    pulse_period: Annotated[
+        str | None,
+        _with_units("T_p = 2 pi/omega_g, such as 0.5s; a half sine or rectangular pulse lasts half of it."),
+    ] = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -118,6 +118,7 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
         "frequency_parameter": block.frequency_parameter,
         "peak_acceleration": problem.peak_acceleration,
         "pulse_period": problem.period,
+        "pulse_duration": problem.duration,
         "uplift_acceleration": block.uplift_acceleration,
         "largest_safe_acceleration": assessment.largest_safe_acceleration,
         "largest_safe_friction_demand": assessment.largest_safe_friction_demand,
@@ -132,7 +133,7 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
 
 _FIRST_LINES = (
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
-    *("nearest_acceleration", "nearest_period"),
+    *("nearest_acceleration", "nearest_period", "pulse_period", "pulse_duration"),
 )
 """What the text output of a block with units begins with."""
 
@@ -143,7 +144,7 @@ _UNITS = {
     "annual_rate": "1/year",
     "gravity": "m/s2",
     **dict.fromkeys(("peak_rotation_deg", "rotation_deg", "alpha_deg"), "deg"),
-    **dict.fromkeys(("pulse_period", "nearest_period", "period", "time", "impact_time_s"), "s"),
+    **dict.fromkeys(("pulse_period", "pulse_duration", "nearest_period", "period", "time", "impact_time_s"), "s"),
     **dict.fromkeys(("time_step", "significant_duration", "mean_period"), "s"),
     **dict.fromkeys(("top_displacement", "half_width", "half_height", "half_diagonal", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),

@@ -35,7 +35,7 @@ class BlockProblem:
     peak_acceleration : float
         a_g [m/s2], > 0.
     period : float
-        T_p = 2 pi/omega_g [s], > 0.
+        T_p = 2 pi/omega_g [s], > 0; `duration` is how long the pulse lasts.
     restitution : float or "housner"
         eta [-], [0, 1]; or that of (2.4), 0 where it is negative.
 
@@ -56,6 +56,12 @@ class BlockProblem:
         in_range("peak_acceleration", self.peak_acceleration, 0.0, math.inf, closed="neither", unit="m/s2")
         in_range("period", self.period, 0.0, math.inf, closed="neither", unit="s")
         restitution_of(self.block, self.restitution)
+
+    @property
+    def duration(self) -> float:
+        """Duration of the pulse [s]: half a period for the half sine and the rectangular pulse, one for the sine."""
+        pulse = as_pulse(self.pulse)
+        return (pulse.end - pulse.start) / (2.0 * math.pi) * self.period
 
     @property
     def groups(self) -> BlockGroups:

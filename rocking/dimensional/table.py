@@ -108,7 +108,9 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, float]]:
         if name in UNITS:
             examples = _EXAMPLES[UNITS[name]]
             if unit is None:
-                raise InvalidArgumentError("blocks, header", text, f"missing unit: write {name} [{examples[0]}]")
+                raise InvalidArgumentError(
+                    "blocks, header", text, f"a column with its unit (missing unit: write {name} [{examples[0]}])"
+                )
             try:
                 factors[name] = si_factor(name, unit, UNITS[name])
             except InvalidArgumentError:

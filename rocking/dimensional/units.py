@@ -12,8 +12,8 @@ from rocking.errors import InvalidArgumentError
 
 _EXAMPLES = {"m": "0.3 m, 30 cm", "m/s**2": "4 m/s^2, 0.4 g, 400 gal", "s": "0.5 s, 500 ms", "rad": "20 deg, 0.35 rad"}
 
-_USUAL = {"m": "m", "m/s**2": "g", "s": "s", "rad": "deg"}
-"""The unit that an error proposes where there is none."""
+_USUAL = {"m": ("m",), "m/s**2": ("m/s2", "g"), "s": ("s",), "rad": ("deg",)}
+"""The units that an error proposes where there is none."""
 
 _IN_ACCELERATIONS = {r"g": "standard_gravity", r"gals?": "cm/s**2"}
 """Units that mean something else otherwise: gram, gallon."""
@@ -60,7 +60,9 @@ def si_value(parameter: str, text: str, unit: str) -> float:
         quantity: pint.Quantity[float] = _registry().Quantity(written)
         if quantity.unitless:  # a number without unit, which pint would accept as radians
             given = text.strip()
-            allowed = f"missing unit: write {given}{_USUAL[unit]} (such as {_EXAMPLES[unit]})" if given else allowed
+            if given:
+                written = " or ".join(f"{given}{usual}" for usual in _USUAL[unit])
+                allowed = f"missing unit: write {written} (such as {_EXAMPLES[unit]})"
             raise (MissingUnitError if given else InvalidArgumentError)(parameter, text, allowed)
         value = float(quantity.to(unit).magnitude)
     except InvalidArgumentError:

@@ -1,22 +1,7 @@
 """Configuration of a suite of records: which files, blocks, levels and limit states.
 
-A configuration is a mapping, as read from a file, with exactly these keys:
-
-- name: of the suite and of its folder of results; letters, digits, `-`, `_` and `.`
-- records: `folder`, relative to the file of the configuration; `pattern` of the file names; `unit`, `time_step` [s] and
-  `component`, as for `rocking.read_record`, null where the files state them; `baseline_order` of the baseline that is
-  removed (`Record.baseline_corrected`), null for none
-- blocks: list of `half_width` and `half_height` [m]
-- restitution: housner, or eta [-]
-- measure: as for `rocking.fragility`
-- intensity: list of levels; or `low`, `high` and `points`, spaced evenly in the logarithm
-- demand: list of limit states, as for `rocking.fragility`
-- confidence: of the intervals [-]
-- map: `intensity`, and `half_diagonal` [m] and `alpha_deg`, each a list or `low`, `high` and `points`, spaced evenly;
-  null for none
-- hazard: `intensity` and annual `rate` of exceedance [1/year], two lists; null for none
-- sensitivity: `intensity`, levels as above, and `restitution_step` [-], as for `rocking.suite_sensitivity`; null, or no
-  such key, for none
+A configuration is a mapping, as read from a file; `docs/fragility.md` lists its keys. Those with a default may be left
+out: `DEFAULTS`, and what the files of the records state, `STATED_BY_FILES`.
 """
 
 from __future__ import annotations
@@ -44,13 +29,26 @@ from rocking.suites.intensity import MEASURES
 
 Array = NDArray[np.float64]
 
+DEFAULTS: dict[str, Any] = {
+    "restitution": "housner",
+    "demand": ["overturning"],
+    "confidence": 0.95,
+    "map": None,
+    "hazard": None,
+    "sensitivity": None,
+}
+"""Values of keys that a configuration may leave out."""
+
+STATED_BY_FILES: dict[str, Any] = dict.fromkeys(("unit", "time_step", "component", "baseline_order"))
+"""The same in its section `records`."""
+
 MAX_POINTS = 10_000
 """Most levels, and most points of one axis of the map."""
 
 
 @dataclass(frozen=True)
 class RecordFiles:
-    """Where the records are, and what their files do not state: attributes as in the table above."""
+    """Where the records are, and what their files do not state: attributes as in the table of `docs/fragility.md`."""
 
     folder: Path
     pattern: str
@@ -70,7 +68,9 @@ class RecordFiles:
         found = sorted(path for path in self.folder.glob(self.pattern) if path.is_file()) if self.pattern else []
         if not found:
             raise InvalidArgumentError(
-                "records", f"{self.folder}/{self.pattern}", "a folder and a pattern of its files"
+                "records",
+                f"{self.folder}/{self.pattern}",
+                "a folder, relative to the file of the configuration, and a pattern of its files: there is none",
             )
         return found
 
@@ -159,8 +159,7 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         For the first key that is missing, unknown or has an invalid value; `parameter` is the key, such as
         `map.alpha_deg`.
     """
-    if isinstance(given, Mapping):
-        given = {"sensitivity": None, **given}
+    given = _with_defaults(given, DEFAULTS)
     _keys("suite", given, SuiteConfiguration.__annotations__)
     measure = one_of("measure", given["measure"], MEASURES)
     hazard = None
@@ -180,6 +179,10 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         hazard=hazard,
         sensitivity=None if given["sensitivity"] is None else _sensitivity(given["sensitivity"]),
     )
+
+
+def _with_defaults(given: Any, defaults: Mapping[str, Any]) -> Any:
+    return {**defaults, **given} if isinstance(given, Mapping) else given
 
 
 def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
@@ -207,6 +210,7 @@ def _name(value: Any) -> str:
 
 
 def _record_files(given: Any, folder: Path) -> RecordFiles:
+    given = _with_defaults(given, STATED_BY_FILES)
     _keys("records", given, RecordFiles.__annotations__)
     for key in ("folder", "pattern"):
         if not isinstance(given[key], str) or not given[key]:

@@ -140,6 +140,9 @@ def test_response_of_a_block_in_si_units():
     assert "overturns above 4.70007, survives above 13.1271, overturns above 13.9939" in text
     (row,) = read_csv(run("response", *WHOLE, "--csv"))
     assert [float(a) for a in row["thresholds"].split()] == [one["peak_acceleration"] for one in result["thresholds"]]
+    assert result["pulse_duration"] == 0.5
+    half_sine = json.loads(run("response", "--pulse", "half_sine", *WHOLE[2:], "--json"))
+    assert half_sine["pulse_duration"] == pytest.approx(0.25)
     near = run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:])
     assert near == run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:], "--restitution", "housner")
     assert "warning: the outcome changes within 5 % of this peak acceleration: at 4.7 m/s2" in near
@@ -308,6 +311,8 @@ def test_boundary_in_three_formats():
          "--frequency-ratio-max", "(0.2, 1e+09]"),
         (["serve", "--port", "99999"], "--port", "65535"),
         (["serve", "--results", ""], "--results", "the name of a folder"),
+        (["serve", "--results", "nowhere"], "--results", "a folder that exists"),
+        (["response", *UNITS[:7], "4", *UNITS[8:]], "--peak-acceleration", "missing unit: write 4m/s2 or 4g (such as"),
     ],
 )  # fmt: skip
 def test_errors_name_the_option_and_the_allowed_values(arguments, option, allowed):

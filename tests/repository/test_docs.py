@@ -12,6 +12,7 @@ from pathlib import Path
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 import rocking
@@ -155,3 +156,13 @@ def test_guide_builds_without_warning(tmp_path):
     ]
     assert loaded == []  # nothing comes from other hosts
     assert json.loads((target / "searchindex.js").read_text()[len("Search.setIndex(") : -1])["titles"]
+
+
+def test_the_page_of_lookups_states_the_grid_of_the_data_sets() -> None:
+    grid = yaml.safe_load((ROOT / "workflow/config/paper.yaml").read_text())
+    angles = grid["grid"]["alpha_deg"]
+    page = " ".join((DOCS / "lookup.md").read_text().split())
+    words = {7: "seven", 12: "twelve"}
+    assert f"{words[len(angles)]} angles from {angles[0]} to {angles[-1]} degrees" in page
+    assert f"{words[len(grid['restitution'])]} restitutions from {grid['restitution'][0]:.2f} to 1" in page
+    assert f"x {grid['grid']['frequency_ratio']['points']} nodes" in page

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import yaml
 
 import rocking
 from rocking.datasets.cube import read_dataset
-from rocking.suites.configuration import suite_configuration
+from rocking.suites.configuration import SuiteConfiguration, suite_configuration
 from tests.workflow_fixtures import PROJECT, snakemake
 from workflow.configuration import ConfigurationError, check
 from workflow.verify import problems
@@ -47,6 +48,22 @@ def test_every_product_is_made_and_listed(products: Path) -> None:
         assert hashlib.sha256((products / name).read_bytes()).hexdigest() == entry["sha256"]
     found = {path.relative_to(products).as_posix() for path in products.rglob("*") if path.is_file()}
     assert found - expected == {"manifest.json"}
+
+
+def test_the_shorter_configuration_of_the_guide_is_enough(tmp_path: Path) -> None:
+    page = (PROJECT / "docs/fragility.md").read_text()
+    (text,) = re.findall(r"```yaml\n(.*?)```", page, re.S)
+    given = yaml.safe_load(text)["suite"]
+    with pytest.raises(rocking.InvalidArgumentError, match="relative to the file of the configuration"):
+        suite_configuration(given, tmp_path).motions()
+    (tmp_path / "motions").symlink_to(PROJECT / "workflow/motions")
+    suite = suite_configuration(given, tmp_path)
+    assert len(suite.motions()) == len(RECORDS)
+    assert (suite.restitution, suite.demand, suite.confidence) == ("housner", ("overturning",), 0.95)
+    assert (suite.map, suite.hazard, suite.sensitivity) == (None, None, None)
+    described = set(re.findall(r"`suite\.([\w.]+)`", page))
+    sections = {name.partition(".")[0] for name in described}
+    assert sections == {*SuiteConfiguration.__annotations__}
 
 
 def test_products_are_those_of_the_library(products: Path) -> None:

@@ -11,7 +11,7 @@ sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
 from rocking.datasets.provenance import SourceTree, settings_digest
-from rocking.suites.configuration import suite_configuration
+from rocking.suites.configuration import DEFAULTS, suite_configuration
 from workflow import parts, records
 from workflow.configuration import (
     BYTES,

@@ -1,6 +1,6 @@
 # A suite of records (configuration with the key `suite`): one job per record file, so that a large suite spreads over
 # cores and machines, then counts, fitted curves and figures.
-SUITE = config["suite"]
+SUITE = {**DEFAULTS, **config["suite"]}
 SUITE_FILES = {path.name: path for path in suite_configuration(SUITE, CONFIG_FOLDER).records.paths()}
 SUITE_FOLDER = f"results/suites/{SUITE['name']}"
 # asked for by `sensitivity`: one file for each record, and those of the suite

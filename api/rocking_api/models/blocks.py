@@ -62,7 +62,9 @@ class BlockParams(Params):
     half_width: float = quantity("half_width", "b; the base is 2b wide", examples=[0.2])
     half_height: float = quantity("half_height", "h", examples=[0.8])
     peak_acceleration: float = quantity("peak_acceleration", "a_g", examples=[4.0])
-    pulse_period: float = quantity("pulse_period", "T_p = 2 pi/omega_g", examples=[0.5])
+    pulse_period: float = quantity(
+        "pulse_period", "T_p = 2 pi/omega_g; a half sine or rectangular pulse lasts half of it", examples=[0.5]
+    )
     restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
