@@ -121,7 +121,7 @@ def probes(rounds: int) -> Iterator[Ablation]:
 def cells_between(fill: Callable[[], Any]) -> int:
     """Return the cells solved between slices of restitution and of angle while cubes are filled."""
     count = 0
-    measure = sweep._Grid.errors_between
+    measure = sweep._Grid._errors_between
 
     def counting(*arguments: Any, **named: Any) -> Any:
         nonlocal count
@@ -129,7 +129,7 @@ def cells_between(fill: Callable[[], Any]) -> int:
         count += cells_solved(lambda: found.append(measure(*arguments, **named)))
         return found[0]
 
-    with patch.object(sweep._Grid, "errors_between", counting):
+    with patch.object(sweep._Grid, "_errors_between", counting):
         fill()
     return count
 

@@ -5,7 +5,7 @@ Several coefficients of restitution are solved together, as the motion before th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,8 +49,15 @@ MAX_ERROR = 5e-5
 PROBE_TOLERANCE = 1e-8
 """Relative error of the peaks with which interpolation is compared [-]: small compared with errors that matter."""
 
+MIDDLE, BESIDE = 0.5, (0.25, 0.75)
+"""Shares of an interval between two slices at which interpolation is compared with the solver [-].
+
+All cells are probed in the middle. The error of a crease at one eighth of the interval vanishes there, so cells in
+which the peak has a crease are probed beside it too.
+"""
+
 MAX_SPACING = {"restitution": 0.1, "alpha": np.radians(25.0)}
-"""Largest interval between slices that is interpolated [-, rad]: one probe in the middle does not suffice for more."""
+"""Largest interval between slices that is interpolated [-, rad]: the probes do not suffice for more."""
 
 BATCH_SIZE = 12
 """Restitutions solved together: most of the saving of a shared first flight, for four times the memory of one."""
@@ -133,19 +140,18 @@ def _layers(
 def _errors_between_slices(
     grid: _Grid, layers: Sequence[Sequence[GridLayer]], etas: Array, angles: Array
 ) -> dict[str, Array]:
-    """The errors (l, k, n - 1, m - 1) of interpolation halfway to the next restitution and to the next angle."""
+    """The errors (l, k, n - 1, m - 1) of interpolation between a restitution or an angle and the next one."""
     by_eta, by_angle = grid.no_errors(etas, angles), grid.no_errors(etas, angles)
     kinds = [[layer.kinds() for layer in row] for row in layers]
     for a, angle in enumerate(angles):
         along = [row[a] for row in layers], [row[a] for row in kinds]
         intervals = [LevelInterval.of(*along, etas, 1, k) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
-        middles = np.array([interval.middle() for interval in intervals])
-        for interval, error in zip(intervals, grid.errors_between(intervals, middles, angle, DIRECT), strict=True):
+        for interval, error in zip(intervals, grid.errors_between_restitutions(intervals, angle), strict=True):
             by_eta[interval.lower, a] = error
     for a in _interval_starts(angles, MAX_SPACING["alpha"]):
         # the equation of motion depends on alpha through its square only
         intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
-        by_angle[:, a] = grid.errors_between(intervals, etas, intervals[0].middle())
+        by_angle[:, a] = grid.errors_between_angles(intervals, etas)
     return {"restitution_error": by_eta, "alpha_error": by_angle}
 
 
@@ -195,41 +201,82 @@ class _Grid:
             layer.stencil[smooth[k] & (errors[k] > MAX_ERROR)] = NO_STENCIL
         return errors
 
-    def errors_between(
-        self, intervals: Sequence[LevelInterval], etas: Array, angle: float, known: int | None = None
+    def errors_between_restitutions(self, intervals: Sequence[LevelInterval], angle: float) -> list[Array]:
+        """Errors in intervals between restitutions, see `_errors_between`."""
+        return self._largest_between(
+            intervals, lambda share: (np.array([interval.level(share) for interval in intervals]), angle), DIRECT
+        )
+
+    def errors_between_angles(self, intervals: Sequence[LevelInterval], etas: Array) -> list[Array]:
+        """Errors in one interval between angles, at each restitution, see `_errors_between`."""
+        return self._largest_between(intervals, lambda share: (etas, intervals[0].level(share)))
+
+    def _largest_between(
+        self,
+        intervals: Sequence[LevelInterval],
+        levels: Callable[[float], tuple[Array, float]],
+        known: int | None = None,
     ) -> list[Array]:
-        """Error [-] in the middle of each interval, at the centre of each cell.
+        """The largest of the errors at the probes of each interval; nan where one of them is nan."""
+        wanted = [interval.kind != UNKNOWN for interval in intervals]
+        largest = self._errors_between(intervals, MIDDLE, wanted, *levels(MIDDLE), known)
+        for share in BESIDE:
+            beside = [
+                interval.creased & np.isfinite(error) & (interval.kind != known)
+                for interval, error in zip(intervals, largest, strict=True)
+            ]
+            more = self._errors_between(intervals, share, beside, *levels(share), known)
+            largest = [
+                np.where(mine, np.maximum(error, other), error)
+                for mine, error, other in zip(beside, largest, more, strict=True)
+            ]
+        return largest
+
+    def _errors_between(
+        self,
+        intervals: Sequence[LevelInterval],
+        share: float,
+        wanted: Sequence[NDArray[np.bool_]],
+        etas: Array,
+        angle: float,
+        known: int | None,
+    ) -> list[Array]:
+        """Error [-] at a share of each interval, at the centre of each cell.
 
         Parameters
         ----------
         intervals : sequence of LevelInterval
             Intervals over the same plane.
+        share : float
+            Where in them [-].
+        wanted : sequence of bool arrays (n - 1, m - 1)
+            Cells of each interval that are probed.
         etas : float array (intervals,)
-            Restitution [-] in the middle of each, or on which it lies.
+            Restitution [-] there.
         angle : float
-            Slenderness angle [rad] of all of them.
-        known : int, optional
+            Slenderness angle [rad] there.
+        known : int or None
             Kind of cells in which all blocks between overturn in the same way, without asking the solver.
 
         Returns
         -------
         list of float arrays (n - 1, m - 1)
-            0 where all blocks overturn in the same way, nan where the layers or the block in the middle differ in kind.
+            0 where all blocks overturn in the same way, nan where the layers or the block between differ in kind.
         """
-        wanted = [(interval.kind != UNKNOWN) & (interval.kind != known) for interval in intervals]
+        asked = [cells & (interval.kind != known) for interval, cells in zip(intervals, wanted, strict=True)]
         errors = [np.where(interval.kind == known, 0.0, np.nan) for interval in intervals]
-        cells = np.nonzero(np.any(wanted, axis=0)) if intervals else ()
+        cells = np.nonzero(np.any(asked, axis=0)) if intervals else ()
         if not intervals or not cells[0].size:
             return errors
         x, y = self.mesh.within(cells, CELL_CENTRE)
         found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
         codes = outcome_codes(found.outcome, found.impacts)
         for k, interval in enumerate(intervals):
-            same = wanted[k][cells] & (interval.kind[cells] == codes[:, k])
+            same = asked[k][cells] & (interval.kind[cells] == codes[:, k])
             errors[k][cells[0][same], cells[1][same]] = 0.0
             survive = same & (codes[:, k] == SURVIVES)
             own = cells[0][survive], cells[1][survive]
-            errors[k][own] = interval.errors(own, CELL_CENTRE, found.peak_rotation[survive, k])
+            errors[k][own] = interval.errors(share, own, CELL_CENTRE, found.peak_rotation[survive, k])
         return errors
 
     def _probe(self, places: Sequence[tuple[float, float]], cells: Cells, etas: Array, angle: float) -> Array:

@@ -36,6 +36,8 @@ class LevelInterval:
         Ends of the interval [-] or [rad].
     kind : int array (n - 1, m - 1)
         `GridLayer.kinds` of the cells, `UNKNOWN` where the layers differ in it.
+    creased : bool array (n - 1, m - 1)
+        Whether the mode of the peak changes between the two slices, at a corner of the cell: the peak has a crease.
     """
 
     layers: Sequence[GridLayer]
@@ -44,6 +46,7 @@ class LevelInterval:
     lower: int
     bounds: tuple[float, float]
     kind: NDArray[np.int64]
+    creased: NDArray[np.bool_]
 
     @classmethod
     def of(
@@ -54,18 +57,22 @@ class LevelInterval:
         window = slice(first, first + size)
         kind = np.where(np.all([one == kinds[lower] for one in kinds[window]], axis=0), kinds[lower], UNKNOWN)
         bounds = float(levels[lower]), float(levels[lower + 1])
-        return cls(layers[window], levels[window], power, lower, bounds, kind)
+        change = layers[lower].peak_mode != layers[lower + 1].peak_mode
+        creased = change[:-1, :-1] | change[1:, :-1] | change[:-1, 1:] | change[1:, 1:]
+        return cls(layers[window], levels[window], power, lower, bounds, kind, creased)
 
-    def middle(self) -> float:
-        """The restitution [-] or angle [rad] in the middle of the interval."""
+    def level(self, share: float) -> float:
+        """The restitution [-] or angle [rad] at a share of the interval [-]."""
         low, high = self.bounds
-        return low + 0.5 * (high - low)
+        return low + share * (high - low)
 
-    def errors(self, cells: Cells, place: tuple[float, float], peak: Array) -> Array:
-        """Absolute errors [-] in the middle of the interval, in cells in which all blocks survive.
+    def errors(self, share: float, cells: Cells, place: tuple[float, float], peak: Array) -> Array:
+        """Absolute errors [-] at a share of the interval, in cells in which all blocks survive.
 
         Parameters
         ----------
+        share : float
+            Where in the interval [-].
         cells : tuple of int arrays
             Rows and columns of the cells.
         place : tuple of float
@@ -73,7 +80,7 @@ class LevelInterval:
         peak : float array (cells,)
             Peaks of the solver there [-], nan where a block overturns.
         """
-        x, levels = self.middle() ** self.power, self.levels**self.power
+        x, levels = self.level(share) ** self.power, self.levels**self.power
         weights = [lagrange_weight(levels, 0, levels.size, k, x) for k in range(levels.size)]
         found = [(layer.at(cells, place), layer.stencil[cells] == SQUARED) for layer in self.layers]
         squared = np.all([form for _, form in found], axis=0)

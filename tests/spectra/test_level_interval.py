@@ -6,6 +6,7 @@ import pytest
 from rocking.interpolation.stencils import OVERTURNS, SQUARED, Mesh
 from rocking.model.outcome_code import SURVIVES, overturning_code
 from rocking.model.response import Outcome
+from rocking.spectra.cubes import BESIDE
 from rocking.spectra.layer import CELL_CENTRE, UNKNOWN, GridLayer, largest_in_neighbourhood
 from rocking.spectra.level_interval import LevelInterval
 
@@ -28,16 +29,16 @@ def interval_of(layers, lower, levels=ETAS, power=1):
     return LevelInterval.of(layers, [one.kinds() for one in layers], levels, power, lower)
 
 
-def errors(interval, law):
+def errors(interval, law, share=0.5):
     """Errors against peaks that follow `law` of the restitution or angle."""
-    return interval.errors(CELLS, CELL_CENTRE, np.full(2, law(interval.middle())))
+    return interval.errors(share, CELLS, CELL_CENTRE, np.full(2, law(interval.level(share))))
 
 
 @pytest.mark.parametrize("lower", range(5))
 def test_interpolation_is_exact_for_cubics_in_every_interval(lower):
     law = lambda eta: 0.2 + 0.1 * eta**3 - eta**2  # noqa: E731
     interval = interval_of([layer(law(eta)) for eta in ETAS], lower)
-    assert interval.middle() == pytest.approx(ETAS[lower : lower + 2].mean())
+    assert interval.level(0.5) == pytest.approx(ETAS[lower : lower + 2].mean())
     assert errors(interval, law) == pytest.approx(0.0, abs=1e-14)
 
 
@@ -46,6 +47,26 @@ def test_error_in_the_middle_shows_a_crease():
     layers = [layer(creased(eta)) for eta in ETAS]
     assert errors(interval_of(layers, 3), creased) == pytest.approx(0.0, abs=1e-14)  # from 0.84 on
     assert (errors(interval_of(layers, 2), creased) > 1e-4).all()  # from 0.82 on
+
+
+@pytest.mark.parametrize("at", [0.125, 0.875])
+def test_a_crease_at_an_eighth_shows_beside_the_middle_only(at):
+    crease = 0.82 + at * 0.02
+    creased = lambda eta: 0.2 + max(0.0, eta - crease)  # noqa: E731
+    interval = interval_of([layer(creased(eta)) for eta in ETAS], 1)
+    largest = max(errors(interval, creased, share)[0] for share in np.linspace(0.0, 1.0, 81))
+    assert errors(interval, creased, 0.5) == pytest.approx(0.0, abs=1e-12)
+    beside = max(errors(interval, creased, share)[0] for share in BESIDE)
+    assert 1.0 < largest / beside < 3.0
+
+
+def test_cells_are_creased_where_the_mode_of_the_peak_changes_between_the_slices():
+    layers = [layer(0.3) for _ in ETAS]
+    layers[2].peak_mode[2, 3] = 8
+    assert not interval_of(layers, 3).creased.any()
+    for lower in (1, 2):
+        found = np.argwhere(interval_of(layers, lower).creased)
+        np.testing.assert_array_equal(found, [[1, 2], [1, 3], [2, 2], [2, 3]])
 
 
 @pytest.mark.parametrize("count", [2, 3])
