@@ -94,6 +94,7 @@ def record(
 ) -> None:
     """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
     from rocking.dimensional.curves import block_record_history
+    from rocking.dimensional.record_response import respond_to_record
     from rocking.dimensional.units import si_value
 
     with _picture(picture) as draw, file_errors():
@@ -105,6 +106,9 @@ def record(
             _draw_history(pictures, figure, data)
 
         draw(panels)
+        found = respond_to_record(shape, motion, scale=block.scale, restitution=restitution)
+        for warning in found.warnings:
+            typer.echo(f"warning: {warning}", err=True)
 
 
 @plot.command()

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from typer.testing import CliRunner
 
+from rocking.cli.app import app
 from tests.cli.test_cli import GROUPS, UNITS, refused, run
 
 BLOCK = UNITS[:6]
@@ -38,6 +40,18 @@ def test_a_picture_in_a_file(command, tmp_path):
         colours = picture.convert("RGB").resize((100, 100)).getcolors(10_000)
     assert len(colours) > 20
     assert max(count for count, _ in colours) < 9_500
+
+
+def test_a_picture_of_a_motion_does_not_hide_the_warnings(tmp_path):
+    """The outcome under this record depends on the interpolation between its samples."""
+    block = ["--width", "0.3m", "--height", "1.5m"]
+    path = tmp_path / "picture.png"
+    printed = run("record", NAPA, *block)
+    warnings = [line for line in printed.splitlines() if line.startswith("warning: ")]
+    assert warnings
+    drawn = CliRunner().invoke(app, ["plot", "record", NAPA, *block, "-o", str(path)])
+    assert (drawn.stdout, drawn.stderr.splitlines()) == ("", warnings)
+    assert path.stat().st_size > 1000
 
 
 @pytest.mark.slow

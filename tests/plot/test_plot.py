@@ -112,6 +112,23 @@ def test_spectrum_is_interrupted_where_the_block_overturns(ax):
     assert [text.get_text() for text in ax.legend().get_texts()] == ["eta", "overturns"]
 
 
+def test_a_lone_survivor_of_a_spectrum_is_a_dot(ax):
+    data = BLOCK.spectrum("sine", peak_acceleration=3.0, period=np.linspace(0.2, 0.5, 7))
+    for lost in (1, 3):
+        data["outcome"].values[lost], data["rotation"].values[lost] = 3, np.nan
+    plot.spectrum(data, ax)
+    (line, dot) = ax.lines
+    assert dot.get_marker() == "."
+    np.testing.assert_array_equal(dot.get_xdata(), data.period.values[[0, 2]])
+    assert dot.get_color() == line.get_color()
+
+
+def test_a_response_is_refused_with_what_to_type(ax):
+    response = rocking.peak_response("sine", slenderness=0.5, frequency_ratio=[3.0, 4.0], restitution=0.9)
+    with pytest.raises(rocking.InvalidArgumentError, match="to_xarray"):
+        plot.spectrum(response, ax)
+
+
 def test_boundary_in_groups_and_in_si_units(ax):
     window = 2 * np.pi / (np.array([4.0, 2.0]) * BLOCK.frequency_parameter)
     curves = block_boundary(BLOCK, "sine", restitution=0.85, period=tuple(window))

@@ -34,17 +34,20 @@ def spectrum(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     InvalidArgumentError
         If `data` is no spectrum, or has more than one dimension.
     """
+    if not isinstance(data, xr.Dataset):
+        raise InvalidArgumentError("data", data, "a data set; of a response: to_xarray()")
     if "outcome" not in data or data["outcome"].ndim != 1:
         raise InvalidArgumentError("data", dict(data.sizes), "outcome and peak rotation along one dimension")
     ax = axes_of(ax)
     x = data[str(data["outcome"].dims[0])]
     order = np.argsort(x.values)
     at = x.values[order]
-    if "rotation" in data:
-        ax.plot(at, np.degrees(data["rotation"].values[order]), **({"color": BLUE} | style))
+    in_degrees = "rotation" in data
+    peak = np.degrees(data["rotation"].values) if in_degrees else data["peak_rotation"].values
+    _curve(ax, at, peak[order], {"color": BLUE} | style)
+    if in_degrees:
         ax.set_ylabel("peak rotation [deg]")
     else:
-        ax.plot(at, data["peak_rotation"].values[order], **({"color": BLUE} | style))
         ax.axhline(1.0, color=GREY, linewidth=0.5)
         ax.set_ylabel(r"peak rotation $\theta_{\max}/\alpha$ [-]")
     shade_overturned(ax, at, data["outcome"].values[order] >= Outcome.OVERTURNED_DIRECTLY)
@@ -54,6 +57,15 @@ def spectrum(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
         plain_numbers(ax, "x")
     ax.set_xlabel(label_of(x))
     return ax
+
+
+def _curve(ax: Axes, x: np.ndarray[Any, Any], y: np.ndarray[Any, Any], style: dict[str, Any]) -> None:
+    """A line, interrupted where `y` is nan; a dot at a point between two interruptions, where there is no line."""
+    (line,) = ax.plot(x, y, **style)
+    known = np.pad(np.isfinite(y), 1)
+    alone = known[1:-1] & ~known[:-2] & ~known[2:]
+    if alone.any():
+        ax.plot(x[alone], y[alone], color=line.get_color(), marker=".", linestyle="none")
 
 
 def shade_overturned(ax: Axes, x: np.ndarray[Any, Any], overturned: np.ndarray[Any, Any]) -> None:
