@@ -1,7 +1,5 @@
 """Settings of all tests: the same random examples in every run, one run of the workflow."""
 
-import os
-
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -28,8 +26,3 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 pytest_plugins = ["tests.wheel_fixtures", "tests.workflow_fixtures"]
-
-
-def pytest_xdist_auto_num_workers() -> int:
-    """One process more than processors: many tests wait, for a browser, a client that does not read, a time limit."""
-    return len(os.sched_getaffinity(0)) + 1

@@ -70,7 +70,8 @@ def _socket_of(port, client_port):
     """What the descriptor of a connection is called in the process that has accepted it on a port."""
     rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
     established = (row for row in rows if row[3] == "01")  # former connections of the two ports are listed as well
-    (inode,) = (row[9] for row in established if [int(end[-4:], 16) for end in row[1:3]] == [port, client_port])
+    # a row may be listed twice while the table changes
+    (inode,) = {row[9] for row in established if [int(end[-4:], 16) for end in row[1:3]] == [port, client_port]}
     return f"socket:[{inode}]"
 
 
