@@ -42,6 +42,24 @@ class InvalidArgumentError(ValueError):
         return type(self), (self.parameter, self.value, self.allowed)
 
 
+class SeveralArgumentsError(InvalidArgumentError):
+    """Several invalid arguments; parameter, value and allowed are those of the first.
+
+    Parameters
+    ----------
+    errors : sequence of InvalidArgumentError
+        One for each, at least one.
+    """
+
+    def __init__(self, errors: Sequence[InvalidArgumentError]) -> None:
+        super().__init__(errors[0].parameter, errors[0].value, errors[0].allowed)
+        self.errors = list(errors)
+        self.args = ("; ".join(map(str, errors)),)
+
+    def __reduce__(self) -> tuple[type[SeveralArgumentsError], tuple[list[InvalidArgumentError]]]:  # type: ignore[override]
+        return type(self), (self.errors,)
+
+
 class DatasetError(RuntimeError):
     """A data set file is missing, damaged or of another schema; the message names the file and the remedy."""
 

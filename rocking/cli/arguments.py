@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from rocking.cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
 from rocking.model.block import Block
 from rocking.model.checks import check_window
 from rocking.model.parameters import FREQUENCY_RATIO
@@ -33,6 +33,9 @@ _SI_UNITS = {
     "period_max": "s",
 }
 """Options with units."""
+
+MAX_ERRORS = 20
+"""Lines of a file that an error names at most."""
 
 _SIZES = ("width", "height", "half_width", "half_height")
 
@@ -66,13 +69,23 @@ def option_errors() -> Iterator[None]:
         yield
     except InvalidArgumentError as error:
         option = "--" + error.parameter.split("[")[0].split(",")[0].replace("_", "-")
-        place = error.parameter.partition(",")[2]
-        text = f"{error.value!r} is not allowed; allowed: {error.allowed}"
-        if error.value is None:
-            text = f"missing; {error.allowed}"
-        if error.allowed.startswith("missing unit"):
-            text = f"{error.value!r}: {error.allowed}"
-        raise typer.BadParameter(f"{place.strip()}: {text}" if place else text, param_hint=option) from None
+        errors = error.errors if isinstance(error, SeveralArgumentsError) else [error]
+        texts = [f"{len(errors)} values are not allowed"] if len(errors) > 1 else []
+        texts += [_error_text(one) for one in errors[:MAX_ERRORS]]
+        if len(errors) > MAX_ERRORS:
+            texts.append(f"and {len(errors) - MAX_ERRORS} more")
+        raise typer.BadParameter("\n".join(texts), param_hint=option) from None
+
+
+def _error_text(error: InvalidArgumentError) -> str:
+    """One line about an argument; of a file, where in it."""
+    place = error.parameter.partition(",")[2].strip()
+    text = f"{error.value!r} is not allowed; allowed: {error.allowed}"
+    if error.value is None:
+        text = f"missing; {error.allowed}"
+    if error.allowed.startswith("missing unit"):
+        text = f"{error.value!r}: {error.allowed}"
+    return f"{place}: {text}" if place else text
 
 
 def si_value(parameter: str, text: str, unit: str) -> float:

@@ -71,9 +71,9 @@ def fragility(configuration: Configuration, output: OutputOptions, table: TableO
         return
     units = dict.fromkeys(("intensity", "median_intensity"), unit) if unit != "1" else {}
     printing.print_text({**about, "records": len(about["records"])})
-    printing.print_table(finite["levels"], units)
-    typer.echo()
     printing.print_table(_with_intervals(finite["curves"]), units)
+    typer.echo()
+    printing.print_table(finite["levels"], units)
     if "sensitivity" in finite:
         typer.echo()
         printing.print_table(_of_sensitivity(finite["sensitivity"], len(about["records"])), units)

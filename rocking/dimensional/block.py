@@ -7,7 +7,13 @@ from typing import Literal, overload
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from rocking.dimensional.curves import DEFAULT_SAMPLES, block_history, block_record_history, block_spectrum
+from rocking.dimensional.curves import (
+    DEFAULT_SAMPLES,
+    block_boundary,
+    block_history,
+    block_record_history,
+    block_spectrum,
+)
 from rocking.dimensional.problem import BlockProblem
 from rocking.dimensional.record_response import BlockRecordResponse, respond_to_record
 from rocking.dimensional.response import BlockResponse, respond
@@ -184,6 +190,31 @@ class Block(geometry.Block):
         return block_spectrum(
             self, excitation, peak_acceleration=peak_acceleration, period=period, restitution=restitution
         )
+
+    def boundary(
+        self,
+        pulse: str | AbstractPulse,
+        *,
+        restitution: Restitution = "housner",
+        period: tuple[float, float] | None = None,
+    ) -> xr.Dataset:
+        """Peak accelerations and periods at which the outcome changes, `rocking.dimensional.curves.block_boundary`.
+
+        Parameters
+        ----------
+        pulse : str or AbstractPulse
+            The pulse.
+        restitution : float or "housner"
+            As for `response`.
+        period : (float, float), optional
+            Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range.
+        """
+        return block_boundary(self, pulse, restitution=restitution, period=period)
 
     def _motion(
         self,

@@ -257,8 +257,10 @@ def block_boundary(
     """
     window = (0.2, 15.0)
     if period is not None:
-        low = float(in_range("period", period[0], 0.0, math.inf, closed="neither", unit="s"))
-        high = float(in_range("period[1]", period[1], low, math.inf, closed="neither", unit="s"))
+        ends = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
+        if ends.shape != (2,) or not ends[0] < ends[1]:
+            raise InvalidArgumentError("period", period, "the two ends of a window, ascending [s]")
+        low, high = ends.tolist()
         window = frequency_ratio_of(block, high), frequency_ratio_of(block, low)
     eta = restitution_of(block, restitution)
     found = overturning_boundary(pulse, restitution=eta, alpha=block.equation_alpha, frequency_ratio=window, stop=stop)

@@ -53,8 +53,10 @@ class BlockProblem:
 
     def __post_init__(self) -> None:
         as_pulse(self.pulse)
-        in_range("peak_acceleration", self.peak_acceleration, 0.0, math.inf, closed="neither", unit="m/s2")
-        in_range("period", self.period, 0.0, math.inf, closed="neither", unit="s")
+        for name, unit in (("peak_acceleration", "m/s2"), ("period", "s")):
+            if in_range(name, getattr(self, name), 0.0, math.inf, closed="neither", unit=unit).ndim:
+                several = "; `Block.spectrum` takes several periods" if name == "period" else ""
+                raise InvalidArgumentError(name, getattr(self, name), f"one number [{unit}]{several}")
         restitution_of(self.block, self.restitution)
 
     @property
@@ -81,13 +83,15 @@ def restitution_of(block: Block, restitution: float | str) -> float:
     Raises
     ------
     InvalidArgumentError
-        For any other text, and for numbers outside [0, 1].
+        For any other text, several numbers, and numbers outside [0, 1].
     """
     if restitution == "housner":
         return block.inelastic_restitution
     if isinstance(restitution, str):
         raise InvalidArgumentError("restitution", restitution, f"housner, or a number in {RESTITUTION.interval}")
-    return float(check(RESTITUTION, restitution))
+    if check(RESTITUTION, restitution).ndim:
+        raise InvalidArgumentError("restitution", restitution, f"housner, or one number in {RESTITUTION.interval}")
+    return float(restitution)
 
 
 def frequency_ratio_of(block: Block, period: float) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import BlockProblem
 from rocking.dimensional.units import si_factor
-from rocking.errors import InvalidArgumentError
+from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
 from rocking.model.block import Block
 from rocking.model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.model.outcome import Outcome
@@ -73,33 +73,48 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     ------
     InvalidArgumentError
         If a column is missing, unknown or without a unit, or a value is not allowed; the line is named.
+    SeveralArgumentsError
+        If the values of several lines are not allowed, with the first of each line.
     """
     text = text.removeprefix("\ufeff")
     header = text.partition("\n")[0]
     rows = csv.reader(io.StringIO(text), delimiter=";" if ";" in header and "," not in header else ",")
-    names, factors = _read_header(next(rows, []))
+    names, units = _read_header(next(rows, []))
     labels: list[str] = []
     problems: list[BlockProblem] = []
+    errors: list[InvalidArgumentError] = []
     for row in rows:
         if not row:
             continue
         line = rows.line_num
         if len(row) != len(names):
-            raise InvalidArgumentError(f"blocks, line {line}", f"{len(row)} values", f"{len(names)}, as in the header")
+            wrong = f"{len(row)} values"
+            errors.append(InvalidArgumentError(f"blocks, line {line}", wrong, f"{len(names)}, as in the header"))
+            continue
         given = dict(zip(names, (entry.strip() for entry in row), strict=True))
         try:
-            problems.append(_problem(given, factors, pulse, restitution))
+            problems.append(_problem(given, units, pulse, restitution))
         except InvalidArgumentError as error:
-            raise InvalidArgumentError(f"blocks, line {line}, {error.parameter}", error.value, error.allowed) from None
+            errors.append(InvalidArgumentError(f"blocks, line {line}, {error.parameter}", error.value, error.allowed))
         if "name" in given:
             labels.append(given["name"])
+    if errors:
+        raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
     return BlockTable(problems, labels)
 
 
-def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, float]]:
-    """Names of the columns, and factors to SI units."""
+@dataclass(frozen=True)
+class _Unit:
+    """The unit of a column: as written in the header, and its value in SI units."""
+
+    text: str
+    factor: float
+
+
+def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, _Unit]]:
+    """Names of the columns, and their units."""
     names: list[str] = []
-    factors: dict[str, float] = {}
+    units: dict[str, _Unit] = {}
     for text in header:
         found = _HEADER.fullmatch(text)
         name, unit = (found[1], found[2] or found[3]) if found else (text, None)
@@ -112,26 +127,31 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, float]]:
                     "blocks, header", text, f"a column with its unit (missing unit: write {name} [{examples[0]}])"
                 )
             try:
-                factors[name] = si_factor(name, unit, UNITS[name])
+                units[name] = _Unit(unit, si_factor(name, unit, UNITS[name]))
             except InvalidArgumentError:
                 raise InvalidArgumentError("blocks, header", text, f"a unit such as {', '.join(examples)}") from None
         names.append(name)
     for pair in (("width", "half_width"), ("height", "half_height"), ("peak_acceleration",), ("period",)):
         if sum(name in names for name in pair) != 1:
             raise InvalidArgumentError("blocks, header", ",".join(header), f"one column {' or '.join(pair)}")
-    return names, factors
+    return names, units
 
 
 def _problem(
-    given: Mapping[str, str], factors: Mapping[str, float], pulse: str, restitution: float | str
+    given: Mapping[str, str], units: Mapping[str, _Unit], pulse: str, restitution: float | str
 ) -> BlockProblem:
-    values = {name: _number(name, given[name]) * factor for name, factor in factors.items()}
+    values = {name: _positive(name, given[name], unit) for name, unit in units.items()}
     b = values["half_width"] if "half_width" in values else 0.5 * values["width"]
     h = values["half_height"] if "half_height" in values else 0.5 * values["height"]
     eta = given.get("restitution") or restitution
     if isinstance(eta, str) and eta != "housner":
         eta = _number("restitution", eta)
     return BlockProblem(Block(b, h), pulse, values["peak_acceleration"], values["period"], eta)  # type: ignore[arg-type]
+
+
+def _positive(name: str, text: str, unit: _Unit) -> float:
+    """A value in SI units; an error repeats it in the unit of its column."""
+    return float(in_range(name, _number(name, text), 0.0, math.inf, closed="neither", unit=unit.text)) * unit.factor
 
 
 def _number(name: str, text: str) -> float:

@@ -66,9 +66,7 @@ class AbstractPulse(ABC):
     def __post_init__(self) -> None:
         if not (self.name and isinstance(self.name, str)):
             raise InvalidArgumentError("name", self.name, "a string that is not empty")
-        start = checked_number("start", self.start, unit="rad")
-        end = checked_number("end", self.end, unit="rad")
-        in_range("end", end, start, MAX_MAGNITUDE, closed="right", unit="rad")
+        start, end = _checked_window(self.start, self.end)
         found = self._stationary_phases(start, end)
         given = _checked_numbers("stationary", self.stationary, unit="rad")
         if given and not (len(given) == len(found) and np.allclose(given, found, rtol=0.0, atol=1e-10 * (end - start))):
@@ -128,16 +126,15 @@ class SinusoidalPulse(AbstractPulse):
     @classmethod
     def of_unit_peak(cls, name: str, start: float, end: float, terms: Terms) -> SinusoidalPulse:
         """The sum of `terms` over its largest absolute value on the window; arguments and errors as for the class."""
-        peak = peak_amplitude(
-            partial(sum_of_sinusoids, terms), start, end, stationary_phases_of_sinusoids(terms, start, end)
-        )
-        return cls(name, start, end, (), tuple((c / peak, w, d) for c, w, d in terms))
+        checked = _checked_terms(terms)
+        turns = stationary_phases_of_sinusoids(checked, *_checked_window(start, end))
+        peak = peak_amplitude(partial(sum_of_sinusoids, checked), start, end, turns)
+        if not peak > 0.0:
+            raise InvalidArgumentError("terms", terms, "a sum that is not zero on the whole window")
+        return cls(name, start, end, (), tuple((c / peak, w, d) for c, w, d in checked))
 
     def __post_init__(self) -> None:
-        terms = in_range("terms", self.terms, -MAX_MAGNITUDE, MAX_MAGNITUDE)
-        if terms.ndim != 2 or not 1 <= len(terms) <= MAX_SINUSOIDS or terms.shape[1] != 3 or (terms[:, 1] < 0.0).any():
-            raise InvalidArgumentError("terms", self.terms, f"1 to {MAX_SINUSOIDS} triples (c, w, d) with w >= 0")
-        object.__setattr__(self, "terms", tuple(map(tuple, terms.tolist())))
+        object.__setattr__(self, "terms", _checked_terms(self.terms))
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:
@@ -209,6 +206,19 @@ def checked_number(parameter: str, value: ArrayLike, *, low: float = -MAX_MAGNIT
     if array.ndim:
         raise InvalidArgumentError(parameter, value, "one number")
     return float(array)
+
+
+def _checked_window(start: ArrayLike, end: ArrayLike) -> tuple[float, float]:
+    first, last = checked_number("start", start, unit="rad"), checked_number("end", end, unit="rad")
+    in_range("end", last, first, MAX_MAGNITUDE, closed="right", unit="rad")
+    return first, last
+
+
+def _checked_terms(terms: Terms) -> Terms:
+    array = in_range("terms", terms, -MAX_MAGNITUDE, MAX_MAGNITUDE)
+    if array.ndim != 2 or not 1 <= len(array) <= MAX_SINUSOIDS or array.shape[1] != 3 or (array[:, 1] < 0.0).any():
+        raise InvalidArgumentError("terms", terms, f"1 to {MAX_SINUSOIDS} triples (c, w, d) with w >= 0")
+    return tuple((c, w, d) for c, w, d in array.tolist())
 
 
 def _checked_numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple[float, ...]:

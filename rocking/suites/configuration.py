@@ -196,10 +196,10 @@ def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
         raise InvalidArgumentError(section, ", ".join(wrong), "exactly the keys " + ", ".join(expected))
 
 
-def _number(parameter: str, value: Any, low: float, high: float, closed: str = "neither") -> float:
-    number = in_range(parameter, value, low, high, closed=closed)
+def _number(parameter: str, value: Any, low: float, high: float, closed: str = "neither", unit: str = "-") -> float:
+    number = in_range(parameter, value, low, high, closed=closed, unit=unit)
     if number.ndim:
-        raise InvalidArgumentError(parameter, value, "one number")
+        raise InvalidArgumentError(parameter, value, f"one number [{unit}]")
     return float(number)
 
 
@@ -226,7 +226,7 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         folder / given["folder"],
         given["pattern"],
         None if given["unit"] is None else one_of("records.unit", given["unit"], UNITS),
-        None if step is None else _number("records.time_step", step, 0.0, math.inf),
+        None if step is None else _number("records.time_step", step, 0.0, math.inf, unit="s"),
         None if given["component"] is None else str(given["component"]),
         order,
     )
@@ -234,13 +234,26 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
 
 def _blocks(given: Any) -> tuple[Block, ...]:
     if not isinstance(given, list) or not given:
-        raise InvalidArgumentError("blocks", given, "a list of half_width and half_height [m]")
-    blocks = []
-    for place, item in enumerate(given):
-        _keys(f"blocks[{place}]", item, ("half_width", "half_height"))
-        sizes = {name: _number(f"blocks[{place}].{name}", value, 0.0, math.inf) for name, value in item.items()}
-        blocks.append(Block(**sizes))
-    return tuple(blocks)
+        raise InvalidArgumentError("blocks", given, "a list of half_width and half_height [m], or width and height")
+    return tuple(_block(f"blocks[{place}]", item) for place, item in enumerate(given))
+
+
+def _block(section: str, given: Any) -> Block:
+    """A block of its half sizes or whole sizes."""
+    whole = [name for name in ("width", "height") if isinstance(given, Mapping) and name in given]
+    keys = [name if name in whole else f"half_{name}" for name in ("width", "height")]
+    _keys(section, given, keys)
+    sizes = {key: _length(f"{section}.{key}", given[key]) for key in keys}
+    return Block(*(0.5 * size if key in whole else size for key, size in sizes.items()))
+
+
+def _length(parameter: str, given: Any) -> float:
+    """A number in metres, or a text with a unit."""
+    if isinstance(given, str):
+        from rocking.dimensional.units import si_value  # noqa: PLC0415  # the unit library, only for texts
+
+        given = si_value(parameter, given, "m")
+    return _number(parameter, given, 0.0, math.inf, unit="m")
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:

@@ -326,6 +326,28 @@ def test_all_wrong_numbers_of_a_json_body_are_named_with_units(client):
     ]
 
 
+def test_every_line_of_a_table_with_an_error_is_named(client):
+    header, row = TABLE.splitlines()[:2]
+    body = "\n".join([header, row, row.replace("80", "tall"), row.replace("0.2,", "-20,")])
+    problem = assert_problem(
+        client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": "text/csv"}), 422
+    )
+    assert [(error["name"], error["value"]) for error in problem["errors"]] == [
+        ("blocks, line 3, height", "tall"),
+        ("blocks, line 4, width", -20.0),
+    ]
+
+
+def test_types_of_a_body_and_of_the_response_are_those_that_are_offered(client):
+    url = "/v1/blocks/response?pulse=sine"
+    problem = assert_problem(client.post(url, content="<x/>", headers={"content-type": "application/xml"}), 415)
+    assert problem["allowed"] == "one of application/json, text/csv"
+    headers = {"content-type": "text/csv", "accept": "application/x-netcdf"}
+    assert client.post(url, content=TABLE, headers=headers).headers["content-type"].startswith("text/csv")
+    problem = assert_problem(client.post(url + "&format=nc", content=TABLE, headers=headers), 422, "format")
+    assert problem["allowed"] == "one of 'json' or 'csv'"
+
+
 @pytest.mark.parametrize(
     ("body", "kind", "name"),
     [

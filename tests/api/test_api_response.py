@@ -124,9 +124,10 @@ def test_several_missing_or_wrong_parameters_are_all_named(client):
     assert [one["name"] for one in problem["errors"]] == [
         "slenderness", "frequency_ratio", "colour", "pulse", "restitution",
     ]  # fmt: skip
-    first, missing, _, _, above = problem["errors"]
+    first, missing, unknown, _, above = problem["errors"]
     assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
     assert missing == {"name": "frequency_ratio", "allowed": "required"}
+    assert unknown["allowed"].startswith("one of pulse, alpha_deg, method, tolerance, slenderness, frequency_ratio")
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
     assert (problem["parameter"], problem["value"], problem["allowed"]) == ("slenderness", "x", "a number")
     assert problem["detail"].startswith("5 parameters are missing or wrong: `slenderness` = 'x' is not allowed")

@@ -55,6 +55,12 @@ def test_other_requests_are_explained(client, params, name):
     assert_problem(client.get(URL, params=params), 422, name)
 
 
+def test_the_format_is_one_that_is_offered(client):
+    assert client.get(URL, params=RANGES, headers={"accept": "application/json"}).content.startswith(b"CDF")
+    assert client.get(URL, params=RANGES, headers={"accept": "application/json, text/csv"}).text.startswith("alpha,")
+    assert client.get(URL, params={"format": "json"}).json()["allowed"] == "one of 'csv' or 'nc'"
+
+
 def test_only_cubes_have_parts(client):
     assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")
     assert_problem(client.get("/v1/datasets/spectra/none/subset"), 404, "name")

@@ -215,7 +215,7 @@ def test_table_of_blocks(tmp_path):
         (TABLE.replace("name", "colour"), "name, restitution"),
         (TABLE.replace("period [ms]", "half_width [m]"), "one column"),
         (TABLE.replace("800", "x"), "line 3, peak_acceleration: 'x'"),
-        (TABLE.replace("800", "-1"), "line 3, peak_acceleration: -0.01"),
+        (TABLE.replace("800", "-1"), "line 3, peak_acceleration: -1.0 is not allowed; allowed: (0, inf) [gal]"),
         (TABLE.replace("0.9", "1.9"), "line 3, restitution: 1.9"),
         (TABLE.replace("400,500,", "400,500"), "line 2: '5 values'"),
         ("", "one column"),
@@ -227,6 +227,18 @@ def test_errors_in_a_table_name_the_line(table, words):
     text = " ".join(result.output.replace("│", " ").split())
     assert "--blocks" in text
     assert words in text
+
+
+def test_every_line_of_a_table_with_an_error_is_named():
+    rows = [TABLE.splitlines()[0], *[f"b{k},0,1,800,400,0.9" for k in range(24)], "short"]
+    result = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input="\n".join(rows))
+    assert result.exit_code == 2
+    text = " ".join(result.output.replace("│", " ").split())
+    assert "25 values are not allowed" in text
+    for line in range(2, 22):
+        assert f"line {line}, width: 0.0 is not allowed" in text
+    assert "line 22" not in text
+    assert "and 5 more" in text
 
 
 def test_table_and_options_exclude_each_other(tmp_path):

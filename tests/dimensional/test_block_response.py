@@ -103,6 +103,9 @@ def test_tables_hold_every_field():
         ({"period": -1.0}, "period"),
         ({"restitution": 1.1}, "restitution"),
         ({"restitution": "elastic"}, "restitution"),
+        ({"peak_acceleration": [4.0]}, "peak_acceleration"),
+        ({"period": [0.5, 0.6]}, "period"),
+        ({"restitution": [0.8, 0.9]}, "restitution"),
     ],
 )
 def test_errors_name_the_argument(changes, name):
@@ -178,6 +181,21 @@ def test_spectrum_is_the_response_at_each_period():
     assert BLOCK.spectrum("sine", peak_acceleration=4.0, period=[]).sizes["period"] == 0
     with pytest.raises(InvalidArgumentError, match=r"^`period` = "):
         BLOCK.spectrum("sine", peak_acceleration=4.0, period=[[0.5]])
+
+
+def test_outcome_changes_across_the_boundary():
+    found = BLOCK.boundary("sine", restitution=0.85, period=(0.4, 0.8))
+    assert (float(found["period"].min()), float(found["period"].max())) == pytest.approx((0.4, 0.8), rel=1e-12)
+    lowest = int(found["peak_acceleration"].values.argmin())
+    acceleration, period = (float(found[name][lowest]) for name in ("peak_acceleration", "period"))
+    below, above = (
+        BLOCK.response("sine", peak_acceleration=factor * acceleration, period=period, restitution=0.85).overturned
+        for factor in (1.0 - 1e-9, 1.0 + 1e-9)
+    )
+    assert (below, above) == (False, True)
+    for wrong in (0.5, (0.5,), (0.5, 0.4), (0.0, 0.4)):
+        with pytest.raises(InvalidArgumentError, match=r"^`period` = "):
+            BLOCK.boundary("sine", period=wrong)
 
 
 def test_periods_and_frequency_ratios():

@@ -30,6 +30,23 @@ def pulse(monkeypatch):
     return made
 
 
+@pytest.mark.parametrize(
+    ("start", "end", "terms", "parameter"),
+    [
+        (0.0, 7.0, ((1.0, 2.0), (3.0, 4.0)), "terms"),
+        (0.0, 7.0, ((1.0, -2.0, 0.0),), "terms"),
+        (0.0, 7.0, ((0.0, 2.0, 0.0),), "terms"),
+        (0.0, 7.0, (), "terms"),
+        (7.0, 0.0, ((1.0, 2.0, 0.0),), "end"),
+        ("now", 7.0, ((1.0, 2.0, 0.0),), "start"),
+    ],
+)
+def test_sums_without_a_peak_are_refused(start, end, terms, parameter):
+    with pytest.raises(InvalidArgumentError) as caught:
+        SinusoidalPulse.of_unit_peak("burst", start, end, terms)
+    assert caught.value.parameter == parameter
+
+
 def test_response_is_that_of_direct_integration(pulse):
     found = rocking.peak_response("three_sines", **GROUPS)
     amplitude = 1.0 / GROUPS["slenderness"]

@@ -175,7 +175,7 @@ def test_fragility_of_one_block(ax):
     observed = ax.containers[0].lines[0]
     np.testing.assert_array_equal(observed.get_ydata(), data.fraction.isel(block=0))
     assert ax.get_ylabel() == "probability of overturning [-]"
-    with pytest.raises(InvalidArgumentError, match="of one block"):
+    with pytest.raises(InvalidArgumentError, match=r"of one block and one limit state: data\.isel\(block=0\)"):
         plot.fragility(data, ax)
 
 

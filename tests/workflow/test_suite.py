@@ -148,6 +148,18 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run
     assert [*problems(copy)] == []
 
 
+def test_sizes_of_blocks_are_half_or_whole_in_metres_or_with_units() -> None:
+    configuration = yaml.safe_load(CONFIGURATION.read_text())["suite"]
+    same = [
+        {"half_width": 0.25, "half_height": 1.0},
+        {"width": "50cm", "height": 2.0},
+        {"width": 0.5, "half_height": "1 m"},
+    ]
+    found = suite_configuration(configuration | {"blocks": same}, CONFIGURATION.parent).blocks
+    assert len(found) == 3
+    assert len(set(found)) == 1
+
+
 @pytest.mark.parametrize(
     ("place", "value", "message"),
     [
@@ -159,7 +171,12 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run
         ("records/baseline_order", 1.5, "suite.records.baseline_order = 1.5: allowed: null, or an integer"),
         ("blocks", [], "suite.blocks = []: allowed: a list of half_width and half_height"),
         ("blocks", [{"half_width": 0.2}], "suite.blocks[0] = 'no half_height'"),
-        ("blocks", [{"half_width": 0.2, "half_height": -1.0}], "suite.blocks[0].half_height = -1.0"),
+        (
+            "blocks",
+            [{"half_width": 0.2, "half_height": -1.0}],
+            "suite.blocks[0].half_height = -1.0: allowed: (0, inf) [m]",
+        ),
+        ("blocks", [{"width": "20", "height": 1.0}], "suite.blocks[0].width = '20': allowed: missing unit: write 20m"),
         ("restitution", "plastic", "suite.restitution = 'plastic'"),
         ("measure", "sa", "suite.measure = 'sa': allowed: one of pga, pgv"),
         ("intensity", [3.0, 2.0], "suite.intensity = [3.0, 2.0]: allowed: 1 to 10000 ascending values"),

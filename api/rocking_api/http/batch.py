@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,19 +52,20 @@ class Batch:
         return sum(column.size * abs(column.strides[0]) for column in self.groups.values() if any(column.strides))
 
 
-def body_form(request: Request) -> Form:
+def body_form(request: Request, accepted: Sequence[Form] = ("json", "csv", "nc")) -> Form:
     """Format of the body by its Content-Type; JSON without one.
 
     Raises
     ------
     UnsupportedBodyError
-        For any other type.
+        For a type that is not accepted.
     """
     declared = request.headers.get("content-type", MEDIA_TYPES["json"]).split(";")[0].strip().lower()
-    for form, media_type in MEDIA_TYPES.items():
-        if declared in (media_type, "application/netcdf" if form == "nc" else media_type):
+    for form in accepted:
+        if declared in (MEDIA_TYPES[form], "application/netcdf" if form == "nc" else MEDIA_TYPES[form]):
             return form
-    raise UnsupportedBodyError("Content-Type", declared, "one of " + ", ".join(MEDIA_TYPES.values()))
+    types = ", ".join(MEDIA_TYPES[form] for form in accepted)
+    raise UnsupportedBodyError("Content-Type", declared, f"one of {types}")
 
 
 async def limited_body(

@@ -6,7 +6,7 @@ netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and requ
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -46,15 +46,24 @@ ROWS = 5_000
 _SOURCES = ["cube", "solver"]
 
 
-def negotiated_form(request: Request, requested: Form | None, default: Form = "json") -> Form:
-    """Format of the response: as requested, else the first known media type of the Accept header, else the default."""
+def negotiated_form(
+    request: Request,
+    requested: Form | None,
+    offered: Sequence[Form] = ("json", "csv", "nc"),
+    default: Form | None = None,
+) -> Form:
+    """Format of the response.
+
+    As requested, else the first media type of the Accept header that is offered, else the default; without one the
+    first that is offered.
+    """
     if requested is not None:
         return requested
     for part in request.headers.get("accept", "").split(","):
-        for form, media_type in MEDIA_TYPES.items():
-            if part.split(";")[0].strip() == media_type:
+        for form in offered:
+            if part.split(";")[0].strip() == MEDIA_TYPES[form]:
                 return form
-    return default
+    return default or offered[0]
 
 
 def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) -> Response:

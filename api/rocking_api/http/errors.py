@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from http import HTTPStatus
@@ -20,10 +20,10 @@ from pydantic import BaseModel, Field, ValidationError
 from starlette.exceptions import HTTPException
 
 from rocking.datasets.catalogue import UnknownDatasetError
-from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.errors import DatasetError, InvalidArgumentError, SeveralArgumentsError
 from rocking_api.execution.executor import BusyError, TimeLimitError
 from rocking_api.execution.kernels import NotReadyError
-from rocking_api.models.params import Params, SeveralArgumentsError
+from rocking_api.models.params import Params
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -198,7 +198,8 @@ def _refusals(error: Exception) -> list[_Refusal]:
     elif isinstance(error, RequestValidationError):
         found = [_of_validation(one) for one in error.errors()]
     elif isinstance(error, ValidationError):
-        found = [_of_validation(one) for one in error.errors(include_url=False)]
+        names = _names().get(error.title, [])
+        found = [_of_validation(one, names) for one in error.errors(include_url=False)]
     else:
         found = []
     once: dict[str, _Refusal] = {}
@@ -207,7 +208,8 @@ def _refusals(error: Exception) -> list[_Refusal]:
     return [*once.values()]
 
 
-def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any]) -> _Refusal:
+def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any], names: Iterable[str] = ()) -> _Refusal:
+    """An error of pydantic; `names` are the parameters of the request."""
     kind, context = str(error["type"]), error.get("ctx", {})
     place = [part for part in error["loc"] if part not in ("query", "body", "path")]
     where = [str(part) for part in place]
@@ -217,7 +219,8 @@ def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any]) -> _Refus
     if kind == "missing":
         return _Refusal(f"`{name}` is missing", name, None, "required")
     if kind == "extra_forbidden":
-        return _Refusal(f"there is no parameter `{name}`", name, error["input"], "see /docs")
+        known = "one of " + ", ".join(names) if names and len(place) == 1 else "see /docs"
+        return _Refusal(f"there is no parameter `{name}`; allowed: {known}", name, error["input"], known)
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
     elif kind.startswith("float"):
@@ -240,6 +243,12 @@ def _units() -> dict[str, str]:
             if unit and unit[0] != " [-]":
                 found[name] = unit[0]
     return found
+
+
+@cache
+def _names() -> dict[str, list[str]]:
+    """The names of the parameters of each model."""
+    return {kind.__name__: list(kind.model_fields) for kind in _models(Params)}
 
 
 def _models(kind: type[Params]) -> Iterator[type[Params]]:

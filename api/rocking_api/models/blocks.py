@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Format, Method, Params, PulseName, Tolerance, check_value
+from rocking_api.models.params import Method, Params, PulseName, TableFormat, Tolerance, check_value
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, PointResponse
 
 RANGES = {
@@ -82,7 +82,7 @@ class BlocksParams(Params):
     restitution: HousnerOrNumber = Field(
         "housner", description="eta [-] of the blocks that state none, or housner: (2.4), 0 where that is negative"
     )
-    format: Format = None
+    format: TableFormat = None
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_names
 from rocking.model import parameters
 from rocking.model.checks import check
@@ -78,23 +78,14 @@ Format = Annotated[
     Literal["json", "csv", "nc"] | None,
     Field(description="format of the response; absent: by the Accept header, else JSON (nc: netCDF-3)"),
 ]
-
-
-class SeveralArgumentsError(InvalidArgumentError):
-    """Several invalid parameters of one request; parameter, value and allowed are those of the first.
-
-    Parameters
-    ----------
-    errors : sequence of InvalidArgumentError
-        One for each, at least one.
-    """
-
-    def __init__(self, errors: list[InvalidArgumentError]) -> None:
-        super().__init__(errors[0].parameter, errors[0].value, errors[0].allowed)
-        self.errors = errors
-
-    def __reduce__(self) -> Any:
-        return type(self), (self.errors,)
+TableFormat = Annotated[
+    Literal["json", "csv"] | None,
+    Field(description="format of the response; absent: by the Accept header, else that of the body"),
+]
+FileFormat = Annotated[
+    Literal["csv", "nc"] | None,
+    Field(description="format of the response; absent: by the Accept header, else nc, which is netCDF-3"),
+]
 
 
 class Params(BaseModel):

@@ -17,8 +17,8 @@ from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.block import Block
 from rocking_api.execution.evaluation import evaluate, point_results
 from rocking_api.http.batch import body_form
-from rocking_api.http.encoding import CONTENT, MEDIA_TYPES, csv_response, json_response, negotiated_form
-from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.blocks import (
     RANGES,
@@ -47,6 +47,9 @@ MAX_BLOCKS = 10_000
 MAX_BODY = 4 * 1024 * 1024
 """Largest body with blocks [bytes]."""
 
+_FORMS: tuple[Form, ...] = ("json", "csv")
+"""Formats of a table of blocks, and of its response."""
+
 _EXAMPLE = {
     "blocks": [
         {"name": "vase", "half_width": 0.1, "half_height": 0.4, "peak_acceleration": 4.0, "pulse_period": 0.5},
@@ -67,7 +70,7 @@ async def get_block(params: Annotated[BlockParams, Query()], request: Request, s
     "/response",
     summary="Many blocks in SI units",
     response_model=BlocksResponse,
-    responses=CONTENT,
+    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
     openapi_extra={
         "requestBody": {
             "required": True,
@@ -87,12 +90,8 @@ async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request
     Columns of CSV: width or half_width, height or half_height, peak_acceleration, period, each with its unit in
     brackets, and optionally name and restitution.
     """
-    given = body_form(request)
-    if given == "nc":
-        raise UnsupportedBodyError("Content-Type", MEDIA_TYPES["nc"], "application/json or text/csv")
-    form = negotiated_form(request, params.format, default=given)
-    if form == "nc":
-        raise InvalidArgumentError("format", form, "json or csv")
+    given = body_form(request, _FORMS)
+    form = negotiated_form(request, params.format, _FORMS, default=given)
     params.check()
     body = await service.read_body(request, MAX_BODY)
     table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)

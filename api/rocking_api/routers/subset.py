@@ -17,7 +17,7 @@ from rocking.errors import InvalidArgumentError
 from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
-from rocking_api.models.params import Format, Params
+from rocking_api.models.params import FileFormat, Params
 from rocking_api.routers.datasets import DatasetName
 from rocking_api.service import Service, ServiceDep
 
@@ -41,7 +41,7 @@ class SubsetParams(Params):
     frequency_ratio_min: float | None = Field(None, description="smallest omega_g/p [-]", examples=[2.0])
     frequency_ratio_max: float | None = Field(None, description="largest omega_g/p [-]", examples=[3.0])
     variables: str = Field(VARIABLES, description="names of variables, separated by commas; see the description")
-    format: Format = None
+    format: FileFormat = None
 
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Smallest and largest value of each axis in its own unit.
@@ -68,9 +68,7 @@ async def get_subset(
 ) -> Response:
     """Nodes of a cube within ranges of its axes: a netCDF-3 file, or one row of CSV for each node."""
     ranges = params.ranges()
-    form = negotiated_form(request, params.format, default="nc")
-    if form == "json":
-        raise InvalidArgumentError("format", form, "csv or nc")
+    form = negotiated_form(request, params.format, ("nc", "csv"))
     return await service.run_io(partial(_subset, service, name, params, ranges, form))
 
 

@@ -28,7 +28,7 @@ def boundary(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     ----------
     data : xarray.Dataset
         Curves of one angle: result of `rocking.overturning_boundary`, or of a file of the workflow. Curves in SI units
-        (`rocking.dimensional.curves.block_boundary`) are drawn over the period, as peak ground accelerations.
+        (`Block.boundary`) are drawn over the period, as peak ground accelerations.
     ax : matplotlib.axes.Axes, optional
         Where to draw, for instance over `control_map`; by default in a new figure.
     **style

@@ -34,7 +34,9 @@ def fragility(data: xr.Dataset, ax: Axes | None = None) -> Axes:
     from rocking.suites.curve import curve_probability  # noqa: PLC0415  # scipy.special: 0.2 s, only for this picture
 
     if "fraction" not in data or data["fraction"].dims != ("intensity",):
-        raise InvalidArgumentError("data", dict(data.sizes), "the fragility of one block and one limit state")
+        several = ", ".join(f"{name}=0" for name in ("demand", "block") if name in data.dims)
+        allowed = "the fragility of one block and one limit state" + (f": data.isel({several})" if several else "")
+        raise InvalidArgumentError("data", dict(data.sizes), allowed)
     ax = axes_of(ax)
     draw_fractions(ax, data)
     fine = np.geomspace(data["intensity"].values[0], data["intensity"].values[-1], POINTS)
