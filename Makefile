@@ -89,8 +89,11 @@ UV := $(or $(shell command -v uv),build/uv/bin/uv)
 results/manifest.json: | .venv/project
 	$(MAKE) reproduce
 
-%/results/manifest.json: | .venv/project
+atlas/results/manifest.json atlas-small/results/manifest.json: %/results/manifest.json: | .venv/project
 	$(MAKE) $*
+
+%/manifest.json:
+	@echo 'RESULTS=$* is not allowed: no $@; allowed: results, atlas-small/results, atlas/results, or a folder with data sets and their manifest' >&2; exit 1
 
 # No isolation: packages without a wheel are built with the pinned build tool, which is installed first; with isolation
 # pip would fetch an unpinned one.

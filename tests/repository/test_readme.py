@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 import rocking
 
@@ -97,6 +98,21 @@ def test_make_targets_of_the_readme(target: str, program: str) -> None:
     assert ["make", *target.split()] in MAKE
     assert len(MAKE) == 7
     assert recipe(*target.split()).startswith(program)
+
+
+def test_a_folder_without_data_sets_is_not_served() -> None:
+    done = subprocess.run(["make", "serve", "RESULTS=nowhere"], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "RESULTS=nowhere is not allowed" in done.stderr
+
+
+def test_paper_is_cited_as_in_the_citation_file() -> None:
+    paper = yaml.safe_load((ROOT / "CITATION.cff").read_text())["references"][0]
+    entry = re.search(r"^@article.*?^\}$", README, re.MULTILINE | re.DOTALL)
+    assert entry is not None
+    for name in ("title", "journal", "year", "volume", "doi"):
+        assert f"{name} = {{{paper[name]}}}" in re.sub(r" +=", " =", entry[0])
+    assert f"pages = {{{paper['start']}--{paper['end']}}}" in entry[0]
 
 
 def test_data_sets_are_made_before_they_are_served() -> None:
