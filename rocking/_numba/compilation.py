@@ -16,6 +16,7 @@ package that they import: a change in any of them leads to recompilation, a copy
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import os
 import re
@@ -157,9 +158,21 @@ class _Compiler(CompilerBase):
 
 
 class _EntryCompiler(_Compiler):
-    """Compiler of entries."""
+    """Compiler of entries.
+
+    Garbage is not collected meanwhile: compilation makes millions of objects and keeps most of them.
+    """
 
     select = _UseSingleModuleLibrary
+
+    def compile_extra(self, func: Any) -> Any:
+        collecting = gc.isenabled()
+        gc.disable()
+        try:
+            return super().compile_extra(func)
+        finally:
+            if collecting:
+                gc.enable()
 
 
 class _KernelCompiler(_Compiler):
@@ -189,6 +202,9 @@ class PackageCacheLocator(UserProvidedCacheLocator):
         return cls(function, file) if Path(file).is_relative_to(_PACKAGE) else None
 
 
+_CONSTANTS = (numba.types.IntegerLiteral, numba.types.BooleanLiteral)
+
+
 class _Kernel(CPUDispatcher):
     """A kernel: inside entries code to be linked; from Python a function of its own, compiled when it is called."""
 
@@ -197,13 +213,29 @@ class _Kernel(CPUDispatcher):
         super().__init__(py_func=function, targetoptions=inside, pipeline_class=_KernelCompiler)
         self._from_python = numba.njit(**options)(function)
 
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """The signature of a call in a kernel; one for all integers, not one for each constant that kernels pass."""
+        plain = [numba.types.unliteral(arg) if isinstance(arg, _CONSTANTS) else arg for arg in args]
+        return super().get_call_template(plain, kws)
+
     def __call__(self, *args: Any) -> Any:
         return self._from_python(*args)
+
+
+class _SpecialisedKernel(_Kernel):
+    """A kernel that is compiled for each constant that kernels pass."""
+
+    get_call_template = CPUDispatcher.get_call_template
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile `function` for the entries that call it. Calls from Python compile it in each process."""
     return _Kernel(function, _OPTIONS)
+
+
+def specialised_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`kernel` compiled for each constant that is passed to it, for short loops whose branches depend on it."""
+    return _SpecialisedKernel(function, _OPTIONS)
 
 
 def uncounted_kernel(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,5 +1,6 @@
 """Compiled kernels: one signature for all arguments, equal results in every process, cache on disk."""
 
+import gc
 import math
 import os
 import re
@@ -9,13 +10,14 @@ import sys
 import warnings
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
 import rocking
 import rocking._numba.compilation
 from rocking import precompile
-from rocking._numba.compilation import contiguous_array, entry, kernel
+from rocking._numba.compilation import _EntryCompiler, contiguous_array, entry, kernel, specialised_kernel
 from rocking.boundary import trends
 from rocking.datasets.cube import write_dataset
 from rocking.errors import InvalidArgumentError
@@ -205,6 +207,41 @@ def test_kernels_without_a_cache_folder_give_one_warning(folder, tmp_path, monke
             return 2.0 * x
 
         assert twice(1.5) == 3.0
+
+
+def test_constants_need_no_code_of_their_own_unless_a_kernel_is_specialised():
+    def power(x, n, inverse):
+        return x**-n if inverse else x**n
+
+    plain, special = kernel(power), specialised_kernel(power)
+
+    @numba.njit
+    def total(x):
+        return plain(x, 2, True) + plain(x, 3, False) + special(x, 2, True) + special(x, 3, False)
+
+    assert total(2.0) == 2.0 * (0.25 + 8.0)
+    assert len(plain.overloads) == 1
+    assert len(special.overloads) == 2
+
+
+def test_garbage_collection_goes_on_after_compilation():
+    @numba.njit(pipeline_class=_EntryCompiler)
+    def wrong(x):
+        return x + "text"
+
+    @numba.njit(pipeline_class=_EntryCompiler)
+    def right(x):
+        return x + 1.0
+
+    for collecting in (True, False):
+        (gc.enable if collecting else gc.disable)()
+        try:
+            with pytest.raises(numba.TypingError):
+                wrong(1.0 if collecting else 1)
+            right(1.0 if collecting else 1)
+            assert gc.isenabled() is collecting
+        finally:
+            gc.enable()
 
 
 def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypatch):

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rocking._numba.compilation import Record, SimdVector, kernel
+from rocking._numba.compilation import Record, SimdVector, kernel, specialised_kernel
 from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
 from rocking.solver.stages.arcs import start_arcs, states_at
 from rocking.solver.stages.cuts import cut_phases, init_cuts
@@ -77,7 +77,7 @@ def follow_flights(pulse: Record, group: Record, sign: float) -> None:
     store(group.ended, 0, select(undecided, splat(float(IN_FLIGHT)), load(group.ended, 0)))
 
 
-@kernel
+@specialised_kernel
 def follow_part(
     pulse: Record, group: Record, right: SimdVector, end: int, restored: bool, rising: bool, before_cut: Any, last: bool
 ) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rocking._numba.compilation import Series, kernel
+from rocking._numba.compilation import Series, kernel, specialised_kernel
 from rocking.errors import SearchError
 
 MAX_INTERVALS = 10_000_000
@@ -48,7 +48,7 @@ def second_derivative_bound(series: Series, lane: int, top: int, h: float) -> fl
     return bound
 
 
-@kernel
+@specialised_kernel
 def refine_root(
     series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, deflated: bool, guess: float
 ) -> tuple[float, float]:
