@@ -34,8 +34,8 @@ atlas-small atlas: .venv/project
 atlas-small: ## make data sets of all nine pulses in atlas-small/results, a quarter of an hour
 atlas: ## the same on a fine grid, 27 restitutions and 10 angles, in atlas/results, some hours; it may be interrupted
 
-verify: .venv/project ## compare every file in results/ with the manifest and list differences (RESULTS=: others)
-	python -m workflow.verify $(dir $(RESULTS))
+verify: .venv/project ## compare every file in results/ with the manifest and list differences (RESULTS=: others; AGAINST=: other manifest)
+	python -m workflow.verify $(dir $(RESULTS)) $(if $(AGAINST),--against $(AGAINST))
 
 test: .venv/project browser ## run format, lint and type checks and all tests, including a small run of the workflow
 	ruff format --check .

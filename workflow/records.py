@@ -8,6 +8,7 @@ Snakemake has noted what the products were made from (it has not for a job that 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,23 @@ def digest(path: Path) -> dict[str, Any]:
     return {"sha256": sha256_of_file(path), "size": path.stat().st_size}
 
 
+def _digest_of_values(path: Path) -> dict[str, str]:
+    """The digest of the values of a data set that it states itself; nothing for other files."""
+    if path.suffix != ".nc":
+        return {}
+    from rocking.datasets.netcdf import open_netcdf  # noqa: PLC0415  # half a second, for jobs that have loaded it
+
+    with open_netcdf(path, cache=False) as opened:
+        return {"content_sha256": opened.attrs["content_sha256"]}
+
+
+def processor() -> str:
+    """Name by LLVM of the processor that the kernels are compiled for, such as znver4."""
+    import llvmlite.binding  # noqa: PLC0415  # for jobs, which have loaded it
+
+    return os.environ.get("NUMBA_CPU_NAME") or str(llvmlite.binding.get_host_cpu_name())
+
+
 def record_name(job: str, provenance: Mapping[str, Any]) -> str:
     """Name in the folder of the record of a job, with a digest of what its products are made from."""
     return f"{job}.{settings_digest(provenance)[:16]}.json"
@@ -35,12 +53,18 @@ def records_of(folder: Path, job: str) -> list[Path]:
 
 
 def write_record(record: Path, products: Iterable[Path]) -> None:
-    """Write the digests of the products of a job, and delete its records of former products."""
+    """Write the digests of the products of a job, and delete its records of former products.
+
+    Beside the bytes of a data set its values have a digest: the attributes name the code that it was made with, the
+    values do not. The values depend on the instructions of the processor, whose name is stated.
+    """
     job = record.name.rsplit(".", 2)[0]
     for former in record.parent.glob("*.json"):
         if former.name.rsplit(".", 2)[0] == job:
             former.unlink()
-    content = {path.as_posix(): digest(path) for path in products}
+    content = {
+        path.as_posix(): digest(path) | _digest_of_values(path) | {"processor": processor()} for path in products
+    }
     record.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 

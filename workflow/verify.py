@@ -1,12 +1,18 @@
-"""Compares every product with the manifest, byte by byte: `python -m workflow.verify [FOLDER]`, or `make verify`."""
+"""Compares every product with the manifest, byte by byte: `python -m workflow.verify [FOLDER]`, or `make verify`.
+
+`--against MANIFEST` then compares the values of the data sets with those of another manifest, such as those in
+`workflow/manifests/`. The bytes of a file depend on the code that made it as well, which it names.
+"""
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from workflow.records import FOLDER, differences, false_records, read_record, records_of
 
@@ -59,8 +65,34 @@ def _flaws_of_list(folder: Path, name: str, job: str) -> Iterator[str]:
         yield f"{folder / FOLDER / job}.*.json: the record of {name} is missing or damaged"
 
 
-def main(folder: Path) -> None:
-    """Print the differences; exit status 1 if there are any."""
+def differences_of_values(here: Mapping[str, Any], there: Mapping[str, Any]) -> Iterator[str]:
+    """Descriptions of the data sets whose values differ between two manifests, or that one of them lacks."""
+    ours, theirs = (_data_sets(manifest) for manifest in (here, there))
+    for name in sorted({*ours, *theirs}):
+        if name not in ours or name not in theirs:
+            yield f"{name}: not in {'this' if name not in ours else 'the other'} manifest"
+        elif ours[name]["content_sha256"] != theirs[name]["content_sha256"]:
+            made_by = f"{ours[name]['processor']} here, {theirs[name]['processor']} there"
+            yield f"{name}: other values; processors: {made_by}"
+
+
+def _data_sets(manifest: Mapping[str, Any]) -> dict[str, Any]:
+    """The products of a manifest that have a digest of their values."""
+    return {name: entry for name, entry in manifest["products"].items() if "content_sha256" in entry}
+
+
+def compare(folder: Path, other: Path) -> None:
+    """Print the differences of the values in `folder` from another manifest; exit status 1 if there are any."""
+    here, there = (json.loads(path.read_bytes()) for path in (folder / MANIFEST, other))
+    found = [*differences_of_values(here, there)]
+    if found:
+        advice = "between processors the last digits differ, see docs/cluster.md"
+        sys.exit("\n".join([*found, f"{len(found)} found; {advice}"]))
+    print(f"{folder / 'results'}: the values of all {len(_data_sets(there))} data sets are those of {other}")
+
+
+def verify(folder: Path) -> None:
+    """Print the differences from the manifest; exit status 1 if there are any."""
     found = [*problems(folder)]
     if found:
         advice = "`make reproduce`, with the CONFIG they were made with, makes them again"
@@ -68,5 +100,16 @@ def main(folder: Path) -> None:
     print(f"{folder / 'results'}: every product is as the manifest states")
 
 
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path(), help="folder with the folder `results`")
+    parser.add_argument("--against", type=Path, metavar="MANIFEST", help="another manifest")
+    options = parser.parse_args()
+    verify(options.folder)
+    if options.against is not None:
+        compare(options.folder, options.against)
+
+
 if __name__ == "__main__":
-    main(Path(*sys.argv[1:]))
+    main()

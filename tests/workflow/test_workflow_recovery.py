@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
@@ -14,14 +15,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.datasets.cube import write_dataset
+from rocking.datasets.cube import read_dataset, write_dataset
 from stress.kills import KILLED, content, interrupt, project
 from stress.kills import reproduce as make_reproduce
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
 from workflow.parts import delete_former_parts, forget_damaged_parts
-from workflow.records import forget_false_records, records_of
+from workflow.records import forget_false_records, processor, records_of
 from workflow.run_lock import RunningError, _held, acquire
-from workflow.verify import problems
+from workflow.verify import compare, problems
 
 CUBE, FIGURE, DATA = "spectra/sine/eta-0.85.nc", "figures/figure-04.svg", "figures/figure-07.nc"
 
@@ -78,6 +79,39 @@ def test_wrong_product_is_named_and_its_record_deleted(
     assert line.startswith(f"{run / 'results' / name}: ")
     assert [*forget_false_records(run)] == [line]
     assert records - set((run / "results/.records").rglob("*.json")) == set(of_job)
+
+
+def test_values_are_compared_with_another_manifest(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    manifest = json.loads((run / "results/manifest.json").read_text())
+    entry = manifest["products"][CUBE]
+    assert entry["content_sha256"] == read_dataset(run / "results" / CUBE).attrs["content_sha256"]
+    assert entry["processor"] == processor()
+    other = tmp_path / "other.json"
+    shutil.copy(run / "results/manifest.json", other)
+    compare(run, other)
+    assert "the values of all" in capsys.readouterr().out
+    entry |= {"code_sha256": "0" * 64, "sha256": "0" * 64}  # made by other code, with the same values
+    other.write_text(json.dumps(manifest))
+    compare(run, other)
+    entry |= {"content_sha256": "0" * 64, "processor": "generic"}
+    del manifest["products"][DATA]
+    other.write_text(json.dumps(manifest))
+    with pytest.raises(SystemExit) as ended:
+        compare(run, other)
+    assert str(ended.value).splitlines()[:2] == [
+        f"{DATA}: not in the other manifest",
+        f"{CUBE}: other values; processors: {processor()} here, generic there",
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "workflow.verify", run, "--against", other],
+        cwd=PROJECT,
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert b"2 found" in done.stderr
 
 
 @pytest.mark.parametrize("spoil", [flipped, emptied])
