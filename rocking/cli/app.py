@@ -64,10 +64,11 @@ def response(
     from rocking.cli import arguments, printing
 
     with arguments.option_errors():
-        form = printing.output_format(output)
         if blocks is None:
+            form = printing.output_format(output)
             printing.response(arguments.read_params(block), form)
         else:
+            form = printing.output_format(output, default="csv")
             printing.responses(arguments.read_blocks(blocks, block), form)
 
 

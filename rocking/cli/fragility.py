@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json as json_format
+import re
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -52,25 +53,27 @@ def fragility(configuration: Configuration, output: OutputOptions, table: TableO
     with option_errors():
         if table == "sensitivity" and suite.sensitivity is None:
             raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
-        if table != "levels" and form != "csv":
+        if table != "levels" and form.kind != "csv":
             raise InvalidArgumentError("table", table, "with --csv; the other formats hold all tables")
     found = suite_fragility(suite)
     if suite.hazard is not None:
         found = found.assign(annual_rate(found, suite.hazard).data_vars)
     tables = {"levels": fragility_table(found), "curves": curve_table(found)}
-    if suite.sensitivity is not None and (form != "csv" or table == "sensitivity"):
+    if suite.sensitivity is not None and (form.kind != "csv" or table == "sensitivity"):
         tables["sensitivity"] = _sensitivity(suite)
-    if form == "csv":
-        printing.print_csv(tables[table])
-        return
     unit = found["intensity"].attrs["units"]
+    measured = ("intensity", *(f"median_intensity{end}" for end in ("", "_lower", "_upper")))
+    usual = re.sub(r" s-(\d)", _per_second, unit)
+    units = dict.fromkeys(measured, usual) if unit != "1" else {}
+    if form.kind == "csv":
+        printing.print_csv(tables[table], form, units)
+        return
     about = {"suite": suite.name, "records": found["record"].values.tolist(), "measure": suite.measure, "unit": unit}
     finite = {name: _finite(columns) for name, columns in tables.items()}
-    if form == "json":
+    if form.kind == "json":
         printing.print_json({**about, "confidence": suite.confidence, **finite})
         return
-    units = dict.fromkeys(("intensity", "median_intensity"), unit) if unit != "1" else {}
-    printing.print_text({**about, "records": len(about["records"])})
+    printing.print_text({**about, "records": len(about["records"]), "unit": usual})
     printing.print_table(_with_intervals(finite["curves"]), units)
     typer.echo()
     printing.print_table(finite["levels"], units)
@@ -201,6 +204,11 @@ def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[
     shown["resampled"] = [count(value) for value in rows["fraction_resampled"]]
     friction = ("friction_demand_median", "friction_demand_largest", "records_changed_by_sampling")
     return shown | {name: rows[name] for name in friction}
+
+
+def _per_second(power: re.Match[str]) -> str:
+    """The end of a unit of the data sets as the other output writes it: m/s2 for m s-2."""
+    return "/s" + power[1].replace("1", "")
 
 
 def _finite(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:

@@ -108,6 +108,7 @@ class OutputOptions:
 
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False
+    units: Annotated[bool, typer.Option("--units", help="Name units in the header of CSV.")] = False
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as json_writer
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -25,20 +26,29 @@ if TYPE_CHECKING:
     from rocking.dimensional.table import BlockTable
     from rocking.history.contact import ContactExtremes
 
-Form = Literal["text", "json", "csv"]
+
+@dataclass(frozen=True)
+class Form:
+    """Format of the output; `units`: the header of CSV names units."""
+
+    kind: Literal["text", "json", "csv"]
+    units: bool = False
 
 
-def output_format(options: OutputOptions) -> Form:
-    """The output format of the options.
+def output_format(options: OutputOptions, default: Literal["text", "csv"] = "text") -> Form:
+    """The output format of the options; `default` without any.
 
     Raises
     ------
     InvalidArgumentError
-        If both options are given.
+        If options exclude each other.
     """
     if options.json and options.csv:
         raise InvalidArgumentError("csv", True, "one of --json and --csv")
-    return "json" if options.json else "csv" if options.csv else "text"
+    kind: Literal["text", "json", "csv"] = "json" if options.json else "csv" if options.csv else default
+    if options.units and kind != "csv":
+        raise InvalidArgumentError("units", True, "with --csv")
+    return Form(kind, options.units)
 
 
 def response(params: Params, form: Form) -> None:
@@ -48,10 +58,10 @@ def response(params: Params, form: Form) -> None:
     """
     with progress("solving the block"):
         result, sentence = _response(params)
-    if form == "json":
+    if form.kind == "json":
         print_json(result)
-    elif form == "csv":
-        print_csv({name: [_csv_cell(value)] for name, value in result.items()})
+    elif form.kind == "csv":
+        print_csv({name: [_csv_cell(value)] for name, value in result.items()}, form)
     else:
         typer.echo(sentence)
         warnings = result.pop("warnings", [])
@@ -89,10 +99,10 @@ def responses(table: BlockTable, form: Form) -> None:
 
     with progress(f"solving {len(table.problems)} blocks"):
         columns = respond_table(table)
-    if form == "json":
+    if form.kind == "json":
         print_json(columns)
     else:
-        print_csv(columns)
+        print_csv(columns, form)
 
 
 def _contact(found: ContactExtremes) -> dict[str, Any]:
@@ -212,9 +222,9 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
         shown = si | {name: columns[name] for name in columns if name in COLUMNS}
         columns = columns | si
         about |= {"impact_time_s": moved["impact_time"].values.tolist()}
-    if form == "csv":
-        print_csv(columns)
-    elif form == "json":
+    if form.kind == "csv":
+        print_csv(columns, form)
+    elif form.kind == "json":
         print_json(about | columns)
     else:
         print_text(about)
@@ -251,10 +261,10 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
         about |= {"peak_acceleration": problem.peak_acceleration}
         names = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
         shown = {name: columns[name][::-1] for name in names}  # from the shortest period
-    if form == "json":
+    if form.kind == "json":
         print_json(about | columns)
-    elif form == "csv":
-        print_csv(columns)
+    elif form.kind == "csv":
+        print_csv(columns, form)
     else:
         print_text(about)
         print_table(shown)
@@ -282,11 +292,11 @@ def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
 
         curves = add_si_axes(curves, params.problem.block)
         columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
-    if form == "json":
+    if form.kind == "json":
         about = {"pulse": params.pulse, "restitution": params.restitution, "alpha": params.alpha}
         print_json(about | columns)
-    elif form == "csv":
-        print_csv(columns)
+    elif form.kind == "csv":
+        print_csv(columns, form)
     else:
         print_table(columns)
 
@@ -325,9 +335,11 @@ def print_json(result: Mapping[str, Any]) -> None:
     typer.echo(json_writer.dumps(result, allow_nan=False))
 
 
-def print_csv(columns: Mapping[str, Sequence[Any]]) -> None:
-    """Print a header and rows."""
-    typer.echo(csv_text(columns), nl=False)
+def print_csv(columns: Mapping[str, Sequence[Any]], form: Form, units: Mapping[str, str] | None = None) -> None:
+    """Print a header and rows; `units` as for `print_table`."""
+    known = _UNITS | dict(units or {})
+    named = {_label(name, known): values for name, values in columns.items()} if form.units else columns
+    typer.echo(csv_text(named), nl=False)
 
 
 def print_text(result: Mapping[str, Any]) -> None:

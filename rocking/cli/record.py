@@ -39,10 +39,10 @@ def record(
         problem = read_problem(file, block)
         with progress("solving the block under the record"):
             about, sentence = _solved(*problem, block.scale, thresholds, fit)
-    if form == "json":
+    if form.kind == "json":
         printing.print_json(about)
-    elif form == "csv":
-        printing.print_csv({name: [value] for name, value in about.items() if not isinstance(value, list)})
+    elif form.kind == "csv":
+        printing.print_csv({name: [value] for name, value in about.items() if not isinstance(value, list)}, form)
     else:
         typer.echo(sentence)
         for warning in about.pop("warnings"):

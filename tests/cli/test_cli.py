@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 
@@ -239,6 +240,19 @@ def test_every_line_of_a_table_with_an_error_is_named():
         assert f"line {line}, width: 0.0 is not allowed" in text
     assert "line 22" not in text
     assert "and 5 more" in text
+
+
+def test_the_header_of_csv_names_units_on_request(tmp_path):
+    path = tmp_path / "blocks.csv"
+    path.write_text(TABLE)
+    table = ("response", "--pulse", "sine", "--blocks", str(path))
+    plain, named = (run(*table, *more).splitlines() for more in ((), ("--units",)))
+    assert plain[1:] == named[1:]
+    assert "half_width [m],half_height [m],peak_acceleration [m/s2],period [s]," in named[0]
+    assert re.sub(r" \[[^]]*\]", "", named[0]) == plain[0]
+    assert "top_displacement [m]" in run("history", *WHOLE, "--csv", "--units").splitlines()[0]
+    for form in ((), ("--json",)):
+        assert "--units" in refused("response", *WHOLE, "--units", *form)
 
 
 def test_table_and_options_exclude_each_other(tmp_path):

@@ -136,6 +136,7 @@ def test_fragility_in_three_formats(small):
     assert result["curves"]["annual_rate"][0] > 0.0
     rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv"))))
     assert len(rows) == 3 * 4
+    assert "intensity [m/s2]" in run("fragility", str(small), "--csv", "--units").splitlines()[0]
     assert {row["demand"] for row in rows} == {"overturning", "alpha", "0.5 alpha"}
     text = run("fragility", str(small))
     assert "measure  pga" in text
