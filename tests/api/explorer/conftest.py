@@ -61,27 +61,27 @@ class Service:
         await self.app(scope, receive, send)
 
 
-@pytest.fixture(scope="module")
-def module_service(results):
+@pytest.fixture(scope="package")
+def package_service(results):
     service = Service(results)
     yield service
     service.stop()
 
 
 @pytest.fixture
-def service(module_service):
-    yield module_service
-    module_service.seconds, module_service.refusals = 0.0, 0
-    if not module_service.thread.is_alive():
-        module_service.start()
+def service(package_service):
+    yield package_service
+    package_service.seconds, package_service.refusals = 0.0, 0
+    if not package_service.thread.is_alive():
+        package_service.start()
 
 
-@pytest.fixture(scope="module")
-def address(module_service):
-    return module_service.address
+@pytest.fixture(scope="package")
+def address(package_service):
+    return package_service.address
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def browser():
     if os.environ.get("ROCKING_NO_BROWSER"):
         pytest.skip("ROCKING_NO_BROWSER is set")
