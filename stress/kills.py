@@ -33,7 +33,8 @@ TOO_LATE = "after its end"
 
 STAGES = (
     ("overturning/*",), ("overturning/sine",), ("spectra/*",), ("spectra/cosine",), ("figures/figure-1*",),
-    ("figures/figure-0*", "claims"), ("claims",), ("figures/table-1",), ("manifest",), ("check_results",),
+    ("figures/figure-0*", "claims"), ("claims",), ("figures/table-1",), ("manifest",), ("checks/*",),
+    ("check_results",),
 )  # fmt: skip
 """Jobs that a trial undoes, by their records; the jobs that depend on them run again too."""
 

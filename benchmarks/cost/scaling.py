@@ -62,12 +62,14 @@ def jobs_of(times: Mapping[str, float]) -> dict[str, Job]:
         elif name in drawn:
             read = named("spectra-sine") if name == "figure-scale-law" else named("overturning-(sine|cosine)")
             job = Job(seconds, read, 0, local=True)
+        elif kind == "checks":
+            job = Job(seconds, named(f"(overturning|spectra)-{rest}"), 0, local=False)
         elif name == "claims":
             job = Job(seconds, curves | cubes | drawn, 0, local=True)
         else:
-            before = (
-                curves | cubes | drawn | named("claims") | (named("manifest") if name == "check_results" else named(""))
-            )
+            before = curves | cubes | drawn | named("claims")
+            if name == "check_results":
+                before |= named("manifest|checks-.*")
             job = Job(seconds, before - {name}, 0, local=True)
         found[name] = job
     return found

@@ -20,7 +20,7 @@ KINDS = {
     r"(figure|table)-.*": "figures and table",
     r"claims": "claims",
     r"manifest": "manifest",
-    r"check_results": "tests of the products",
+    r"check_results|checks-.*": "tests of the products",
 }
 
 

@@ -11,6 +11,7 @@ TIMES = {
     **{f"overturning-{pulse}": 1.0 for pulse in PULSES},
     **{f"spectra-{pulse}-rows-{band}": 20.0 for pulse in PULSES for band in ("0-9", "9-20")},
     **{f"spectra-{pulse}": 2.0 for pulse in PULSES},
+    **{f"checks-{pulse}": 3.0 for pulse in PULSES},
     "figure-03": 3.0, "figure-scale-law": 4.0, "table-1": 1.0, "claims": 5.0, "manifest": 0.0, "check_results": 6.0,
 }  # fmt: skip
 

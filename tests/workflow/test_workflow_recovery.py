@@ -141,7 +141,7 @@ def test_each_missing_product_or_record_is_planned(run: Path) -> None:
                  *records_of(run, "figures/figure-07"), *records_of(run, "check_results")):  # fmt: skip
         path.unlink()
     planned = rules_to_run(snakemake(run, "--dry-run").stdout)
-    of_cube = {"spectrum_tile", "spectra", "figure_scale_law", "claims"}
+    of_cube = {"spectrum_tile", "spectra", "figure_scale_law", "claims", "check_data_sets"}
     assert planned == of_cube | {"figure_04", "figure_07", "manifest", "check_results", "all"}
 
 

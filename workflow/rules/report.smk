@@ -1,6 +1,8 @@
-# The manifest of all products, and the tests of the finished products.
+# The manifest of all products, and the tests of the finished products: those of the data sets as soon as they are made.
 MANIFEST_CODE = SOURCES.digest(PROJECT / "workflow/scripts/manifest.py")
-CHECKS_CODE = SOURCES.digest(*(PROJECT / "workflow/checks").glob("*.py"))
+CHECKS = PROJECT / "workflow/checks"
+DATA_CHECKS_CODE = SOURCES.digest(CHECKS / "test_data_sets.py", CHECKS / "report.py")
+CHECKS_CODE = SOURCES.digest(*CHECKS.glob("*.py"))
 
 
 rule manifest:
@@ -28,10 +30,37 @@ rule manifest:
         "../scripts/manifest.py"
 
 
+rule check_data_sets:
+    input:
+        boundaries=rules.overturning.output.boundaries,
+        cubes=rules.spectra.output.cubes,
+        tests=str(CHECKS / "test_data_sets.py"),
+    output:
+        report=f"{records.FOLDER}/checks/{{pulse}}.txt",
+        record=record_of(
+            "checks/{pulse}",
+            {"code": DATA_CHECKS_CODE, "spectra": SPECTRUM_PROVENANCE, "overturning": OVERTURNING_PROVENANCE},
+        ),
+    log:
+        "logs/checks/{pulse}.log",
+    benchmark:
+        "logs/benchmarks/checks-{pulse}.tsv"
+    resources:
+        mem_mb=memory(1200),
+        runtime=120,
+    params:
+        code=DATA_CHECKS_CODE,
+    message:
+        "Testing the data sets of the {wildcards.pulse} pulse"
+    script:
+        "../scripts/check_data_sets.py"
+
+
 rule check_results:
     input:
         manifest=rules.manifest.output.manifest,
-        tests=[str(path) for path in sorted((PROJECT / "workflow/checks").glob("*.py"))],
+        reports=expand(rules.check_data_sets.output.report, pulse=PULSES),
+        tests=str(CHECKS / "test_products.py"),
     output:
         report="results/checks.txt",
         record=record_of("check_results", {"code": CHECKS_CODE}),

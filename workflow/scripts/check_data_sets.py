@@ -1,0 +1,32 @@
+"""Runs the tests of the data sets of a pulse."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from workflow.checks.report import run_tests, write_report
+from workflow.scripts.job import run
+
+
+def main(*, boundaries: Sequence[Path], cubes: Sequence[Path], tests: Path, report: Path, code: str) -> None:
+    """Test the files of a pulse; write one line per test if all pass.
+
+    Parameters
+    ----------
+    boundaries, cubes : sequence of paths
+        The files, in `results/KIND/PULSE/`.
+    tests : path
+        The module of the tests.
+    report : path
+        Output.
+    code : str
+        Digest of the tests and of all that they import.
+    """
+    results = boundaries[0].parents[2]
+    names = [path.relative_to(results).as_posix() for path in (*boundaries, *cubes)]
+    lines = run_tests(tests, {"ROCKING_RESULTS": str(results.resolve()), "ROCKING_DATA_SETS": json.dumps(names)})
+    write_report(report, lines, code)
+
+
+if __name__ == "__main__":
+    run(main, snakemake)  # noqa: F821  (given by Snakemake)
