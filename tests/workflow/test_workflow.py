@@ -111,6 +111,23 @@ def test_other_configurations_are_valid(name: str, tmp_path: Path) -> None:
     assert planned.returncode == 0, planned.stdout
 
 
+@pytest.mark.parametrize("path", sorted((PROJECT / "workflow/manifests").glob("*.json")), ids=lambda path: path.stem)
+def test_stored_manifests_are_those_of_their_configurations(path: Path) -> None:
+    configuration = yaml.safe_load((PROJECT / "workflow/config" / path.name.replace(".json", ".yaml")).read_text())
+    listed = json.loads(path.read_text())["products"]
+    expected = {
+        f"{kind}/{pulse}/eta-{eta:.2f}.nc"
+        for kind in ("spectra", "overturning")
+        for pulse in configuration["pulses"]
+        for eta in configuration["restitution"]
+    }
+    figures = {f"figures/{name}.{kind}" for name in configuration.get("figures", ()) for kind in ("svg", "png", "nc")}
+    claims = {"claims.json", "claims.md"} if "claims" in configuration else set()
+    assert set(listed) == expected | figures | claims
+    assert all("content_sha256" in entry for name, entry in listed.items() if name.endswith(".nc"))
+    assert len({entry["processor"] for entry in listed.values()}) == 1
+
+
 def test_data_sets_are_made_without_figures_and_claims(tmp_path: Path) -> None:
     configuration = yaml.safe_load(SMOKE.read_text())
     for name in ("figures", "claims", "tile_rows"):
