@@ -31,6 +31,9 @@ UNITS = {
 }
 """Columns with units, and the SI units of their values."""
 
+OTHER_NAMES = {"pulse_period": "period"}
+"""Names of columns that the command line and the service use for the same quantity."""
+
 OTHER_COLUMNS = ("name", "restitution")
 """Columns without units: a label, and a number or housner."""
 
@@ -63,7 +66,8 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     ----------
     text : str
         CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
-        may be `half_width` and `half_height`. Columns may be separated by semicolons; numbers have decimal points.
+        may be `half_width` and `half_height`, the period `pulse_period`. Columns may be separated by semicolons;
+        numbers have decimal points.
     pulse : str
         The pulse.
     restitution : float or "housner"
@@ -117,7 +121,7 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, _Unit]]:
     units: dict[str, _Unit] = {}
     for text in header:
         found = _HEADER.fullmatch(text)
-        name, unit = (found[1], found[2] or found[3]) if found else (text, None)
+        name, unit = (OTHER_NAMES.get(found[1], found[1]), found[2] or found[3]) if found else (text, None)
         if name in names or (name not in UNITS and name not in OTHER_COLUMNS):
             raise InvalidArgumentError("blocks, header", text, f"{_ALLOWED}, each at most once")
         if name in UNITS:

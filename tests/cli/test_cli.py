@@ -204,6 +204,8 @@ def test_table_of_blocks(tmp_path):
     assert as_json["outcome"] == [row["outcome"] for row in rows]
     piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE.replace(",", ";"))
     assert read_csv(piped.stdout) == rows
+    path.write_text(TABLE.replace("period", "pulse_period"))
+    assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == rows
     path.write_text(TABLE.splitlines()[0])
     assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []
 
