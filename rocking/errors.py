@@ -56,7 +56,7 @@ class SeveralArgumentsError(InvalidArgumentError):
         self.errors = list(errors)
         self.args = ("; ".join(map(str, errors)),)
 
-    def __reduce__(self) -> tuple[type[SeveralArgumentsError], tuple[list[InvalidArgumentError]]]:  # type: ignore[override]
+    def __reduce__(self) -> tuple[type[SeveralArgumentsError], tuple[Any, ...]]:
         return type(self), (self.errors,)
 
 

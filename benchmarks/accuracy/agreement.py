@@ -63,7 +63,7 @@ def responses(pulse: str, cells: Fields, folder: Path = ROOT, processor: str | N
     environment = dict(os.environ) | ({"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""} if processor else {})
     with tempfile.TemporaryDirectory() as place:
         given, found = Path(place, "cells.npz"), Path(place, "found.npz")
-        np.savez(given, **cells)  # type: ignore[arg-type]
+        np.savez(given, allow_pickle=False, **cells)
         arguments = [str(folder.resolve()), str(given), pulse, str(found), *names]
         subprocess.run([sys.executable, "-c", WORKER, *arguments], check=True, cwd="/", env=environment)
         with np.load(found) as read:

@@ -234,7 +234,7 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def specialised_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`kernel` compiled for each constant that is passed to it, for short loops whose branches depend on it."""
+    """`kernel` compiled for each constant that is passed to it, where branches that cost time depend on it."""
     return _SpecialisedKernel(function, _OPTIONS)
 
 
