@@ -40,6 +40,8 @@ from numba.core.typed_passes import NativeLowering
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+import rocking._numba.array_functions  # noqa: F401  # before the first function is compiled or loaded
+
 Record = Any
 """A numpy record of named numbers and short arrays, passed to a kernel by address."""
 

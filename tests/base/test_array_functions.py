@@ -1,0 +1,35 @@
+"""A first response does not import SciPy, and numba finds its BLAS all the same."""
+
+import subprocess
+import sys
+
+
+def in_a_new_process(code):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.split()
+
+
+def test_a_response_imports_no_part_of_scipy_that_takes_time():
+    asked = "slenderness=0.5, frequency_ratio=5.0, restitution=0.9"
+    modules = in_a_new_process(
+        "import sys, rocking\n"
+        f"rocking.peak_response('sine', {asked})\n"
+        f"rocking.peak_response('ricker', {asked}, alpha=0.2)\n"
+        "print(*sys.modules)"
+    )
+    assert "numba.np.arraymath" in modules
+    heavy = {"scipy.linalg", "scipy.special", "scipy.optimize", "xarray", "pandas", "matplotlib", "coverage"}
+    assert heavy.isdisjoint(modules)
+
+
+def test_functions_of_others_multiply_matrices():
+    product = in_a_new_process(
+        "import numba, numpy as np, rocking\n"
+        "from numba.np import linalg\n"
+        "rocking.peak_response('sine', slenderness=0.5, frequency_ratio=5.0, restitution=0.9)\n"
+        "multiply = numba.njit(lambda a: a @ a)\n"
+        "covariance = numba.njit(lambda a: np.cov(a).sum())\n"
+        "print(multiply(np.array([[1.0, 2.0], [3.0, 4.0]])).sum(), covariance(np.array([[1.0, 2.0], [3.0, 4.0]])))\n"
+        "print(linalg.ensure_blas.__module__)"
+    )
+    assert product == ["54.0", "2.0", "numba.np.linalg"]
