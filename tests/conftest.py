@@ -12,8 +12,12 @@ settings.load_profile("rocking")
 LONGEST = (
     "tests/workflow/test_claims.py",  # with the shared run of the workflow
     "tests/api/test_api_kernels.py",
-    "tests/workflow/test_workflow_recovery.py",
     "tests/workflow/test_suite.py",
+    "tests/workflow/test_workflow_recovery.py",  # needs the shared run
+    "tests/workflow/test_workflow.py",
+    "tests/benchmarks/test_benchmarks.py",
+    "tests/base/test_compilation.py",
+    "tests/boundary/test_boundary.py",
     "tests/solver/test_stages.py",
 )
 """Files whose tests run first: a long one at the end would leave the other processes of the test run idle."""

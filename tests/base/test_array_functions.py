@@ -25,11 +25,10 @@ def test_a_response_imports_no_part_of_scipy_that_takes_time():
 def test_functions_of_others_multiply_matrices():
     product = in_a_new_process(
         "import numba, numpy as np, rocking\n"
-        "from numba.np import linalg\n"
+        "from numba.np import arraymath, linalg\n"
         "rocking.peak_response('sine', slenderness=0.5, frequency_ratio=5.0, restitution=0.9)\n"
         "multiply = numba.njit(lambda a: a @ a)\n"
-        "covariance = numba.njit(lambda a: np.cov(a).sum())\n"
-        "print(multiply(np.array([[1.0, 2.0], [3.0, 4.0]])).sum(), covariance(np.array([[1.0, 2.0], [3.0, 4.0]])))\n"
-        "print(linalg.ensure_blas.__module__)"
+        "print(multiply(np.array([[1.0, 2.0], [3.0, 4.0]])).sum())\n"
+        "print(arraymath._HAVE_BLAS, linalg.ensure_blas.__module__)"
     )
-    assert product == ["54.0", "2.0", "numba.np.linalg"]
+    assert product == ["54.0", "True", "numba.np.linalg"]
