@@ -11,6 +11,7 @@ settings.load_profile("rocking")
 
 LONGEST = (
     "tests/workflow/test_claims.py",  # with the shared run of the workflow
+    "tests/api/test_memory_budget.py",  # mostly waits, while that run needs all processors
     "tests/api/test_api_kernels.py",
     "tests/workflow/test_suite.py",
     "tests/workflow/test_workflow_recovery.py",  # needs the shared run
