@@ -26,7 +26,7 @@ CONFIGURATION = "workflow/config/smoke.yaml"
 TARGETS = (
     "results/spectra/sine/eta-0.85.nc", "results/spectra/cosine/eta-0.85.nc", "results/figures/figure-scale-law.nc",
 )  # fmt: skip
-"""Products to make: boundaries, cubes and a figure, by jobs of the cluster and by local ones."""
+"""Its products that are made: boundaries, cubes and a figure, by jobs of the cluster and by local ones."""
 
 PACKAGES = ("slurmctld", "slurmd", "slurm-client", "munge")
 SETTINGS = Path("/etc/slurm/slurm.conf")
@@ -156,12 +156,12 @@ def wait_for(command: Sequence[str]) -> None:
         time.sleep(0.5)
 
 
-def make(directory: Path, *options: str) -> float:
+def make(directory: Path, configuration: str | None, *options: str) -> float:
     """Run the workflow in a directory; return the time it took [s]."""
     start = time.perf_counter()
     command = [
-        sys.executable, "-m", "workflow.run", *options, "--configfile", CONFIGURATION, "--directory", directory,
-        "--nocolor", "--", *TARGETS,
+        sys.executable, "-m", "workflow.run", *options, "--configfile", configuration or CONFIGURATION,
+        "--directory", directory, "--nocolor", "--", *(() if configuration else TARGETS),
     ]  # fmt: skip
     path = os.pathsep.join(filter(None, [str(PLUGIN), os.environ.get("PYTHONPATH")]))
     done = subprocess.run(
@@ -182,16 +182,17 @@ def digests(directory: Path) -> dict[str, str]:
 def main() -> None:
     """Command line; exit status 1 unless all files are equal."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.parse_args()
+    parser.add_argument("--configuration", help="make everything of this one, instead of some products of smoke.yaml")
+    configuration = parser.parse_args().configuration
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         try:
             with cluster(folder):
-                through_slurm = make(folder / "slurm", *SLURM)
+                through_slurm = make(folder / "slurm", configuration, *SLURM)
         except UnavailableError as error:
             print(f"skipped: {error}")
             return
-        local = make(folder / "local", "--cores", "all")
+        local = make(folder / "local", configuration, "--cores", "all")
         expected, found = digests(folder / "local"), digests(folder / "slurm")
         differing = sorted(name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name))
     print(f"{len(expected)} files; {local:.0f} s local, {through_slurm:.0f} s through Slurm")
