@@ -40,7 +40,6 @@ verify: .venv/project ## compare every file in results/ with the manifest and li
 test: .venv/project browser ## run format, lint and type checks and all tests, including a small run of the workflow
 	ruff format --check .
 	ruff check .
-	mypy
 	snakefmt --check Snakefile workflow
 	pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 

@@ -9,24 +9,37 @@ settings.register_profile(
 )
 settings.load_profile("rocking")
 
-LONGEST = (
+FIRST = (
     "tests/workflow/test_claims.py",  # with the shared run of the workflow
-    "tests/api/test_memory_budget.py",  # mostly waits, while that run needs all processors
-    "tests/api/test_api_kernels.py",
+    "tests/api/test_memory_budget.py",
     "tests/workflow/test_suite.py",
+    "tests/api/explorer/test_current.py",
     "tests/workflow/test_workflow_recovery.py",  # needs the shared run
+    "tests/api/explorer/test_map.py",
+    "tests/api/explorer/test_layout.py",
     "tests/workflow/test_workflow.py",
+    "tests/api/explorer/test_form.py",
+    "tests/api/explorer/test_accessibility.py",
     "tests/benchmarks/test_benchmarks.py",
+    "tests/api/explorer/test_motion.py",
+    "tests/api/explorer/test_records.py",
+    "tests/repository/test_types.py",
+    "tests/api/explorer/test_pages.py",
+    "tests/api/explorer/test_spectrum.py",
+    "tests/api/test_api_kernels.py",
     "tests/base/test_compilation.py",
     "tests/boundary/test_boundary.py",
     "tests/solver/test_stages.py",
 )
-"""Files whose tests run first: a long one at the end would leave the other processes of the test run idle."""
+"""Files whose tests run first: long ones, as one at the end would leave the other processes of the test run idle.
+
+Those that mostly wait, for limits of time and for the browser, run beside those that need processors.
+"""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Move the longest files to the front, in their order."""
-    order = {name: place for place, name in enumerate(LONGEST)}
+    """Move these files to the front, in their order."""
+    order = {name: place for place, name in enumerate(FIRST)}
     items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 

@@ -22,13 +22,12 @@ def test_a_response_imports_no_part_of_scipy_that_takes_time():
     assert heavy.isdisjoint(modules)
 
 
-def test_functions_of_others_multiply_matrices():
-    product = in_a_new_process(
-        "import numba, numpy as np, rocking\n"
+def test_functions_of_others_find_the_blas():
+    found = in_a_new_process(
+        "import sys, rocking\n"
         "from numba.np import arraymath, linalg\n"
         "rocking.peak_response('sine', slenderness=0.5, frequency_ratio=5.0, restitution=0.9)\n"
-        "multiply = numba.njit(lambda a: a @ a)\n"
-        "print(multiply(np.array([[1.0, 2.0], [3.0, 4.0]])).sum())\n"
-        "print(arraymath._HAVE_BLAS, linalg.ensure_blas.__module__)"
+        "linalg.ensure_blas()  # what numba calls where it compiles a product of matrices\n"
+        "print(arraymath._HAVE_BLAS, linalg.ensure_blas.__module__, 'scipy.linalg.cython_blas' in sys.modules)"
     )
-    assert product == ["54.0", "True", "numba.np.linalg"]
+    assert found == ["True", "numba.np.linalg", "True"]
