@@ -13,6 +13,8 @@ wildcard_constraints:
     band="|".join(BANDS),
 
 
+# the curves of one angle at all restitutions, of c2, which has the most
+PART_MB = 300 + 40 * len(ETAS)
 TILE_MB, CUBE_MB = (300 + BYTES * nodes / 1e6 for nodes in (nodes_of_tile(config), nodes_of_cube(config)))
 SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
 SPECTRUM_PROVENANCE = provenance(
@@ -44,7 +46,7 @@ rule overturning_part:
         "logs/benchmarks/overturning-{pulse}-{angle}.tsv"
     priority: 3
     resources:
-        mem_mb=memory(600),
+        mem_mb=memory(PART_MB),
         runtime=240,
     params:
         pulse=lambda wildcards: wildcards.pulse,
