@@ -53,11 +53,14 @@ v is their overturning code (`rocking.model.outcome_code`), else 1 + the impacts
 differ. The errors are the variables of the cube [-].
 """
 
-BLOCK = 32
+BLOCK = 16
 """Points whose cells are located, and read ahead of their use, together."""
 
-_ROW, _COLUMN, _FIRST, _COUNT = range(4)
-"""Columns of the places of a block: cell, first angle and number of angles."""
+_ROW, _COLUMN, _FIRST, _COUNT, _GROUP = range(5)
+"""Columns of the places of a block: cell, first angle and number of angles, group of restitutions."""
+
+PLACE_SIZE = 5
+"""Number of these columns."""
 
 _SAFE = int(Outcome.SAFE)
 
@@ -69,29 +72,23 @@ FORM_BITS = 2
 """Bits of a code that state the stencil: `PEAK`, `SQUARED` or `OVERTURNS`."""
 
 
-class SliceWindow(NamedTuple):
-    """The slices from which points between two restitutions, or on one, are interpolated.
+SLICE_WINDOW = np.dtype(
+    [
+        ("restitutions", np.float64, STENCIL_SIZE),
+        ("products", np.float64, STENCIL_SIZE),
+        ("lower", np.int64),
+        ("size", np.int64),
+        ("cells", np.int64, STENCIL_SIZE),
+        ("peaks", np.int64, STENCIL_SIZE),
+    ]
+)
+"""The slices of restitution from which points on one slice, or between the same two, are interpolated.
 
-    Attributes
-    ----------
-    restitutions : float array (STENCIL_SIZE,)
-        Restitutions of the slices [-].
-    products : float array (1, STENCIL_SIZE)
-        Denominators of their Lagrange weights.
-    lower, size : int
-        The slice at or below the restitutions of the points, and the number of slices used.
-    cells : tuple of int (STENCIL_SIZE,)
-        Address of the array (angles, n - 1, m - 1) of `CELL_RECORD` of each slice; those from `size` on are not read.
-    peaks : tuple of int (STENCIL_SIZE,)
-        Address of the variable `peak_rotation` of each slice, float64 (angles, n, m) [-].
-    """
-
-    restitutions: NDArray[np.float64]
-    products: NDArray[np.float64]
-    lower: int
-    size: int
-    cells: tuple[int, int, int, int]
-    peaks: tuple[int, int, int, int]
+`restitutions` are those of the slices [-], `products` the denominators of their Lagrange weights; `lower` is the slice
+at or below the restitutions of the points, `size` the number of slices used. `cells` and `peaks` are addresses: of the
+array (angles, n - 1, m - 1) of `CELL_RECORD` of each slice, and of its variable `peak_rotation`, float64 (angles, n, m)
+[-]; those from `size` on are not read.
+"""
 
 
 class AngleAxis(NamedTuple):
@@ -158,8 +155,8 @@ def pack_cells(
 
 
 @uncounted_entry
-def group_points(restitution: FloatArray, slices: FloatArray, order: FloatArray, ends: FloatArray) -> None:
-    """Sort points by the slices of restitution from which they are interpolated.
+def group_points(restitution: FloatArray, slices: FloatArray, group: FloatArray, counts: FloatArray) -> None:
+    """Find the slices of restitution from which points are interpolated.
 
     Parameters
     ----------
@@ -167,26 +164,16 @@ def group_points(restitution: FloatArray, slices: FloatArray, order: FloatArray,
         eta [-].
     slices : float array (n,)
         Restitutions of the cubes, ascending [-].
-    order : int32 array (points,), filled
-        Indices of the points: first those on slice 0, then those between 0 and 1, those on slice 1, and so on; those
-        outside of all slices are left out.
-    ends : int64 array (2 n,), filled
-        The end of each of these groups in `order`.
+    group : int32 array (points,), filled
+        2 k for a point on slice k, 2 k + 1 between it and the next one, -1 outside of the slices.
+    counts : int64 array (2 n,), filled
+        Number of points of each group.
     """
-    n = len(slices)
-    ends[:] = 0
+    counts[:] = 0
     for point in range(len(restitution)):
-        group = _group(restitution[point], slices)
-        if group >= 0:
-            ends[group] += 1
-    total = 0
-    for group in range(2 * n):
-        ends[group], total = total, total + ends[group]
-    for point in range(len(restitution)):
-        group = _group(restitution[point], slices)
-        if group >= 0:
-            order[ends[group]] = point
-            ends[group] += 1
+        group[point] = _group(restitution[point], slices)
+        if group[point] >= 0:
+            counts[group[point]] += 1
 
 
 @uncounted_kernel
@@ -239,74 +226,73 @@ def interpolate_many(
     frequency_ratio: FloatArray,
     restitution: FloatArray,
     alpha: FloatArray,
-    order: FloatArray,
     mesh: Mesh,
     axis: AngleAxis,
-    window: SliceWindow,
+    group: FloatArray,
+    windows: FloatArray,
     tolerance: float,
     safety: float,
     solver_error: float,
     places: FloatArray,
     logs: FloatArray,
+    counts: FloatArray,
     found: Found,
-) -> int:
+) -> None:
     """Fill `found` where the cubes determine the response within the tolerance.
 
     Parameters
     ----------
     slenderness, frequency_ratio, restitution, alpha : float arrays (points,)
         The points [-], [-], [-], [rad].
-    order : int32 array
-        Indices of the points to be interpolated; the restitutions of all of them are in the interval above slice
-        `window.lower`, or all on it if `window.size` is 1.
     mesh : Mesh
         The nodes.
     axis : AngleAxis
         The angles.
-    window : SliceWindow
-        The slices.
+    group : int32 array (points,)
+        Groups of the points, of `group_points`.
+    windows : array (groups,) of `SLICE_WINDOW`
+        The slices of each group; those of size 0 are not interpolated.
     tolerance : float
         Largest error bound [-].
     safety, solver_error : float
         The bound is `safety` times the sum of the measured errors, plus `solver_error` [-].
-    places, logs : int64 array (BLOCK, 4), float array (BLOCK,)
+    places, logs : int64 array (BLOCK, PLACE_SIZE), float array (BLOCK,)
         Working memory.
+    counts : int64 array (groups,)
+        Increased by the number of points of each group that were interpolated.
     found : Found
         Responses of all points.
-
-    Returns
-    -------
-    int
-        The number of points that were interpolated.
     """
-    interpolated = 0
-    for start in range(0, len(order), BLOCK):
-        size = min(BLOCK, len(order) - start)
+    points = len(slenderness)
+    for start in range(0, points, BLOCK):
+        size = min(BLOCK, points - start)
         for k in range(size):
-            point = order[start + k]
+            point = start + k
             s, w, angle = slenderness[point], frequency_ratio[point], alpha[point]
             logs[k] = np.log(w)
             i = cell_of(mesh.rows, s, mesh.rows, s, mesh.row_guide)
             j = cell_of(mesh.frequency_ratio, w, mesh.columns, logs[k], mesh.column_guide)
             first, count = _angle_window(axis, angle)
-            if i < 0 or j < 0 or s >= 1.0:
+            own = group[point]
+            slices = windows[own].size if own >= 0 else 0
+            if slices == 0 or i < 0 or j < 0 or s >= 1.0:
                 count = 0
             places[k, _ROW], places[k, _COLUMN], places[k, _FIRST], places[k, _COUNT] = i, j, first, count
-            _prefetch_point(i, j, first, count, mesh, window)
+            places[k, _GROUP] = own
+            _prefetch_point(places[k], mesh, windows)
         for k in range(size):
-            point = order[start + k]
+            point = start + k
             if places[k, _COUNT]:
-                interpolated += _interpolate_point(
+                counts[places[k, _GROUP]] += _interpolate_point(
                     point,
                     places[k],
                     (slenderness[point], logs[k], restitution[point], alpha[point]),
                     mesh,
                     axis,
-                    window,
+                    windows,
                     (tolerance, safety, solver_error),
                     found,
                 )
-    return interpolated
 
 
 @uncounted_kernel
@@ -323,15 +309,16 @@ def _angle_window(axis: AngleAxis, angle: float) -> tuple[int, int]:
 
 
 @uncounted_kernel
-def _prefetch_point(i: int, j: int, first: int, count: int, mesh: Mesh, window: SliceWindow) -> None:
+def _prefetch_point(place: FloatArray, mesh: Mesh, windows: FloatArray) -> None:
     """Prefetch the records and peaks of a point."""
+    i, j, first, count, own = place[_ROW], place[_COLUMN], place[_FIRST], place[_COUNT], place[_GROUP]
     rows, columns = len(mesh.rows), len(mesh.columns)
     for layer in range(first, first + count):
-        for e in range(window.size):
-            prefetch(window.cells[e] + CELL_BYTES * ((layer * (rows - 1) + i) * (columns - 1) + j))
+        for e in range(windows[own].size):
+            prefetch(windows[own].cells[e] + CELL_BYTES * ((layer * (rows - 1) + i) * (columns - 1) + j))
             for p in range(STENCIL_SIZE):
-                prefetch(window.peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j - 1))
-                prefetch(window.peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j + 2))
+                prefetch(windows[own].peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j - 1))
+                prefetch(windows[own].peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j + 2))
 
 
 @uncounted_kernel
@@ -341,12 +328,14 @@ def _interpolate_point(
     coordinates: Record,
     mesh: Mesh,
     axis: AngleAxis,
-    window: SliceWindow,
+    windows: FloatArray,
     limits: Record,
     found: Found,
 ) -> bool:
     """`interpolate_many` for one point, given its cell and the window of its angle."""
     i, j, first, count = place[_ROW], place[_COLUMN], place[_FIRST], place[_COUNT]
+    window = windows[place[_GROUP]]
+    size = window.size
     s, x, eta, angle = coordinates
     tolerance, safety, solver_error = limits
     rows, columns = len(mesh.rows), len(mesh.columns)
@@ -358,19 +347,19 @@ def _interpolate_point(
     error = 0.0
     by_angle = by_slice = (1.0, 0.0, 0.0, 0.0)
     if count > 1:
-        by_angle = padded_weights(axis.squares, axis.products, first, count, angle * angle)
+        by_angle = padded_weights(axis.squares, axis.products[first], first, count, angle * angle)
         below = np.searchsorted(axis.angles, angle) - 1 - first
         error = float(load_float32(lower + below * cell_layer + ALPHA_ERROR))
-        if window.size > 1:  # between slices: the larger of the two measured on either side, nan if either is
+        if size > 1:  # between slices: the larger of the two measured on either side, nan if either is
             upper = window.cells[window.lower + 1] + cell_offset
             error = np.maximum(error, float(load_float32(upper + below * cell_layer + ALPHA_ERROR)))
-    if window.size > 1:
-        by_slice = padded_weights(window.restitutions, window.products, 0, window.size, eta)
+    if size > 1:
+        by_slice = padded_weights(window.restitutions, window.products, 0, size, eta)
     kind, agree, all_squared, impacts = -1, True, True, -2
     for a in range(count):
-        if window.size > 1:
+        if size > 1:
             error += abs(by_angle[a]) * load_float32(lower + a * cell_layer + RESTITUTION_ERROR)
-        for e in range(window.size):
+        for e in range(size):
             cell = window.cells[e] + cell_offset + a * cell_layer
             code = load_int32(cell)
             this = code if code & 3 == OVERTURNS else PEAK
@@ -401,11 +390,11 @@ def _interpolate_point(
         layer_squared = all_squared
         if not all_squared:
             layer_squared = True
-            for e in range(window.size):
+            for e in range(size):
                 code = load_int32(window.cells[e] + cell_offset + a * cell_layer)
                 layer_squared = layer_squared and code & 3 == SQUARED
         layer_value = 0.0
-        for e in range(window.size):
+        for e in range(size):
             squared = load_int32(window.cells[e] + cell_offset + a * cell_layer) & 3 == SQUARED
             stencil = window.peaks[e] + peak_offset + a * peak_layer
             value = _interpolate_layer(stencil, 8 * columns, squared, by_row, by_column)

@@ -179,12 +179,16 @@ def lagrange_weights(axis: FloatArray, products: FloatArray, first: int, x: floa
 def padded_weights(
     slices: FloatArray, products: FloatArray, first: int, count: int, x: float
 ) -> tuple[float, float, float, float]:
-    """Lagrange weights at x of `count` slices from `first` on, 0 for those above; `products` of `slice_products`."""
+    """Lagrange weights at x of `count` slices from `first` on, 0 for those above; a row of `slice_products`."""
     d0, d1 = x - slices[first], x - slices[first + 1]
     d2 = x - slices[first + 2] if count > 2 else 1.0
     d3 = x - slices[first + 3] if count > 3 else 1.0
-    below = products[first]
-    return d1 * d2 * d3 / below[0], d0 * d2 * d3 / below[1], d0 * d1 * d3 / below[2], d0 * d1 * d2 / below[3]
+    return (
+        d1 * d2 * d3 / products[0],
+        d0 * d2 * d3 / products[1],
+        d0 * d1 * d3 / products[2],
+        d0 * d1 * d2 / products[3],
+    )
 
 
 def slice_products(slices: Array) -> Array:

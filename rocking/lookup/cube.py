@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Literal, get_args
 
 import numpy as np
@@ -22,6 +21,8 @@ from rocking.interpolation.kernel import (
     BLOCK,
     INTERPOLATED,
     NO_UPLIFT,
+    PLACE_SIZE,
+    SLICE_WINDOW,
     UNKNOWN,
     Found,
     group_points,
@@ -154,35 +155,39 @@ class Cube:
         """`Found.state` of the points (points,), their responses, and the slices used."""
         state, result = _empty(points)
         found = Found(state, *(getattr(result, name) for name in Found._fields[1:]))
-        order, ends = np.empty(state.size, dtype=np.int32), np.empty(2 * self.restitutions.size, dtype=np.int64)
-        places, logs = np.empty((BLOCK, 4), dtype=np.int64), np.empty(BLOCK)
-        group_points(points.restitution, self.restitutions, order, ends)
-        lower, others = [], []
-        for group, (start, end) in enumerate(pairwise([0, *ends.tolist()])):
-            slices = self._slices(*divmod(group, 2)) if end > start else []
-            if not slices:
-                continue
-            own = slices[0]
-            window = own.window(*slices[1:])
-            count = interpolate_many(
+        group, counts = np.empty(state.size, np.int32), np.empty(2 * self.restitutions.size, np.int64)
+        group_points(points.restitution, self.restitutions, group, counts)
+        wanted = {
+            k: slices for k, count in enumerate(counts.tolist()) if count and (slices := self._slices(*divmod(k, 2)))
+        }
+        counts[:] = 0
+        left = wanted
+        while left:
+            own = next(iter(left.values()))[0]
+            alike = {k: slices for k, slices in left.items() if slices[0] is own or slices[0].fits(own)}
+            left = {k: slices for k, slices in left.items() if k not in alike}
+            windows = np.zeros(counts.size, SLICE_WINDOW)
+            for k, slices in alike.items():
+                windows[k] = slices[0].window(*slices[1:])
+            interpolate_many(
                 points.slenderness,
                 points.frequency_ratio,
                 points.restitution,
                 points.alpha,
-                order[start:end],
                 own.mesh,
                 own.angles,
-                window,
+                group,
+                windows,
                 limit,
                 SAFETY,
                 SOLVER_ERROR,
-                places,
-                logs,
+                np.empty((BLOCK, PLACE_SIZE), np.int64),
+                np.empty(BLOCK),
+                counts,
                 found,
             )
-            if count:
-                lower.append(own)
-                others += slices[1:]
+        used = [slices for k, slices in wanted.items() if counts[k]]
+        lower, others = [one for one, *_ in used], [one for _, *rest in used for one in rest]
         # the slices are compared by identity
         return state, replace(result, source=SOURCES[state]), list(dict.fromkeys([*lower, *others]))
 

@@ -18,7 +18,7 @@ from rocking._numba.compilation import contiguous_array
 from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
-from rocking.interpolation.kernel import AngleAxis, SliceWindow, pack_cells
+from rocking.interpolation.kernel import SLICE_WINDOW, AngleAxis, pack_cells
 from rocking.interpolation.stencils import STENCIL_SIZE, Mesh, slice_products
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class CubeSlice:
     sha256: str
     peaks: Array
     cells: NDArray[np.void]
-    _windows: dict[tuple[ref[CubeSlice], ...], SliceWindow] = field(default_factory=dict, init=False, repr=False)
+    _windows: dict[tuple[ref[CubeSlice], ...], np.void] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def of(cls, axes: Mapping[str, Any], **fields: Any) -> CubeSlice:
@@ -87,7 +87,7 @@ class CubeSlice:
         """True if the axes of both are equal."""
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)
 
-    def window(self, *others: CubeSlice) -> SliceWindow:
+    def window(self, *others: CubeSlice) -> np.void:
         """The window of points on this slice, or between it and the next one of up to three others.
 
         It holds addresses in the slices, which the caller keeps while it uses the window.
@@ -98,12 +98,13 @@ class CubeSlice:
             slices = sorted([self, *others], key=lambda one: one.restitution)
             padded = slices + [self] * (STENCIL_SIZE - len(slices))
             restitutions = np.array([one.restitution for one in padded])
-            cells, peaks = (tuple(getattr(one, name).ctypes.data for one in padded) for name in ("cells", "peaks"))
-            products = slice_products(restitutions[: len(slices)])
-            found = SliceWindow(restitutions, products, slices.index(self), len(slices), cells, peaks)
+            products = slice_products(restitutions[: len(slices)])[0]
+            cells, peaks = ([getattr(one, name).ctypes.data for one in padded] for name in ("cells", "peaks"))
+            fields = restitutions, products, slices.index(self), len(slices), cells, peaks
+            window: np.void = np.array([fields], SLICE_WINDOW)[0]
             for old in [old for old in self._windows if any(one() is None for one in old)]:
                 self._windows.pop(old, None)
-            self._windows[key] = found
+            found = self._windows[key] = window
         return found
 
 

@@ -11,7 +11,7 @@ import rocking.lookup.cube
 from rocking.boundary.tracing import overturning_boundary
 from rocking.datasets.cube import read_spectrum, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.lookup.cube import SAFETY
+from rocking.lookup.cube import SAFETY, Cube
 from rocking.lookup.open import open_cube
 from rocking.model.response import Outcome
 from rocking.solver.bounded_response import SOLVER_ERROR, solve_with_bound
@@ -224,6 +224,23 @@ def test_axes_may_be_spaced_unevenly(tmp_path):
     np.testing.assert_array_equal(found.outcome, expected.outcome)
     error = np.abs(found.peak_rotation - expected.peak_rotation)[~expected.overturned]
     assert (error <= found.error_bound[~expected.overturned]).all()
+
+
+def test_cubes_of_other_axes_answer_points_on_their_own_restitution(tmp_path, cube):
+    made = spectrum("sine", restitution=0.9, slenderness=np.linspace(0.3, 0.8, 41), frequency_ratio=np.r_[6.0:9.0:0.1])
+    write_dataset(made, tmp_path / "other.nc")
+    other = open_cube(tmp_path / "other.nc")
+    both = Cube("sine", np.array([ETA, 0.9]), [cube.slice_at(0), other.slice_at(0)].__getitem__)
+    points, restitution = random_points(2000), np.random.default_rng(4).choice([ETA, 0.9, 0.87], 2000)
+    found = both.response(**points, restitution=restitution)
+    for eta, alone in ((ETA, cube), (0.9, other), (0.87, None)):
+        on = restitution == eta
+        part = {name: values[on] for name, values in points.items()}
+        method = "solver" if alone is None else "auto"  # slices of other axes are not interpolated between
+        expected = (alone or cube).response(**part, restitution=eta, method=method)
+        np.testing.assert_array_equal(found.peak_rotation[on], expected.peak_rotation)
+        np.testing.assert_array_equal(found.source[on], expected.source)
+        assert alone is None or (found.source[on] == "cube").any()
 
 
 def test_missing_and_damaged_files_raise(tmp_path, path):
