@@ -16,7 +16,7 @@ from rocking.closed_form.case_2 import case_2_amplitude
 class OverturningAmplitudes(NamedTuple):
     """Amplitudes a [-] at which the outcome changes.
 
-    The block overturns for falls_from < a < safe_again and for a > direct.
+    The block overturns for falls_from < a < safe_again, but for the gap of the notes, and for a > direct.
     """
 
     falls_from: Array
@@ -42,6 +42,10 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
 
     Notes
     -----
+    Between the two ends a block may survive all the same, near the tip of the region: for eta = 0.72 with omega from
+    3.4336 to 3.4395, where a gap reaches into it (2.389 < a < 2.515 at 3.4372). `case_1_1_margin` and
+    `case_1_2_margin` are negative there.
+
     These curves are not complete, contrary to the paper. Near the tip of the safe region (1/a > 0.897, omega < 1.1)
     there are islands in which the block overturns after three, five or more impacts (always an odd number), all within
     the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000 random

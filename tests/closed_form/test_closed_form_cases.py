@@ -207,6 +207,15 @@ def test_no_overturning_after_impact_for_zero_restitution():
     assert np.isnan(cf.case_1_2_amplitudes([1.0, 5.0], 0.0).lower).all()
 
 
+def test_blocks_between_the_two_intervals_of_one_impact_survive():
+    during, after = cf.case_1_1_amplitudes(3.4372, 0.72), cf.case_1_2_amplitudes(3.4372, 0.72)
+    ends = np.array([during.lower, during.upper, after.lower, after.upper])
+    assert (np.diff(ends) > 0.1).all()
+    for shift, expected in ((-1e-6, [False, True, False, True]), (1e-6, [True, False, True, False])):
+        found = peak_response("sine", slenderness=1 / (ends + shift), frequency_ratio=3.4372, restitution=0.72)
+        np.testing.assert_array_equal(found.overturned, expected)
+
+
 def test_solver_and_closed_forms_agree_on_every_outcome_outside_the_islands():
     rng = np.random.default_rng(11)
     n = 20_000

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rocking.boundary.curves import curves_at
 from rocking.boundary.search import RESOLUTION, region_code
 from rocking.boundary.tracing import CHORD
-from rocking.closed_form import overturning_amplitudes
+from rocking.closed_form import case_1_1_margin, case_1_2_margin, overturning_amplitudes
 from rocking.datasets.cube import read_dataset, read_spectrum
 from rocking.model.outcome_code import outcome_codes
 from rocking.model.response import Outcome
@@ -30,6 +30,9 @@ LAYERS = (3e-6, 1e-5, 3e-5, 1e-4, 3e-4)
 
 VERTICES = 3000
 """Vertices that are tested for each angle of a file, about, evenly spaced along its curves."""
+
+TIP = 0.2
+"""Frequency ratio below which the safe region ends, near 1/a = 0.99, in layers that are not all resolved [-]."""
 
 DATA_SETS: list[str] = json.loads(os.environ["ROCKING_DATA_SETS"])
 """Names of the files of the pulse, relative to `RESULTS`."""
@@ -78,11 +81,15 @@ def test_outcome_changes_across_each_boundary_as_its_file_states(name: str) -> N
         for step in STEPS[1:]:
             left = left[~_as_stated(curves, left, step, step)]
         resolved = stored.thinnest_uncounted_region <= LAYERS[0]
-        assert left.size < (0.05 if resolved else 0.08) * points.size
+        at_tip = curves.frequency_ratio.values[left] < TIP
+        assert left[~at_tip].size < (0.05 if resolved else 0.08) * points.size
+        assert left.size < 0.08 * points.size
         for step in LAYERS:
             if step <= max(stored.thinnest_uncounted_region, LAYERS[0]):
                 left = left[~_as_stated(curves, left, STEPS[-1], step)]
-        assert left.size < 0.02 * points.size
+        at_tip = curves.frequency_ratio.values[left] < TIP
+        assert left[~at_tip].size < 0.02 * points.size
+        assert left.size < 0.05 * points.size
 
 
 def _as_stated(curves: xr.Dataset, points: NDArray[np.intp], own: float, other: float) -> NDArray[np.bool_]:
@@ -119,10 +126,21 @@ def _codes(curves: xr.Dataset, side: str) -> NDArray[np.int64]:
 @pytest.mark.parametrize("name", listed("overturning/sine/"))
 def test_traced_boundaries_agree_with_the_closed_forms(name: str) -> None:
     curves = curves_at(read_dataset(RESULTS / name), 0.0)
-    assert np.nanmax(np.abs(curves.closed_form_difference)) < 1e-9
-    # a point halfway between the two branches overturns, so the closed forms are not vacuous
-    middle = overturning_amplitudes(3.0, float(curves.restitution))
+    other = np.abs(curves.closed_form_difference.values) >= 1e-9
+    # the outer ends of overturning after one impact are stored; near its tip a gap of safe blocks has ends between them
+    assert other.sum() <= 0.01 * curves.sizes["point"]
+    s, omega, eta = curves.slenderness.values[other], curves.frequency_ratio.values[other], float(curves.restitution)
+    beside = [
+        np.fmax(case_1_1_margin(1 / end, omega, eta), case_1_2_margin(1 / end, omega, eta)) > 0.0
+        for end in (s - 1e-9, s + 1e-9)
+    ]
+    assert (beside[0] != beside[1]).all()
+    # a point halfway between the two branches overturns, so the closed forms are not vacuous; below eta = 0.63 there
+    # are none at this frequency
+    frequency_ratio, restitution = 3.0, float(curves.restitution)
+    middle = overturning_amplitudes(frequency_ratio, restitution)
     a = 0.5 * (middle.falls_from + middle.safe_again)
-    assert peak_response(
-        "sine", slenderness=1 / a, frequency_ratio=3.0, restitution=float(curves.restitution)
-    ).overturned
+    if restitution < 0.63:
+        assert np.isnan(a)
+        a = 1.01 * middle.direct
+    assert peak_response("sine", slenderness=1 / a, frequency_ratio=frequency_ratio, restitution=restitution).overturned
