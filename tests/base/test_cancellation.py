@@ -87,16 +87,19 @@ def test_a_kernel_reads_the_flag_within_one_cell():
     """One block with 200,000 impacts: the load of the flag must not be moved out of the loop."""
     s, w, eta = (np.array([x]) for x in (MANY[-1], 0.05, 1.0))
     for alpha in (0.0, 0.2):
-        flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
-        pulse = pulse_state(rocking.get_pulse("c2")).copy()
-        scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse, *stage_state())
-        groups = (s, w, eta, np.array([alpha])) if alpha else (s, w, eta)
-        kernel = solve_batch if alpha else solve_by_arcs
-        timer = threading.Timer(0.003, flag.fill, [1])
-        timer.start()
-        kernel(*groups, *scratch, flag, answers)
-        timer.join()
-        reached = (scratch[0][0] if alpha else scratch[0])["impacts"]
+        for delay in (0.003, 0.006, 0.003, 0.006, 0.012):  # on a busy machine kernel or timer may start later
+            flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
+            pulse = pulse_state(rocking.get_pulse("c2")).copy()
+            scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse, *stage_state())
+            groups = (s, w, eta, np.array([alpha])) if alpha else (s, w, eta)
+            kernel = solve_batch if alpha else solve_by_arcs
+            timer = threading.Timer(delay, flag.fill, [1])
+            timer.start()
+            kernel(*groups, *scratch, flag, answers)
+            timer.join()
+            reached = (scratch[0][0] if alpha else scratch[0])["impacts"]
+            if 0 < reached < 200_000:
+                break
         assert 0 < reached < 200_000
 
 
