@@ -1,5 +1,8 @@
 """Make data sets through Slurm and compare all bytes with those of a local run: `python -m stress.slurm`, `make slurm`.
 
+With `--kills 6` the run through Slurm is killed six times at random moments: a job of the cluster, the main
+process, or everything. Killed jobs are repeated by the run; where it was killed itself the same command follows.
+
 Where `sinfo` finds no cluster, one of one node is started on this machine, from the packages of Debian, which root
 installs if they are missing, and ended afterwards. Where that is not possible the program says why, and ends without an
 error. The executor plugin comes from the extra `slurm` of the project.
@@ -9,7 +12,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import random
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -39,6 +44,12 @@ PLUGIN = PROJECT / "build/slurm"
 """Folder of the executor plugin, see the target `slurm` of the Makefile."""
 
 SLURM = ("--workflow-profile", "profiles/slurm", "--slurm-no-account", "--slurm-status-command", "squeue")
+
+KILLED = ("job", "main", "job", "all")
+"""What is killed, in turn: a job of the cluster, the main process with its local jobs, or everything."""
+
+KILL_INTERVAL = 10.0, 50.0
+"""Time between two kills, lowest and highest [s]: the first job is sent after some five."""
 
 START_TIMEOUT = 60.0
 """Time for which the cluster may start [s]."""
@@ -156,21 +167,74 @@ def wait_for(command: Sequence[str]) -> None:
         time.sleep(0.5)
 
 
-def make(directory: Path, configuration: str | None, *options: str) -> float:
-    """Run the workflow in a directory; return the time it took [s]."""
-    start = time.perf_counter()
+def start(directory: Path, configuration: str | None, *options: str) -> subprocess.Popen[bytes]:
+    """Start the workflow in a directory, in a process group of its own, with its output in a file."""
     command = [
         sys.executable, "-m", "workflow.run", *options, "--configfile", configuration or CONFIGURATION,
         "--directory", directory, "--nocolor", "--", *(() if configuration else TARGETS),
     ]  # fmt: skip
     path = os.pathsep.join(filter(None, [str(PLUGIN), os.environ.get("PYTHONPATH")]))
-    done = subprocess.run(
-        command, cwd=PROJECT, env={**os.environ, "PYTHONPATH": path}, text=True, check=False,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-    )  # fmt: skip
-    if done.returncode != 0:
-        sys.exit(done.stdout)
-    return time.perf_counter() - start
+    with output(directory).open("wb") as log:
+        return subprocess.Popen(
+            command, cwd=PROJECT, env={**os.environ, "PYTHONPATH": path}, start_new_session=True,
+            stdout=log, stderr=subprocess.STDOUT,
+        )  # fmt: skip
+
+
+def output(directory: Path) -> Path:
+    """Return the file of the output of the last run in a directory."""
+    return directory.with_suffix(".log")
+
+
+def finish(run: subprocess.Popen[bytes], directory: Path) -> None:
+    """Wait for a run, and end this program with its output if it fails."""
+    if run.wait() != 0:
+        sys.exit(output(directory).read_text())
+
+
+def make(directory: Path, configuration: str | None, *options: str) -> float:
+    """Run the workflow in a directory; return the time it took [s]."""
+    begin = time.perf_counter()
+    finish(start(directory, configuration, *options), directory)
+    return time.perf_counter() - begin
+
+
+def make_with_kills(directory: Path, configuration: str | None, kills: int) -> float:
+    """Run the workflow through Slurm, killed so many times unless it ends before; return the time it took [s]."""
+    begin, draw = time.perf_counter(), random.Random(1)
+    run = start(directory, configuration, *SLURM)
+    for number in range(kills):
+        try:
+            run.wait(draw.uniform(*KILL_INTERVAL))
+        except subprocess.TimeoutExpired:
+            if kill(run, directory, KILLED[number % len(KILLED)]):
+                run.wait()
+                run = start(directory, configuration, *SLURM)
+        else:
+            print(f"ended after {number} kills", flush=True)
+            break
+    finish(run, directory)
+    return time.perf_counter() - begin
+
+
+def kill(run: subprocess.Popen[bytes], directory: Path, what: str) -> bool:
+    """Kill `what` of a run through Slurm (SIGKILL); return whether the run has ended thereby."""
+    jobs = running_jobs(directory)
+    chosen = {"job": jobs[:1], "main": [], "all": jobs}[what]
+    if what != "job":
+        os.killpg(run.pid, signal.SIGKILL)
+    if chosen:
+        subprocess.run(["scancel", "--full", "--signal=KILL", *chosen], check=True)
+    print(f"{what} killed: {len(chosen)} of {len(jobs)} jobs of the cluster", flush=True)
+    return what != "job"
+
+
+def running_jobs(directory: Path) -> list[str]:
+    """Return the numbers of the jobs of the cluster that run for a directory."""
+    command = ["squeue", "--noheader", "--states=running", "--format=%A %Z"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True)
+    rows = (line.split(maxsplit=1) for line in listed.stdout.splitlines())
+    return [number for number, folder in rows if Path(folder).resolve() == directory.resolve()]
 
 
 def digests(directory: Path) -> dict[str, str]:
@@ -183,12 +247,14 @@ def main() -> None:
     """Command line; exit status 1 unless all files are equal."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--configuration", help="make everything of this one, instead of some products of smoke.yaml")
-    configuration = parser.parse_args().configuration
+    parser.add_argument("--kills", type=int, default=0, help="kill the run through Slurm so many times")
+    options = parser.parse_args()
+    configuration = options.configuration
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         try:
             with cluster(folder):
-                through_slurm = make(folder / "slurm", configuration, *SLURM)
+                through_slurm = make_with_kills(folder / "slurm", configuration, options.kills)
         except UnavailableError as error:
             print(f"skipped: {error}")
             return

@@ -2,6 +2,9 @@
 
 A run holds `run.lock` exclusively. Its jobs share `jobs.lock` and end as soon as the run has ended. A process that
 obtains both locks is the only one in the folder, also after a run was killed; unfinished files there are then stale.
+
+A cluster may start a job of a killed run long after another run has begun: it finds the number of the other run in
+`run.lock`, and ends.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ import os
 import select
 import threading
 import time
+import uuid
 from pathlib import Path
 from typing import IO
 
@@ -18,6 +22,9 @@ from rocking.datasets.checksum import PARTIAL
 
 RUN_ID = "ROCKING_RUN"
 """Environment variable: id of the process with which a process ends, the run for a job and make for a run."""
+
+RUN_NUMBER = "ROCKING_RUN_NUMBER"
+"""Environment variable: random number of the run of a job."""
 
 FOLDER = Path(".snakemake")
 """Folder of the locks and of the files of Snakemake."""
@@ -49,11 +56,12 @@ def acquire(folder: Path) -> None:
     run = (folder / FOLDER / "run.lock").open("a+")
     if not _locked(run, LOCK_TIMEOUT):
         run.seek(0)
-        process = run.read().strip()
+        process = run.readline().strip()
         run.close()
         raise RunningError(f"{folder}: another run (process {process}) is active here; wait for its end, or stop it")
     run.truncate(0)
-    run.write(f"{os.getpid()}\n")
+    os.environ[RUN_NUMBER] = uuid.uuid4().hex
+    run.write(f"{os.getpid()}\n{os.environ[RUN_NUMBER]}\n")
     run.flush()
     _held[folder] = run
     with (folder / FOLDER / "jobs.lock").open("a") as jobs:
@@ -62,7 +70,7 @@ def acquire(folder: Path) -> None:
             fcntl.flock(jobs, fcntl.LOCK_EX)
         # Snakemake's copies of the scripts that it ran, and unfinished data sets
         for left in (*(folder / FOLDER / "scripts").glob("tmp*.py"), *(folder / "results").rglob(f".*{PARTIAL}")):
-            left.unlink()
+            left.unlink(missing_ok=True)  # Snakemake removes the copies of a job some time after its script has ended
 
 
 def _locked(file: IO[str], timeout: float) -> bool:
@@ -80,9 +88,18 @@ def _locked(file: IO[str], timeout: float) -> bool:
 
 
 def join_run() -> None:
-    """In a job: share the lock of the folder until the job ends, and end with the run."""
+    """In a job: share the lock of the folder until the job ends, and end with the run.
+
+    Raises
+    ------
+    RunningError
+        If the run of this job was killed and another one has begun.
+    """
     jobs = _held[FOLDER] = (FOLDER / "jobs.lock").open("a")
     fcntl.flock(jobs, fcntl.LOCK_SH)
+    number = os.environ.get(RUN_NUMBER)  # a cluster may not pass it on
+    if number and number not in (FOLDER / "run.lock").read_text():
+        raise RunningError("the run that sent this job was killed, and another one has begun")
     end_with(int(os.environ[RUN_ID]))  # with the lock held: a later run waits for this job, or the job ends here
 
 

@@ -9,12 +9,17 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from matplotlib.backends.registry import BackendFilter, backend_registry
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from rocking.errors import InvalidArgumentError
 from rocking.plot.style import STYLE
 
 FORMATS = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
 """Endings of files, and the metadata that are left out, so that equal pictures are equal files."""
+
+
+POSITION_DIGITS = 9
+"""Digits of the positions of axes, as fractions of the size of the figure."""
 
 
 def style() -> AbstractContextManager[None]:
@@ -39,7 +44,7 @@ def new_figure(path: str | None, size: tuple[float, float]) -> Figure:
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:
-    """Write a figure; equal pictures give equal bytes.
+    """Lay out a figure, unless that was done before, and write it; equal pictures give equal bytes.
 
     Raises
     ------
@@ -47,10 +52,28 @@ def save_figure(figure: Figure, path: str | Path) -> None:
         If the ending of the name is not known, or the file cannot be written.
     """
     metadata = _metadata(path)
+    _lay_out(figure)
     try:
         figure.savefig(path, metadata=metadata)
     except OSError as error:
         raise InvalidArgumentError("output", str(path), f"a file that can be written: {error.strerror}") from None
+
+
+def _lay_out(figure: Figure) -> None:
+    """Place the parts of a figure for good, at rounded positions.
+
+    The solver of the constrained layout adds numbers in the order of addresses in memory, so that the last digits of
+    the positions differ between processes. An SVG file names its clip paths by a digest of all of their digits.
+    """
+    engine = figure.get_layout_engine()
+    if engine is None:
+        return
+    engine.execute(figure)
+    figure.set_layout_engine("none")  # a second format needs no second layout
+    for part in figure.subfigs:
+        part.bbox_relative.set_points(part.bbox_relative.get_points().round(POSITION_DIGITS))
+    for ax in figure.axes:
+        ax.set_position(Bbox(ax.get_position(original=True).get_points().round(POSITION_DIGITS)))
 
 
 def show_figure(figure: Figure) -> None:

@@ -7,6 +7,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 import rocking
 from rocking import plot
@@ -197,6 +198,28 @@ def test_files_of_equal_pictures_are_equal(tmp_path):
                 save_figure(figure, tmp_path / f"{name}.{ending}")
         first, second = ((tmp_path / f"{name}.{ending}").read_bytes() for name in "ab")
         assert first == second
+
+
+class InaccurateLayout(ConstrainedLayoutEngine):
+    """A layout whose last digits differ, as from one process to another."""
+
+    def execute(self, fig):
+        super().execute(fig)
+        for part in fig.subfigs:
+            part.bbox_relative.p0 += 1e-14
+        for ax in fig.axes:
+            ax.set_position(ax.get_position(original=True).translated(1e-14, -1e-14))
+
+
+def test_last_digits_of_the_layout_do_not_change_a_file(tmp_path):
+    for name, layout in (("a", ConstrainedLayoutEngine()), ("b", InaccurateLayout())):
+        with mpl.rc_context(plot.STYLE):
+            figure = Figure(figsize=(3.0, 2.0), layout=layout)
+            left, right = figure.subfigures(1, 2)
+            left.subplots(2, 1)
+            plot.response(rocking.peak_response("sine", **GROUPS), right.subplots())
+            save_figure(figure, tmp_path / f"{name}.svg")
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
 
 
 def test_without_a_display_a_file_is_asked_for():

@@ -221,6 +221,12 @@ def test_temporary_files_of_jobs_lie_in_the_folder_of_the_run_and_are_deleted_by
     assert found[0] != found[1]
 
 
+@pytest.fixture(autouse=True)
+def no_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No run has begun in this process."""
+    monkeypatch.delenv("ROCKING_RUN_NUMBER", raising=False)
+
+
 @pytest.fixture
 def holder(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     """A process that holds a folder."""
@@ -279,3 +285,32 @@ def test_job_ends_with_its_run_and_locks_the_folder_until_then(tmp_path: Path) -
         first.kill()
         assert second.wait(60) == 0
         assert first.stdout.read() == ""  # closed by the job too
+
+
+def test_job_of_a_killed_run_ends_if_another_run_has_begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = []
+    for _ in range(2):
+        acquire(tmp_path)
+        numbers.append(os.environ["ROCKING_RUN_NUMBER"])
+        _held.pop(tmp_path.resolve()).close()
+    job = "from workflow.run_lock import join_run; join_run()"
+    monkeypatch.setenv("ROCKING_RUN", str(os.getpid()))
+    monkeypatch.setenv("PYTHONPATH", str(PROJECT))
+    ended = []
+    for number in numbers:
+        monkeypatch.setenv("ROCKING_RUN_NUMBER", number)
+        ended.append(
+            subprocess.run([sys.executable, "-c", job], cwd=tmp_path, capture_output=True, text=True, check=False)
+        )
+    assert "another one has begun" in ended[0].stderr
+    assert [one.returncode for one in ended] == [1, 0]
+
+
+def test_files_that_a_job_removes_itself_do_not_stop_the_next_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gone = tmp_path / ".snakemake/scripts/tmp1.py"
+    glob = Path.glob
+    monkeypatch.setattr(Path, "glob", lambda path, pattern: [gone] if path == gone.parent else glob(path, pattern))
+    acquire(tmp_path)
+    _held.pop(tmp_path.resolve()).close()
