@@ -39,6 +39,7 @@ def load_kernels() -> None:
     block: dict[str, Any] = {"slenderness": 0.8, "frequency_ratio": 3.0, "restitution": 0.85}
     peak_response("sine", **block)
     peak_response("sine", **block, alpha=0.3)
+    peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
     motion = Record([0.0, 1.0, -1.0, 0.0], 0.1, unit="m/s2")
     record_response(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85, alpha=[0.0, 0.3])
     record_history(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85)

@@ -23,6 +23,7 @@ from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.kernels.batch import solve_batch
 from rocking.solver.stages.batch import LEFT, solve_by_arcs
+from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import StageState, stage_state
 from rocking.solver.state import FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
 
@@ -208,13 +209,14 @@ def _solve_alike(
 def _fill_by_arcs(
     pulse: AbstractPulse, cells: list[NDArray[np.float64]], flag: NDArray[np.uint8], records: NDArray[np.void]
 ) -> None:
-    """Solve slender blocks in stages, and by Taylor steps those under a wavelet that no stage decides."""
+    """Solve slender blocks in stages, and what these leave one by one, under a wavelet by Taylor steps."""
     state, stages = solver_state.of_arcs(pulse)
-    solve_by_arcs(*cells[:3], state, *stages, flag, records)
+    if solve_by_arcs(*cells[:3], state, *stages, flag, records) == 0:
+        return
     if pulse.series.has_exact_arcs:
+        solve_remainder(*cells[:3], state, flag, records)
         return
     left = np.flatnonzero(records["outcome"] == LEFT)
-    if left.size:
-        rest = np.empty(left.size, RESPONSE_RECORD)
-        solve_batch(*(cell[left] for cell in cells), *solver_state.of_steps(pulse, FULL_PRECISION), flag, rest)
-        records[left] = rest
+    rest = np.empty(left.size, RESPONSE_RECORD)
+    solve_batch(*(cell[left] for cell in cells), *solver_state.of_steps(pulse, FULL_PRECISION), flag, rest)
+    records[left] = rest

@@ -13,8 +13,8 @@ from rocking.boundary.frequency import critical_frequency_ratio
 from rocking.errors import StoppedError
 from rocking.history.motion import build_motion
 from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.stages.batch import solve_by_arcs
-from rocking.solver.stages.state import stage_state
+from rocking.solver.stages.batch import LEFT
+from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.state import RESPONSE_RECORD, pulse_state, step_state
 from rocking.spectra.cubes import spectra
 
@@ -90,9 +90,10 @@ def test_a_kernel_reads_the_flag_within_one_cell():
         for delay in (0.003, 0.006, 0.003, 0.006, 0.012):  # on a busy machine kernel or timer may start later
             flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
             pulse = pulse_state(rocking.get_pulse("c2")).copy()
-            scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse, *stage_state())
+            answers["outcome"] = LEFT
+            scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse,)
             groups = (s, w, eta, np.array([alpha])) if alpha else (s, w, eta)
-            kernel = solve_batch if alpha else solve_by_arcs
+            kernel = solve_batch if alpha else solve_remainder
             timer = threading.Timer(delay, flag.fill, [1])
             timer.start()
             kernel(*groups, *scratch, flag, answers)

@@ -10,7 +10,8 @@ from rocking._numba.compilation import kernel
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.solver.kernels.batch import write_response
 from rocking.solver.kernels.event_loop import advance_by_arc, init_state
-from rocking.solver.stages.batch import solve_by_arcs
+from rocking.solver.stages.batch import LEFT, solve_by_arcs
+from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import BLOCK_SIZE, stage_state
 from rocking.solver.state import RESPONSE_RECORD, pulse_state
 
@@ -29,7 +30,11 @@ def cells(count, seed):
 
 def by_stages(pulse, s, w, eta):
     found = np.zeros(s.size, RESPONSE_RECORD)
-    solve_by_arcs(s, w, eta, pulse_state(pulse).copy(), *stage_state(), np.zeros(1, np.uint8), found)
+    stop = np.zeros(1, np.uint8)
+    left = solve_by_arcs(s, w, eta, pulse_state(pulse).copy(), *stage_state(), stop, found)
+    assert left == np.count_nonzero(found["outcome"] == LEFT)
+    if pulse.series.has_exact_arcs:
+        solve_remainder(s, w, eta, pulse_state(pulse).copy(), stop, found)
     return found
 
 

@@ -2,8 +2,8 @@
 
 A cell waits in the list of its next flight: long or short, with negative or positive rotation. `LANES` cells of a list
 are followed at a time, and each is put into the list of the flight after that. The arithmetic of a cell depends neither
-on its lane nor on the other cells. What no stage decides is left to the general solver, from rest
-(`rocking.solver.kernels.event_loop`, under wavelets by Taylor steps): possible hidden peaks, and very many impacts.
+on its lane nor on the other cells. What no stage decides, possible hidden peaks and very many impacts, is left to the
+caller: for `rocking.solver.stages.remainder`, under wavelets for Taylor steps.
 """
 
 from __future__ import annotations
@@ -13,9 +13,7 @@ import math
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES, any_lane, gather_rows, load, scatter_rows, select, splat, store
-from rocking.solver.excitation import WAVELET
-from rocking.solver.kernels.batch import write_response
-from rocking.solver.kernels.event_loop import NO_UPLIFT, advance_by_arc, init_state
+from rocking.solver.kernels.event_loop import NO_UPLIFT
 from rocking.solver.stages.cuts import cut_phases, init_cuts, init_nodes
 from rocking.solver.stages.events import end_flights
 from rocking.solver.stages.flight import follow_flights
@@ -46,7 +44,7 @@ from rocking.solver.stages.state import (
 )
 
 LEFT = -1
-"""Outcome of a cell under a wavelet that no stage decides: it is left to the caller."""
+"""Outcome of a cell that no stage decides: it is left to the caller."""
 
 LONG_LISTS, SHORT_LISTS, GENERAL_LIST = 0, 2, 4
 """Lists of cells: two for each kind of flight, with negative and positive rotation, and one for the general solver."""
@@ -274,17 +272,6 @@ def follow_group(
         share_flights(which, eta, pulse, group, cells, responses)
 
 
-@kernel
-def solve_generally(
-    pulse: Record, slenderness: float, omega: float, eta: float, stop: FloatArray, response: Record
-) -> None:
-    """The response of a cell by the general solver; `pulse` is used as its state."""
-    init_state(slenderness, omega, 0.0, pulse)
-    while advance_by_arc(pulse, eta) and not is_stopped(stop):
-        pass
-    write_response(pulse, response)
-
-
 @entry
 def solve_by_arcs(
     slenderness: FloatArray,
@@ -295,7 +282,7 @@ def solve_by_arcs(
     cells: Record,
     stop: FloatArray,
     responses: Record,
-) -> None:
+) -> int:
     """Follow slender blocks from rest to their final outcome, under sinusoids or a wavelet.
 
     Parameters
@@ -307,10 +294,17 @@ def solve_by_arcs(
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight; responses are missing.
     responses : array (cells,) of `rocking.solver.state.RESPONSE_RECORD`
-        Filled; of cells under a wavelet that no stage decides only the outcome, with `LEFT`.
+        Filled; of cells that no stage decides only the outcome, with `LEFT`, the impacts that were followed, and if
+        there are any the times of uplift and of the first impact with its velocity.
+
+    Returns
+    -------
+    int
+        Number of cells that no stage decides.
     """
     init_nodes(pulse, group)
     rows, lists, counts, members = cells.rows, cells.lists, cells.counts, cells.members
+    left = 0
     for first in range(0, len(slenderness), BLOCK_SIZE):
         last = min(first + BLOCK_SIZE, len(slenderness))
         block = responses[first:last]
@@ -326,13 +320,10 @@ def solve_by_arcs(
                 break
             follow_group(fullest, shared, eta[first:last], pulse, group, cells, block)
         for i in range(counts[GENERAL_LIST]):
-            cell = first + lists[GENERAL_LIST, i]
-            if pulse.family == WAVELET:
-                responses[cell].outcome = LEFT
-                continue
-            solve_generally(pulse, slenderness[cell], omega[cell], eta[cell], stop, responses[cell])
-            row = rows[lists[GENERAL_LIST, i]]
-            if row[IMPACTS] > 0.0:  # the same bits for each eta
-                responses[cell].uplift_time = row[UPLIFT_TIME]
-                responses[cell].first_impact_time = row[FIRST_IMPACT_TIME]
-                responses[cell].first_impact_velocity = row[FIRST_IMPACT_VELOCITY]
+            place = lists[GENERAL_LIST, i]
+            row, response = rows[place], block[place]
+            response.outcome, response.impacts = LEFT, int(row[IMPACTS])
+            response.uplift_time, response.first_impact_time = row[UPLIFT_TIME], row[FIRST_IMPACT_TIME]
+            response.first_impact_velocity = row[FIRST_IMPACT_VELOCITY]
+        left += counts[GENERAL_LIST]
+    return left
