@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import FloatArray, entry, kernel
+from rocking._numba.compilation import FloatArray, array_entry, array_kernel
 
 SECANT, STEP, CURVATURE, SPAN = range(4)
 """Indices of the numbers of a trend."""
@@ -29,7 +29,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 
-@kernel
+@array_kernel
 def end_slopes(trends: FloatArray, side: int) -> FloatArray:
     """Derivatives of 1/a with respect to log omega at thresholds (thresholds,); nan where unknown."""
     slopes = np.empty(len(trends))
@@ -41,7 +41,7 @@ def end_slopes(trends: FloatArray, side: int) -> FloatArray:
     return slopes
 
 
-@kernel
+@array_kernel
 def _distances_to_next(x: FloatArray) -> FloatArray:
     """Distance of each threshold from the nearest other one of its column."""
     nearest = np.full(x.size, np.inf)
@@ -52,7 +52,7 @@ def _distances_to_next(x: FloatArray) -> FloatArray:
     return nearest
 
 
-@kernel
+@array_kernel
 def _interpolate(at: float, x: FloatArray, y: FloatArray) -> Any:
     """Linear interpolation, constant beyond the ends."""
     if at <= x[0]:
@@ -63,7 +63,7 @@ def _interpolate(at: float, x: FloatArray, y: FloatArray) -> Any:
     return y[-1]
 
 
-@kernel
+@array_kernel
 def _filled(x: FloatArray, slopes: FloatArray) -> FloatArray:
     """Slopes, the unknown ones interpolated between those of the curves beside them."""
     known = ~np.isnan(slopes)
@@ -77,7 +77,7 @@ def _filled(x: FloatArray, slopes: FloatArray) -> FloatArray:
     return filled
 
 
-@kernel
+@array_kernel
 def _distance(x: float, y: float, slope: float, other: float, step: float, known: bool) -> float:
     """Distance of two thresholds, one of them moved along its slope, the nearer way; nan slopes do not count."""
     moved = abs(x + slope * step - y)
@@ -91,13 +91,13 @@ def _distance(x: float, y: float, slope: float, other: float, step: float, known
     return moved
 
 
-@kernel
+@array_kernel
 def _kinds(codes: IntArray) -> IntArray:
     """A number for the two regions that each threshold separates."""
     return 4096 * codes[:-1] + codes[1:]
 
 
-@kernel
+@array_kernel
 def _costs_alone(kinds: IntArray, others: IntArray, codes: IntArray, many: int, known: BoolArray) -> FloatArray:
     """Cost of each threshold of a column without partner, per step in log omega."""
     costs = np.empty(kinds.size)
@@ -109,7 +109,7 @@ def _costs_alone(kinds: IntArray, others: IntArray, codes: IntArray, many: int, 
     return costs
 
 
-@entry
+@array_entry
 def match_trends(
     x: FloatArray,
     y: FloatArray,
@@ -199,7 +199,7 @@ def match_trends(
     return reverse[:count][::-1].copy()
 
 
-@entry
+@array_entry
 def learn_trends(
     pairs: IntArray,
     x: FloatArray,
@@ -233,7 +233,7 @@ def learn_trends(
             own[CURVATURE] = sign * (secant - other[SECANT]) / own[SPAN]
 
 
-@entry
+@array_entry
 def follow_trends(
     below: FloatArray,
     above: FloatArray,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import FloatArray, Record, contiguous_array, uncounted_entry, uncounted_kernel
+from rocking._numba.compilation import FloatArray, Record, contiguous_array, entry, kernel
 from rocking._numba.memory import load_float32, load_float64, load_int32, prefetch
 from rocking.interpolation.stencils import (
     NO_STENCIL,
@@ -154,7 +154,7 @@ def pack_cells(
     return cells
 
 
-@uncounted_entry
+@entry
 def group_points(restitution: FloatArray, slices: FloatArray, group: FloatArray, counts: FloatArray) -> None:
     """Find the slices of restitution from which points are interpolated.
 
@@ -176,7 +176,7 @@ def group_points(restitution: FloatArray, slices: FloatArray, group: FloatArray,
             counts[group[point]] += 1
 
 
-@uncounted_kernel
+@kernel
 def _group(value: float, slices: FloatArray) -> int:
     """2 k on slice k, 2 k + 1 between it and the next one, -1 outside of the slices."""
     below = -1
@@ -189,7 +189,7 @@ def _group(value: float, slices: FloatArray) -> int:
     return 2 * below + 1 if below + 1 < len(slices) else -1
 
 
-@uncounted_kernel
+@kernel
 def _interpolate_layer(address: int, stride: int, squared: bool, by_row: Record, by_column: Record) -> float:
     """Interpolate 4 x 4 node values, or (1 - value)^2 if `squared`, with the weights of rows and columns.
 
@@ -206,21 +206,21 @@ def _interpolate_layer(address: int, stride: int, squared: bool, by_row: Record,
     return total
 
 
-@uncounted_kernel
+@kernel
 def _peak_of(value: float) -> float:
     """The peak from an interpolated (1 - peak)^2."""
     root: float = np.sqrt(max(value, 0.0))
     return 1.0 - root
 
 
-@uncounted_kernel
+@kernel
 def _form(value: float, squared: bool) -> float:
     """The interpolated variable, (1 - value)^2 or the value; a product in both cases, without a branch."""
     rest: float = (1.0 if squared else 0.0) - value
     return rest * (rest if squared else -1.0)
 
 
-@uncounted_entry
+@entry
 def interpolate_many(
     slenderness: FloatArray,
     frequency_ratio: FloatArray,
@@ -295,7 +295,7 @@ def interpolate_many(
                 )
 
 
-@uncounted_kernel
+@kernel
 def _angle_window(axis: AngleAxis, angle: float) -> tuple[int, int]:
     """First and number of the angles from which a point is interpolated; the number is 0 outside of the axis."""
     below, size = -1, len(axis.angles)
@@ -308,7 +308,7 @@ def _angle_window(axis: AngleAxis, angle: float) -> tuple[int, int]:
     return slice_window(size, below) if below + 1 < size else (0, 0)
 
 
-@uncounted_kernel
+@kernel
 def _prefetch_point(place: FloatArray, mesh: Mesh, windows: FloatArray) -> None:
     """Prefetch the records and peaks of a point."""
     i, j, first, count, own = place[_ROW], place[_COLUMN], place[_FIRST], place[_COUNT], place[_GROUP]
@@ -321,7 +321,7 @@ def _prefetch_point(place: FloatArray, mesh: Mesh, windows: FloatArray) -> None:
                 prefetch(windows[own].peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j + 2))
 
 
-@uncounted_kernel
+@kernel
 def _interpolate_point(
     point: int,
     place: FloatArray,

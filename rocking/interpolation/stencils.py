@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._numba.compilation import FloatArray, contiguous_array, uncounted_entry, uncounted_kernel
+from rocking._numba.compilation import FloatArray, contiguous_array, entry, kernel
 from rocking.errors import InvalidArgumentError
 
 STENCIL_SIZE = 4
@@ -102,7 +102,7 @@ def _guide(axis: Array) -> NDArray[np.int32]:
     return cells
 
 
-@uncounted_kernel
+@kernel
 def cell_of(values: FloatArray, value: float, coordinates: FloatArray, x: float, guide: FloatArray) -> int:
     """Cell of an ascending axis that contains a value; the last cell includes its end; -1 outside of the axis.
 
@@ -137,7 +137,7 @@ def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDAr
     return np.where((below < slices.size - 1) | on_slice, below, -1), on_slice
 
 
-@uncounted_entry
+@entry
 def slice_window(count: int, lower: int) -> tuple[int, int]:
     """The slices from which the interval above slice `lower` is interpolated.
 
@@ -157,7 +157,7 @@ def slice_window(count: int, lower: int) -> tuple[int, int]:
     return min(max(lower - 1, 0), count - size), size
 
 
-@uncounted_entry
+@entry
 def lagrange_weight(slices: FloatArray, first: int, count: int, k: int, x: float) -> float:
     """Lagrange weight at x of the k-th of `count` slices from `first` on."""
     weight = 1.0
@@ -167,7 +167,7 @@ def lagrange_weight(slices: FloatArray, first: int, count: int, k: int, x: float
     return weight
 
 
-@uncounted_kernel
+@kernel
 def lagrange_weights(axis: FloatArray, products: FloatArray, first: int, x: float) -> tuple[float, float, float, float]:
     """Lagrange weights at x of the four nodes of an axis from `first` on."""
     d0, d1, d2, d3 = x - axis[first], x - axis[first + 1], x - axis[first + 2], x - axis[first + 3]
@@ -175,7 +175,7 @@ def lagrange_weights(axis: FloatArray, products: FloatArray, first: int, x: floa
     return d1 * d2 * d3 / below[0], d0 * d2 * d3 / below[1], d0 * d1 * d3 / below[2], d0 * d1 * d2 / below[3]
 
 
-@uncounted_kernel
+@kernel
 def padded_weights(
     slices: FloatArray, products: FloatArray, first: int, count: int, x: float
 ) -> tuple[float, float, float, float]:
@@ -201,7 +201,7 @@ def slice_products(slices: Array) -> Array:
     return products
 
 
-@uncounted_kernel
+@kernel
 def interpolate_in_cell(values: FloatArray, i: int, j: int, squared: bool, x: float, y: float, mesh: Mesh) -> float:
     """Interpolate node values, or (1 - value)^2 if `squared`, at the coordinates x and y of cell (i, j)."""
     by_row = lagrange_weights(mesh.rows, mesh.row_products, i - 1, x)
@@ -216,7 +216,7 @@ def interpolate_in_cell(values: FloatArray, i: int, j: int, squared: bool, x: fl
     return total
 
 
-@uncounted_entry
+@entry
 def interpolate_cells(
     peaks: FloatArray,
     i: FloatArray,

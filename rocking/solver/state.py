@@ -168,6 +168,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
+            ("taken", np.int64, lanes),  # number of steps of the flight
             # the excitation, as in `FLIGHT_STATE`
             *excitation_fields(),
             # accuracy

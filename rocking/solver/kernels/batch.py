@@ -6,8 +6,6 @@ first flight, which is computed once. Slender blocks are solved in `rocking.solv
 
 from __future__ import annotations
 
-import numpy as np
-
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
@@ -113,7 +111,9 @@ def solve_batch(
     responses : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
     """
-    following, busy, taken = 0, 0, np.zeros(LANES, dtype=np.int64)
+    following, busy, taken = 0, 0, steps.taken
+    for lane in range(LANES):
+        taken[lane] = 0
     for lane in range(LANES):
         following = next_cell(flights[lane], steps, lane, following, slenderness, omega, eta, alpha, stop, responses)
         if flights[lane].cell >= 0:

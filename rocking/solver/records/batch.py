@@ -5,8 +5,6 @@ A SIMD lane takes the next block as soon as its block is finished.
 
 from __future__ import annotations
 
-import numpy as np
-
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
@@ -149,7 +147,9 @@ def solve_rigid(
         Number of sample intervals followed.
     """
     following, busy, stepped = 0, 0, 0
-    taken = np.zeros(LANES, dtype=np.int64)
+    taken = steps.taken
+    for lane in range(LANES):
+        taken[lane] = 0
     for lane in range(LANES):
         following = next_cell(blocks[lane], samples, steps, lane, following, step, slenderness, eta, alpha, responses)
         if blocks[lane].cell >= 0:

@@ -83,6 +83,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
+            ("taken", np.int64, lanes),  # number of steps of the flight
             # accuracy
             ("order", np.int64),  # degree of the steps, `MIN_ORDER` to `MAX_ORDER`
             ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
