@@ -14,7 +14,7 @@ from rocking.errors import in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.history.sampling import sample_arcs, sample_free_rocking, solve_and_sample
 from rocking.model.checks import check_groups
-from rocking.model.fields import END_ROTATION, END_VELOCITY, RECORD_FIELDS
+from rocking.model.fields import END_ROTATION, END_VELOCITY, EXCEEDED_ALPHA, RESPONSE_FIELDS
 from rocking.model.response import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
 from rocking.solver.peak_response import peak_response
@@ -168,8 +168,8 @@ class Motion:
             restitution=self.restitution,
             stop=self.stop,
         )
-        for field in RECORD_FIELDS:
-            if field not in (END_ROTATION, END_VELOCITY):
+        for field in RESPONSE_FIELDS:
+            if field not in (END_ROTATION, END_VELOCITY, EXCEEDED_ALPHA):
                 record[field.name] = getattr(found, field.name)
 
     def _sample_free(

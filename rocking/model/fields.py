@@ -159,10 +159,7 @@ RESPONSE_FIELDS = (
     END_ROTATION,
     END_VELOCITY,
 )
-"""Fields of `rocking.Response`, in order."""
-
-RECORD_FIELDS = tuple(field for field in RESPONSE_FIELDS if field is not EXCEEDED_ALPHA)
-"""Fields that the solver writes for each block; `exceeded_alpha` follows from the peak."""
+"""Fields of `rocking.Response`, in order, and of the record that the solver writes for each block."""
 
 BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, SOURCE)
 """Fields of a response with an error bound, of an interpolated cube or of the solver."""

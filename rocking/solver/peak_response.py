@@ -16,7 +16,7 @@ from rocking._numba.simd import LANES
 from rocking.errors import broadcast, in_range
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.model.checks import check, check_groups
-from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
+from rocking.model.fields import RESPONSE_FIELDS
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
@@ -128,11 +128,9 @@ def peak_response(
         close = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
         near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
-    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
-    peak = found[PEAK_ROTATION.name]
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
     return Response(
         **found,
-        exceeded_alpha=np.asarray(~(peak <= 1.0)),  # also where it is nan
         pulse=made.name,
         groups=dict(zip(given, checked, strict=True)),
         dims=dimensions_of(*given.values()),

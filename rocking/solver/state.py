@@ -15,7 +15,7 @@ from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking.excitation.series import Family
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS, AbstractPulse
-from rocking.model.fields import RECORD_FIELDS, record_dtype
+from rocking.model.fields import RESPONSE_FIELDS, record_dtype
 from rocking.solver.excitation import EXCITATION_FIELDS, excitation_fields, fill_excitation
 
 SERIES_LENGTH = 17
@@ -181,7 +181,7 @@ def _steps_layout() -> np.dtype[np.void]:
 STEP_STATE = _steps_layout()
 """Layout of the record of `LANES` Taylor steps. Scalars come last, so that the rows of lanes are aligned."""
 
-RESPONSE_RECORD = record_dtype(RECORD_FIELDS)
+RESPONSE_RECORD = record_dtype(RESPONSE_FIELDS)
 """Record of the response of a cell."""
 
 

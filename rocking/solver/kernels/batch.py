@@ -25,6 +25,7 @@ def write_response(flight: Record, response: Record) -> None:
         flight.impacts,
         flight.peak_mode,
     )
+    response.exceeded_alpha = not (flight.peak_rotation <= 1.0)  # also where it is nan
     response.peak_rotation, response.uplift_time = flight.peak_rotation, flight.uplift_time
     response.first_impact_time, response.first_impact_velocity = flight.first_impact_time, flight.first_impact_velocity
     response.end_rotation, response.end_velocity = flight.end_rotation, flight.end_velocity

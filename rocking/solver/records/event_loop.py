@@ -168,6 +168,7 @@ def write_response(block: Record, response: Record) -> None:
         block.impacts,
         block.peak_mode,
     )
+    response.exceeded_alpha = not (block.peak_rotation <= 1.0)  # also where it is nan
     response.peak_rotation, response.uplift_time = block.peak_rotation, block.uplift_time
     response.first_impact_time, response.first_impact_velocity = block.first_impact_time, block.first_impact_velocity
     response.end_rotation, response.end_velocity = block.end_rotation, block.end_velocity

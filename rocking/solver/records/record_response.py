@@ -14,7 +14,7 @@ from rocking._numba.simd import LANES
 from rocking.errors import InvalidArgumentError, broadcast, in_range
 from rocking.excitation.records.record import Record
 from rocking.model.checks import check, check_alpha
-from rocking.model.fields import PEAK_ROTATION, RECORD_FIELDS
+from rocking.model.fields import RESPONSE_FIELDS
 from rocking.model.parameters import FREQUENCY_PARAMETER, RESTITUTION, SLENDERNESS
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
@@ -92,11 +92,9 @@ def record_response(
     cells = [contiguous_array(group).ravel() for group in groups]
     cells[0] = cells[0] * motion.time_step
     records = _solve_cells(motion, cells, int(threads or AVAILABLE_CORES), stop)
-    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RECORD_FIELDS}
-    peak = found[PEAK_ROTATION.name]
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
     return Response(
         **found,
-        exceeded_alpha=np.asarray(np.isnan(peak) | (peak > 1.0)),
         pulse=motion.name,
         groups=dict(zip(given, checked, strict=True)),
         dims=dimensions_of(*given.values()),

@@ -86,6 +86,7 @@ def start_uplifts(pulse: Record, group: Record, sign: float) -> None:
 def write_empty_response(response: Record) -> None:
     """Write the response of a block without uplift."""
     response.outcome, response.chatter, response.impacts, response.peak_mode = NO_UPLIFT, 0, 0, -1
+    response.exceeded_alpha = 0
     response.peak_rotation, response.uplift_time = 0.0, math.nan
     response.first_impact_time, response.first_impact_velocity = math.nan, math.nan
     response.end_rotation, response.end_velocity = 0.0, 0.0
@@ -97,6 +98,7 @@ def write_lane(group: Record, lane: int, response: Record) -> None:
     columns = group.columns
     response.outcome, response.chatter = int(group.outcome[lane]), int(columns[CHATTER, lane])
     response.impacts, response.peak_mode = int(columns[IMPACTS, lane]), int(columns[MODE, lane])
+    response.exceeded_alpha = not (columns[PEAK, lane] <= 1.0)  # also where it is nan
     response.peak_rotation, response.uplift_time = columns[PEAK, lane], columns[UPLIFT_TIME, lane]
     response.first_impact_time = columns[FIRST_IMPACT_TIME, lane]
     response.first_impact_velocity = columns[FIRST_IMPACT_VELOCITY, lane]
