@@ -9,7 +9,7 @@ restitutions and between the angles were measured against the solver when the cu
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
@@ -31,6 +31,7 @@ from rocking.interpolation.kernel import (
 from rocking.interpolation.stencils import slice_index, slice_window
 from rocking.lookup.cube_slice import CubeSlice
 from rocking.lookup.points import Points
+from rocking.model.outcome import Outcome
 from rocking.solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 
 Method = Literal["auto", "cube", "solver"]
@@ -121,10 +122,11 @@ class Cube:
         points, shape = Points.of(slenderness, frequency_ratio, restitution, alpha)
         used: list[CubeSlice] = []
         if method == "solver":
-            state, result = _empty(points)
+            found = _empty(points)
         else:
-            state, result, used = self._interpolated(points, limit)
-        left = np.flatnonzero(state == UNKNOWN)
+            found, used = self._interpolated(points, limit)
+        result = _named(found)
+        left = np.flatnonzero(found.state == UNKNOWN)
         if left.size and method == "cube":
             self._refuse(points[left[:1]], limit)
         if method == "cube":
@@ -148,14 +150,13 @@ class Cube:
 
         Responses elsewhere are undefined.
         """
-        state, result, _ = self._interpolated(points, limit)
-        return state == INTERPOLATED, result
+        found, _ = self._interpolated(points, limit)
+        return found.state == INTERPOLATED, _named(found)
 
-    def _interpolated(self, points: Points, limit: float) -> tuple[NDArray[np.int8], BoundedResponse, list[CubeSlice]]:
-        """`Found.state` of the points (points,), their responses, and the slices used."""
-        state, result = _empty(points)
-        found = Found(state, *(getattr(result, name) for name in Found._fields[1:]))
-        group, counts = np.empty(state.size, np.int32), np.empty(2 * self.restitutions.size, np.int64)
+    def _interpolated(self, points: Points, limit: float) -> tuple[Found, list[CubeSlice]]:
+        """Responses of the points, and the slices used."""
+        found = _empty(points)
+        group, counts = np.empty(found.state.size, np.int32), np.empty(2 * self.restitutions.size, np.int64)
         group_points(points.restitution, self.restitutions, group, counts)
         wanted = {
             k: slices for k, count in enumerate(counts.tolist()) if count and (slices := self._slices(*divmod(k, 2)))
@@ -189,7 +190,7 @@ class Cube:
         used = [slices for k, slices in wanted.items() if counts[k]]
         lower, others = [one for one, *_ in used], [one for _, *rest in used for one in rest]
         # the slices are compared by identity
-        return state, replace(result, source=SOURCES[state]), list(dict.fromkeys([*lower, *others]))
+        return found, list(dict.fromkeys([*lower, *others]))
 
     def _slices(self, k: int, between: int) -> list[CubeSlice]:
         """Slice k, and for points between it and the next one the others of their window; empty if one is missing.
@@ -239,10 +240,29 @@ class Cube:
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 
 
-def _empty(points: Points) -> tuple[NDArray[np.int8], BoundedResponse]:
-    """State and responses of points that are not interpolated: those without uplift are final."""
+def _empty(points: Points) -> Found:
+    """Responses of points that are not interpolated: those without uplift are final."""
     state = np.where(points.slenderness < 1.0, np.int8(UNKNOWN), np.int8(NO_UPLIFT))
-    return state, BoundedResponse.empty(state.shape)
+    return Found(
+        state,
+        np.zeros(state.size),
+        np.full(state.size, Outcome.NO_UPLIFT, dtype=np.int8),
+        np.zeros(state.size, dtype=np.int32),
+        np.zeros(state.size, dtype=np.bool_),
+        np.zeros(state.size),
+    )
+
+
+def _named(found: Found) -> BoundedResponse:
+    """The responses with their sources."""
+    return BoundedResponse(
+        peak_rotation=found.peak_rotation,
+        outcome=found.outcome,
+        impacts=found.impacts,
+        exceeded_alpha=found.exceeded_alpha,
+        error_bound=found.error_bound,
+        source=SOURCES.take(found.state),
+    )
 
 
 def _solve(pulse: str, points: Points, stop: StopFlag | None) -> BoundedResponse:

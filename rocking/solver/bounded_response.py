@@ -76,18 +76,6 @@ class BoundedResponse:
         )
         return f"<rocking.BoundedResponse: {outcome.sentence}{peak}, from the {self.source.item()}>"
 
-    @classmethod
-    def empty(cls, shape: tuple[int, ...]) -> BoundedResponse:
-        """Responses without uplift, which are exact, to be overwritten."""
-        return cls(
-            np.zeros(shape),
-            np.full(shape, Outcome.NO_UPLIFT, dtype=np.int8),
-            np.zeros(shape, dtype=np.int32),
-            np.zeros(shape, dtype=np.bool_),
-            np.zeros(shape),
-            np.full(shape, "solver"),
-        )
-
     def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
         """The same responses in another shape."""
         return BoundedResponse(*(getattr(self, field.name).reshape(shape) for field in BOUNDED_FIELDS))
