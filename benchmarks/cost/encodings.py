@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -23,17 +22,17 @@ from rocking.datasets.cube import DIMENSIONS
 Encoding = dict[str, dict[str, Any]]
 
 PEAK = "peak_rotation"
-LEVELS, DIGITS, TILES, BOUND_BITS = (1, 9), (12, 9, 6), (64, 64), (8, 4)
-"""Levels of zlib, digits of the peaks, nodes of a smaller chunk, and bits kept of bounds."""
+LEVELS, DIGITS, TILES, ERROR_BITS = (1, 9), (12, 9, 6), (64, 64), (8, 4)
+"""Levels of zlib, digits of the peaks, nodes of a smaller chunk, and bits kept of the measured errors."""
 
 REPEATS = 3
 
 
-def rounded_up(bounds: np.ndarray[Any, np.dtype[np.float32]], bits: int) -> np.ndarray[Any, np.dtype[np.float32]]:
+def rounded_up(errors: np.ndarray[Any, np.dtype[np.float32]], bits: int) -> np.ndarray[Any, np.dtype[np.float32]]:
     """Round positive float32 numbers up to `bits` bits after the leading one."""
     dropped = np.uint32(23 - bits)
-    whole = bounds.view(np.uint32) + np.uint32((1 << int(dropped)) - 1)
-    return np.where(np.isfinite(bounds), ((whole >> dropped) << dropped).view(np.float32), bounds)
+    whole = errors.view(np.uint32) + np.uint32((1 << int(dropped)) - 1)
+    return np.where(np.isfinite(errors), ((whole >> dropped) << dropped).view(np.float32), errors)
 
 
 def variants(cube: xr.Dataset, present: Encoding) -> Iterator[tuple[str, xr.Dataset, Encoding]]:
@@ -45,7 +44,7 @@ def variants(cube: xr.Dataset, present: Encoding) -> Iterator[tuple[str, xr.Data
     def of_peaks(**options: Any) -> Encoding:
         return present | {PEAK: present[PEAK] | options}
 
-    yield "as it is: zlib 4, shuffle, float64, one angle a chunk", cube, present
+    yield "as it is", cube, present
     for level in LEVELS:
         yield f"zlib {level}", cube, everywhere(complevel=level)
     yield "zstd 4, without shuffle", cube, everywhere(zlib=False, compression="zstd", shuffle=False)
@@ -54,11 +53,11 @@ def variants(cube: xr.Dataset, present: Encoding) -> Iterator[tuple[str, xr.Data
     yield "peaks in float32", cube, of_peaks(dtype="float32")
     for digits in DIGITS:
         yield f"peaks with {digits} digits", cube, of_peaks(significant_digits=digits, quantize_mode="BitGroom")
-    for bits in BOUND_BITS:
-        bounds = {
+    for bits in ERROR_BITS:
+        errors = {
             name: cube[name].copy(data=rounded_up(cube[name].values, bits)) for name in present if "_error" in name
         }
-        yield f"bounds rounded up to {bits} bits", cube.assign(bounds), present
+        yield f"errors rounded up to {bits} bits", cube.assign(errors), present
 
 
 def shortest(call: Callable[[], object]) -> float:
@@ -84,14 +83,15 @@ def main() -> None:
     source = parser.parse_args().file
     with xr.open_dataset(source, engine="netcdf4") as opened:
         cube = opened.load()
-    with netCDF4.Dataset(source) as raw:
-        chunks = {name: raw[name].chunking() for name in raw.variables if raw[name].dimensions == DIMENSIONS}
     nodes = math.prod(cube.sizes[name] for name in DIMENSIONS)
+    kept = ("zlib", "complevel", "shuffle", "chunksizes")
+    present: Encoding = {
+        str(name): {option: variable.encoding[option] for option in kept}
+        for name, variable in cube.data_vars.items()
+        if variable.dims == DIMENSIONS
+    }
     for variable in cube.variables.values():
         variable.encoding = {}
-    present: Encoding = {
-        name: {"zlib": True, "complevel": 4, "shuffle": True, "chunksizes": sizes} for name, sizes in chunks.items()
-    }
     print(f"{source}: {nodes} nodes, {source.stat().st_size / nodes:.2f} bytes a node")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.nc"

@@ -13,8 +13,9 @@ from rocking.boundary.frequency import critical_frequency_ratio
 from rocking.errors import StoppedError
 from rocking.history.motion import build_motion
 from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.stages.batch import LEFT
+from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.remainder import solve_remainder
+from rocking.solver.stages.state import stage_state
 from rocking.solver.state import RESPONSE_RECORD, pulse_state, step_state
 from rocking.spectra.cubes import spectra
 
@@ -60,6 +61,7 @@ def _loaded():
     for alpha in (None, 0.2):
         rocking.time_history("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
         rocking.peak_response("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
+    rocking.peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
 
 
 @pytest.mark.parametrize("name", WORK)
@@ -102,6 +104,23 @@ def test_a_kernel_reads_the_flag_within_one_cell():
             if 0 < reached < 200_000:
                 break
         assert 0 < reached < 200_000
+
+
+def test_the_stages_read_the_flag_within_one_block_of_cells():
+    """Two million cells, half a second: those after the flag was set have no response."""
+    s, pulse = np.linspace(0.02, 0.95, 2_000_000), rocking.get_pulse("c2")
+    w, eta, unknown = np.full(s.size, 3.0), np.full(s.size, 0.85), -2
+    for delay in (0.05, 0.02, 0.1, 0.2):  # on a busy machine kernel or timer may start later
+        flag, answers = np.zeros(1, np.uint8), np.zeros(s.size, RESPONSE_RECORD)
+        answers["outcome"] = unknown
+        timer = threading.Timer(delay, flag.fill, [1])
+        timer.start()
+        solve_by_arcs(s, w, eta, pulse_state(pulse).copy(), *stage_state(), flag, answers)
+        timer.join()
+        missing = np.count_nonzero(answers["outcome"] == unknown)
+        if 0 < missing < s.size:
+            break
+    assert 0 < missing < s.size
 
 
 def test_a_flag_set_in_advance_ends_the_work_at_once():

@@ -30,6 +30,8 @@ def solve_remainder(
         As `solve_by_arcs` has filled it; those with the outcome `LEFT` are replaced.
     """
     for cell in range(len(slenderness)):
+        if is_stopped(stop):
+            return
         response = responses[cell]
         if response.outcome != LEFT:
             continue
