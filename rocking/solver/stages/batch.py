@@ -21,6 +21,7 @@ from rocking.solver.stages.short_flights import follow_short_flights
 from rocking.solver.stages.state import (
     AT_UPLIFT,
     BLOCK_SIZE,
+    BUCKETS,
     CHATTER,
     ETA,
     FIRST_IMPACT_TIME,
@@ -129,6 +130,7 @@ def start_cells(
     """
     rows, members = cells.rows, cells.members
     f_start, shared, cell = pulse.end_shape[0], False, first
+    bucket, changes = -1, 0
     empty = rows[BLOCK_SIZE]
     for column in range(LANES):
         empty[column] = 0.0
@@ -156,8 +158,34 @@ def start_cells(
             members[place] = following - cell
             shared = shared or following - cell > 1
             append(cells, LONG_LISTS + (1 if sign > 0.0 else 0), place)
+            changes += int(s * BUCKETS) != bucket
+            bucket = int(s * BUCKETS)
         cell = following
+    if changes * LANES > last - first:
+        sort_by_slenderness(LONG_LISTS, cells)
+        sort_by_slenderness(LONG_LISTS + 1, cells)
     return shared
+
+
+@kernel
+def sort_by_slenderness(which: int, cells: Record) -> None:
+    """Order a list by slenderness, on which the number of flights and of iterations mainly depends.
+
+    Vectors of cells in random order wait for the slowest of their cells.
+    """
+    rows, places, heads, links, count = cells.rows, cells.lists[which], cells.heads, cells.links, cells.counts[which]
+    heads[:] = -1
+    for i in range(count):
+        place = places[i]
+        bucket = int(rows[place, SLENDERNESS] * BUCKETS)
+        links[place], heads[bucket] = heads[bucket], place
+    i = 0
+    for bucket in range(BUCKETS):
+        place = heads[bucket]
+        while place >= 0:
+            places[i] = place
+            place = links[place]
+            i += 1
 
 
 @kernel

@@ -11,8 +11,11 @@ from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
 from rocking.solver.state import WAVELET_SERIES_LENGTH
 
-BLOCK_SIZE = 1024
+BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
+
+BUCKETS = 256
+"""Classes of slenderness, in whose order the cells of a block are followed."""
 
 LIST_COUNT = 5
 """Lists of cells, see `rocking.solver.stages.batch`."""
@@ -128,6 +131,8 @@ CELLS_STATE = np.dtype(
         ("lists", np.int64, (LIST_COUNT, BLOCK_SIZE + LANES)),  # places in the block
         ("counts", np.int64, (LIST_COUNT,)),  # lengths of the lists
         ("members", np.int64, (BLOCK_SIZE + 1,)),  # number of cells that share the first flight of a cell
+        ("heads", np.int64, (BUCKETS,)),  # a place of each class of slenderness, or -1
+        ("links", np.int64, (BLOCK_SIZE,)),  # another place of the same class, or -1
     ]
 )
 """Layout of the record of the cells of a block, which wait in lists."""
