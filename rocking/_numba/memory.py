@@ -29,17 +29,24 @@ load_int32: Any = _load(types.int32)
 """load(address): the number at an address, an integer."""
 
 
-def _prefetch(_: Any, address: Any) -> Any:
-    def lower(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
-        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
-        function = builder.module.declare_intrinsic("llvm.prefetch", [byte], kind)
-        read, all_levels, data = (ir.Constant(number, value) for value in (0, 3, 1))
-        builder.call(function, [builder.inttoptr(values[0], byte), read, all_levels, data])
-        return context.get_dummy_value()
+def _prefetch(for_write: bool) -> Any:
+    def prefetch(_: Any, address: Any) -> Any:
+        def lower(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+            kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+            function = builder.module.declare_intrinsic("llvm.prefetch", [byte], kind)
+            all_levels, data = 3, 1
+            hints = [ir.Constant(number, value) for value in (int(for_write), all_levels, data)]
+            builder.call(function, [builder.inttoptr(values[0], byte), *hints])
+            return context.get_dummy_value()
 
-    return types.void(address), lower
+        return types.void(address), lower
+
+    return intrinsic(prefetch)
 
 
-prefetch: Any = intrinsic(_prefetch)
-"""prefetch(address): let the processor read the cache line at an address, without waiting for it."""
+prefetch: Any = _prefetch(False)
+"""prefetch(address): let the processor fetch the cache line at an address, without waiting for it."""
+
+prefetch_for_write: Any = _prefetch(True)
+"""prefetch_for_write(address): the same for a cache line that will be written."""

@@ -141,6 +141,22 @@ def _place(builder: Any, places: Any, lane: int) -> Any:
     return builder.load(builder.gep(places, [ir.Constant(ir.IntType(64), lane)]))
 
 
+def _element_address(builder: Any, array: Any, index: Any) -> Any:
+    return builder.gep(builder.bitcast(array, ir.DoubleType().as_pointer()), [index])
+
+
+def _load_elements(builder: Any, array: Any, start: Any) -> Any:
+    return builder.load(builder.bitcast(_element_address(builder, array, start), _LLVM_VECTOR.as_pointer()), align=8)
+
+
+def _gather(builder: Any, array: Any, places: Any) -> Any:
+    vector = ir.Constant(_LLVM_VECTOR, ir.Undefined)
+    for i in range(LANES):
+        element = builder.load(_element_address(builder, array, _place(builder, places, i)))
+        vector = builder.insert_element(vector, element, ir.Constant(ir.IntType(32), i))
+    return vector
+
+
 def _gather_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
     rows = [builder.load(_row_address(builder, source, _place(builder, places, i)), align=8) for i in range(LANES)]
     for i, column in enumerate(_transpose(builder, rows)):
@@ -184,6 +200,12 @@ load = _instruction(
     lambda builder, *place: builder.load(_row_address(builder, *place), align=8), _VECTOR_TYPE, None, types.intp
 )
 """load(array, row): a row of an array (rows, LANES); row 0 of an array (LANES,)."""
+
+load_elements = _instruction(_load_elements, _VECTOR_TYPE, None, types.intp)
+"""load_elements(array, start): the elements from `start` on of an array (cells,)."""
+
+gather = _instruction(_gather, _VECTOR_TYPE, None, None)
+"""gather(array, places): element `places[i]` of an array (cells,) in lane i."""
 
 store = _instruction(
     lambda builder, array, row, x: builder.store(x, _row_address(builder, array, row), align=8),

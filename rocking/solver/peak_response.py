@@ -117,14 +117,13 @@ def peak_response(
     slender = not checked[3].any()
     groups = broadcast(given, checked[:3] if alpha is None else checked)
     shape = groups[0].shape
-    cells = [contiguous_array(group).ravel() for group in groups[:3]]
-    cells.append(np.zeros(cells[0].size) if slender else contiguous_array(groups[3]).ravel())
+    cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
     accepted = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
     by_arcs = made.series.has_exact_arcs and slender  # exact: no terms to truncate
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
-        margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], cells[3])
+        margin = outcome_margin(records["end_rotation"], records["end_velocity"], *_with_alpha(cells)[2:])
         close = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
         near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
@@ -139,8 +138,8 @@ def peak_response(
 
 def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:
     """Return the cells (size,) that are solved by exact arcs, whatever the precision."""
-    mask: NDArray[np.bool_] = (cells[3] == 0.0) & (cells[1] >= pulse.series.least_arc_frequency)
-    return mask
+    mask: NDArray[np.bool_] = cells[1] >= pulse.series.least_arc_frequency
+    return mask if len(cells) == 3 else mask & (cells[3] == 0.0)
 
 
 def solve_cells(
@@ -155,8 +154,9 @@ def solve_cells(
     Parameters
     ----------
     pulse : AbstractPulse
-    cells : list of four float arrays (size,)
-        1/a, omega, eta and alpha (0: slender) of each cell, in range; each as `contiguous_array` gives it.
+    cells : list of three or four float arrays (size,)
+        1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each as
+        `contiguous_array` gives it.
     precision : float
         Relative truncation error of a Taylor step [-].
     threads : int or None
@@ -169,6 +169,8 @@ def solve_cells(
     StoppedError
         If `stop` was set.
     """
+    if len(cells) == 3 and cells[1].min(initial=math.inf) >= pulse.series.least_arc_frequency:
+        return _solve_alike(pulse, cells, True, precision, threads, stop)
     exact = solved_by_arcs(pulse, cells)
     if exact.all() or not exact.any():
         return _solve_alike(pulse, cells, bool(exact.any()), precision, threads, stop)
@@ -198,7 +200,7 @@ def _solve_alike(
         if by_arcs:
             _fill_by_arcs(pulse, chunk, flag, records[part])
         else:
-            solve_batch(*chunk, *solver_state.of_steps(pulse, precision), flag, records[part])
+            solve_batch(*_with_alpha(chunk), *solver_state.of_steps(pulse, precision), flag, records[part])
 
     fill_chunks(fill, size, chunk_size, cores, stop)
     return records
@@ -216,5 +218,10 @@ def _fill_by_arcs(
         return
     left = np.flatnonzero(records["outcome"] == LEFT)
     rest = np.empty(left.size, RESPONSE_RECORD)
-    solve_batch(*(cell[left] for cell in cells), *solver_state.of_steps(pulse, FULL_PRECISION), flag, rest)
+    solve_batch(*_with_alpha([cell[left] for cell in cells]), *solver_state.of_steps(pulse, FULL_PRECISION), flag, rest)
     records[left] = rest
+
+
+def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """Return cells given by four arrays."""
+    return cells if len(cells) == 4 else [*cells, np.zeros(cells[0].size)]

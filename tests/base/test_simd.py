@@ -5,7 +5,19 @@ import pytest
 import scipy.special
 
 from rocking._numba.compilation import kernel
-from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
+from rocking._numba.simd import (
+    LANES,
+    any_lane,
+    gather,
+    gather_rows,
+    lane_bits,
+    load,
+    load_elements,
+    scatter_rows,
+    select,
+    splat,
+    store,
+)
 from rocking._numba.simd_error_function import scaled_erfc
 from rocking._numba.simd_exponentials import arccosine, cosh_minus_one_and_sinh, exponential
 from rocking._numba.simd_sines import sine_and_cosine
@@ -58,6 +70,20 @@ def test_masks_combine_lane_by_lane():
 def exchange(source, places, columns, target):
     gather_rows(source, places, columns)
     scatter_rows(columns, places, target)
+
+
+@kernel
+def take(source, places, found):
+    store(found, 0, load_elements(source, places[0]))
+    store(found, 1, gather(source, places))
+
+
+def test_elements_are_taken_in_a_row_and_from_places():
+    source, places = np.random.default_rng(3).random(60), np.random.default_rng(4).permutation(40)[:LANES]
+    found = np.zeros((2, LANES))
+    take(source, places, found)
+    np.testing.assert_array_equal(found[0], source[places[0] : places[0] + LANES])
+    np.testing.assert_array_equal(found[1], source[places])
 
 
 @pytest.mark.parametrize("seed", range(3))

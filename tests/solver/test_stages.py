@@ -101,8 +101,8 @@ def test_cells_that_differ_in_restitution_share_the_first_flight(name):
     """In blocks of every size, some of which end at the end of a block of the solver."""
     pulse = rocking.get_pulse(name)
     rng = np.random.default_rng(7)
-    s, w, _ = cells(200, 8)
-    counts = rng.integers(1, 40, 200)
+    s, w, _ = cells(300, 8)
+    counts = rng.integers(1, 40, 300)
     s, w = np.repeat(s, counts), np.repeat(w, counts)
     eta = rng.uniform(0, 1, s.size)
     assert s.size > 3 * BLOCK_SIZE

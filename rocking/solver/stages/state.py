@@ -17,8 +17,8 @@ BLOCK_SIZE = 1536
 BUCKETS = 256
 """Classes of slenderness, in whose order the cells of a block are followed."""
 
-LIST_COUNT = 5
-"""Lists of cells, see `rocking.solver.stages.batch`."""
+LIST_COUNT = 7
+"""Lists of cells, see `rocking.solver.stages.lists`."""
 
 # columns of the row of a cell, of which there are LANES: the cell and its next flight,
 SLENDERNESS, OMEGA, ETA = 0, 1, 2  # 1/a, omega, eta
@@ -116,6 +116,7 @@ def _group_layout() -> np.dtype[np.void]:
             ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
             ("node_slope", np.float64, pieces),
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
+            ("source", np.int64, lanes),  # the same, with a cell in every lane
             ("leader", np.int64, lanes),  # row of the first cell that shares its flight
         ]
     )
@@ -127,12 +128,12 @@ GROUP_STATE = _group_layout()
 
 CELLS_STATE = np.dtype(
     [
-        ("rows", np.float64, (BLOCK_SIZE + 1, LANES)),  # of the cells; the last is for unused lanes
+        ("rows", np.float64, (BLOCK_SIZE + 1, LANES)),  # of cells that have flown; the last is for unused lanes
         ("lists", np.int64, (LIST_COUNT, BLOCK_SIZE + LANES)),  # places in the block
         ("counts", np.int64, (LIST_COUNT,)),  # lengths of the lists
         ("members", np.int64, (BLOCK_SIZE + 1,)),  # number of cells that share the first flight of a cell
-        ("heads", np.int64, (BUCKETS,)),  # a place of each class of slenderness, or -1
-        ("links", np.int64, (BLOCK_SIZE,)),  # another place of the same class, or -1
+        ("ends", np.int64, (BUCKETS,)),  # places so far in the sorted list of each class of slenderness
+        ("ordered", np.int64, (BLOCK_SIZE,)),  # the sorted list
     ]
 )
 """Layout of the record of the cells of a block, which wait in lists."""
