@@ -10,18 +10,19 @@ from __future__ import annotations
 
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
-from rocking._numba.simd import LANES, gather_rows, load, scatter_rows, store
+from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
 from rocking.solver.stages.cuts import init_nodes
 from rocking.solver.stages.events import end_flights
 from rocking.solver.stages.first_flights import start_cells, take_resting_cells
 from rocking.solver.stages.flight import follow_flights
-from rocking.solver.stages.lists import GENERAL_LIST, LONG_LISTS, SHORT_LISTS, append, take_places
-from rocking.solver.stages.responses import prefetch_responses, write_lane
+from rocking.solver.stages.lists import GENERAL_LIST, LONG_LISTS, SHORT_LISTS, append_where, take_places
+from rocking.solver.stages.responses import prefetch_responses, write_responses
 from rocking.solver.stages.short_flights import follow_short_flights
 from rocking.solver.stages.state import (
     AT_UPLIFT,
     BLOCK_SIZE,
     ETA,
+    FINISHED,
     FIRST_IMPACT_TIME,
     FIRST_IMPACT_VELOCITY,
     IMPACTS,
@@ -46,45 +47,43 @@ LEFT = -1
 
 
 @kernel
-def distribute(
-    which: int,
-    pulse: Record,
-    group: Record,
-    cells: Record,
-    responses: Record,
-) -> None:
-    """Write the responses of finished cells and put the others into the lists of their next flights."""
-    waits = False
-    same, other = which % 2, 1 - which % 2
+def leave_rest(which: int, pulse: Record, group: Record) -> None:
+    """Decide what follows for blocks at rest: another uplift or nothing."""
+    columns = group.columns
     for lane in range(LANES):
-        place, following = group.place[lane], int(group.next[lane])
-        if place == BLOCK_SIZE:  # an unused lane
+        if group.next[lane] != float(REST):
             continue
-        target = -1
-        if following == REST:
-            piece, sign = uplift_piece(pulse, group.columns[SLENDERNESS, lane], group.columns[PHASE, lane])
-            if sign != 0.0:
-                group.columns[W0, lane], group.columns[AT_UPLIFT, lane] = 0.0, 1.0
-                group.columns[PIECE, lane] = piece
-                group.columns[UPLIFTS, lane] += 1.0
-                group.columns[IMPACTS_BEFORE, lane] = group.columns[IMPACTS, lane]
-                target = LONG_LISTS + (1 if sign > 0.0 else 0)
-        elif following == LONG:
-            target = LONG_LISTS + other
-        elif following == REPEATED:
-            target = LONG_LISTS + same
-        elif following == SHORT:
-            target = SHORT_LISTS + other
-        elif following == UNDECIDED:
-            # a flight of the short list that is long after all, or a cell for the general solver
-            target = LONG_LISTS + same if which >= SHORT_LISTS and group.ended[lane] < 0.0 else GENERAL_LIST
-        if target < 0:
-            write_lane(group, lane, responses[place])
-        else:
-            append(cells, target, place)
-            waits = True
-    if waits:
-        scatter_rows(group.columns, group.place, cells.rows)
+        piece, sign = uplift_piece(pulse, columns[SLENDERNESS, lane], columns[PHASE, lane])
+        if sign == 0.0:
+            group.next[lane] = float(FINISHED)
+            continue
+        columns[W0, lane], columns[AT_UPLIFT, lane], columns[PIECE, lane] = 0.0, 1.0, piece
+        columns[UPLIFTS, lane] += 1.0
+        columns[IMPACTS_BEFORE, lane] = columns[IMPACTS, lane]
+        group.next[lane] = float(REPEATED if (sign > 0.0) == (which % 2 == 1) else LONG)
+
+
+@kernel
+def distribute(which: int, pulse: Record, group: Record, cells: Record, responses: Record) -> None:
+    """Write the responses of finished cells and put the others into the lists of their next flights."""
+    same, other, used = which % 2, 1 - which % 2, group.used
+    if any_lane(load(group.next, 0) == float(REST)):
+        leave_rest(which, pulse, group)
+    following = load(group.next, 0)
+    if which >= SHORT_LISTS:
+        # not a flight of the short list, but a long one after all
+        long_after_all = (following == float(UNDECIDED)) & (load(group.ended, 0) < 0.0)
+        following = select(long_after_all, splat(float(REPEATED)), following)
+    done = lane_bits(following == float(FINISHED)) & used
+    if done:
+        write_responses(group, done, responses)
+    if done == used:
+        return
+    append_where(following == float(LONG), LONG_LISTS + other, group, cells)
+    append_where(following == float(SHORT), SHORT_LISTS + other, group, cells)
+    append_where(following == float(REPEATED), LONG_LISTS + same, group, cells)
+    append_where(following == float(UNDECIDED), GENERAL_LIST, group, cells)
+    scatter_rows(group.columns, group.place, cells.rows)
 
 
 @kernel
@@ -103,11 +102,13 @@ def share_flights(
     for member in range(1, most):
         for k in range(LANES):
             store(group.columns, k, load(group.shared, k))
+        group.used = 0
         for lane in range(LANES):
             leader = group.leader[lane]
             group.place[lane] = BLOCK_SIZE
             if member < members[leader]:
                 group.place[lane] = leader + member
+                group.used |= 1 << lane
                 group.columns[ETA, lane] = eta[leader + member]
         end_flights(pulse, group, 1.0 if which % 2 == 1 else -1.0)
         distribute(which, pulse, group, cells, responses)

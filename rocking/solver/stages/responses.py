@@ -6,6 +6,7 @@ import math
 
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.memory import prefetch_for_write
+from rocking._numba.simd import LANES, load, pack_integers, scatter_records, select, splat, store
 from rocking.solver.kernels.event_loop import NO_UPLIFT
 from rocking.solver.stages.state import (
     CHATTER,
@@ -29,16 +30,24 @@ def write_empty_response(response: Record) -> None:
 
 
 @kernel
-def write_lane(group: Record, lane: int, response: Record) -> None:
-    """Write the response of the cell of a lane."""
-    columns = group.columns
-    response.outcome, response.chatter = int(group.outcome[lane]), int(columns[CHATTER, lane])
-    response.impacts, response.peak_mode = int(columns[IMPACTS, lane]), int(columns[MODE, lane])
-    response.exceeded_alpha = not (columns[PEAK, lane] <= 1.0)  # also where it is nan
-    response.peak_rotation, response.uplift_time = columns[PEAK, lane], columns[UPLIFT_TIME, lane]
-    response.first_impact_time = columns[FIRST_IMPACT_TIME, lane]
-    response.first_impact_velocity = columns[FIRST_IMPACT_VELOCITY, lane]
-    response.end_rotation, response.end_velocity = group.free_z[lane], group.free_w[lane]
+def write_responses(group: Record, done: int, responses: Record) -> None:
+    """Write the responses of the lanes whose bits are set in `done`, each at once as the words of `RESPONSE_RECORD`."""
+    columns, words = group.columns, group.words
+    for lane in range(LANES):
+        group.written[lane] = group.place[lane] if (done >> lane) & 1 else -1
+    peak = load(columns, PEAK)
+    exceeded = select(peak <= 1.0, splat(0.0), splat(1.0))  # also where it is nan
+    store(words, 0, peak)
+    store(words, 1, load(columns, UPLIFT_TIME))
+    store(words, 2, load(columns, FIRST_IMPACT_TIME))
+    store(words, 3, load(columns, FIRST_IMPACT_VELOCITY))
+    store(words, 4, load(group.free_z, 0))
+    store(words, 5, load(group.free_w, 0))
+    store(words, 6, pack_integers(load(columns, IMPACTS), load(columns, MODE)))
+    # bytes: outcome, chatter, exceeded_alpha
+    flags = load(group.outcome, 0) + 256.0 * load(columns, CHATTER) + 65536.0 * exceeded
+    store(words, 7, pack_integers(flags, splat(0.0)))
+    scatter_records(words, group.written, responses)
 
 
 @kernel

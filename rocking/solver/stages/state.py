@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking._numba.compilation import Record
-from rocking._numba.simd import LANES, VECTOR_BYTES
+from rocking._numba.simd import LANES, VECTOR_BYTES, WORDS
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
 from rocking.solver.state import WAVELET_SERIES_LENGTH
 
@@ -115,7 +115,10 @@ def _group_layout() -> np.dtype[np.void]:
             ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
             ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
             ("node_slope", np.float64, pieces),
+            ("words", np.float64, (WORDS, LANES)),  # of the responses
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
+            ("written", np.int64, lanes),  # number of the response to be written, or -1
+            ("used", np.int64),  # bits of the lanes that hold a cell
             ("source", np.int64, lanes),  # the same, with a cell in every lane
             ("leader", np.int64, lanes),  # row of the first cell that shares its flight
         ]
