@@ -1,6 +1,6 @@
 """The excitation inside the solver: the one place that distinguishes families of f(phi).
 
-`fill_excitation` writes an excitation into a record, `shape_and_slope` evaluates f and its derivative,
+`fill_excitation` writes an excitation into a record, `shapes_and_slopes` evaluates f and its derivative,
 `expand_excitation` expands F in powers of tau for a Taylor step, and `has_exact_arcs` selects between exact arcs and
 Taylor steps. A further family, such as a piecewise linear record, adds its coefficients to `excitation_fields` and a
 case to each of these functions. The record has one layout for all families, so that each kernel is compiled once.
@@ -9,6 +9,7 @@ case to each of these functions. The record has one layout for all families, so 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -65,20 +66,39 @@ def is_unit_sinusoid(flight: Record) -> bool:
 
 
 @kernel
-def shape_and_slope(phi: float, flight: Record) -> tuple[float, float]:
-    """f and df/dphi of the excitation."""
-    f, slope = 0.0, 0.0
+def shape_at(phi: float, flight: Record) -> float:
+    """f of the excitation."""
+    f = 0.0
     if flight.family == WAVELET:
         for i in range(MAX_POLYNOMIAL):
-            k = MAX_POLYNOMIAL - 1 - i
-            slope = slope * phi + f
-            f = f * phi + flight.polynomial[k]
-        gaussian = math.exp(-phi * phi / flight.spread)
-        return f * gaussian, (slope - 2.0 * phi / flight.spread * f) * gaussian
+            f = f * phi + flight.polynomial[MAX_POLYNOMIAL - 1 - i]
+        return f * math.exp(-phi * phi / flight.spread)
     for k in range(flight.terms):
-        angle = flight.multiple[k] * phi + flight.shift[k]
-        f += flight.amplitude[k] * math.cos(angle)
-        slope -= flight.amplitude[k] * flight.multiple[k] * math.sin(angle)
+        f += flight.amplitude[k] * math.cos(flight.multiple[k] * phi + flight.shift[k])
+    return f
+
+
+@kernel
+def polynomial_at(pulse: Record, phase: SimdVector) -> Any:
+    """The polynomial of the wavelet, its first and half of its second derivative."""
+    p = pulse.polynomial
+    value = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
+    slope = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
+    return value, slope, p[2] + phase * (3.0 * p[3])
+
+
+@kernel
+def shapes_and_slopes(pulse: Record, phase: SimdVector) -> Any:
+    """f [-] and df/dphi at phases."""
+    if pulse.family == WAVELET:
+        value, first, _ = polynomial_at(pulse, phase)
+        gaussian = exponential(phase * phase * (-1.0 / pulse.spread))
+        return value * gaussian, (first + phase * (-2.0 / pulse.spread) * value) * gaussian
+    f, slope = splat(0.0), splat(0.0)
+    for k in range(pulse.terms):
+        sine, cosine = sine_and_cosine(phase * pulse.multiple[k] + pulse.shift[k])
+        f += pulse.amplitude[k] * cosine
+        slope -= pulse.amplitude[k] * pulse.multiple[k] * sine
     return f, slope
 
 

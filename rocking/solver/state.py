@@ -37,6 +37,7 @@ IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
 def _flight_layout() -> np.dtype[np.void]:
     per_term = (MAX_SINUSOIDS,)
     ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
+    crossings = (math.ceil(2 * MAX_PIECES / LANES), LANES)
     return np.dtype(
         [
             # the excitation
@@ -52,6 +53,14 @@ def _flight_layout() -> np.dtype[np.void]:
                 ends,
             ),  # single sinusoid: phase at which the half period that holds the piece starts,
             ("half_period_cosine", np.float64, ends),  # and the cosine there, +1 or -1
+            # of two crossings of |f| = 1/a for each piece: its ends with f there, sgn(f) at the crossing, and its
+            # phase, see `find_crossings`
+            ("crossing_left", np.float64, crossings),
+            ("crossing_right", np.float64, crossings),
+            ("crossing_f_left", np.float64, crossings),
+            ("crossing_f_right", np.float64, crossings),
+            ("crossing_sign", np.float64, crossings),
+            ("crossing_phase", np.float64, crossings),
             ("derivatives", np.float64, (MAX_POLYNOMIAL,)),  # of a wavelet, see `ExcitationSeries`
             ("growth_rate", np.float64),  # bound of the growth of its derivatives [1/rad]
             ("series_length", np.int64),  # of the series at the start of a flight in `rocking.solver.stages`
@@ -202,6 +211,15 @@ def pulse_state(pulse: AbstractPulse) -> Record:
     record["pieces"] = ends - 1
     record["end_phase"][:ends] = phases
     record["end_shape"][:ends] = pulse.shape(phases)
+    rise = np.where(np.diff(pulse.shape(phases)) < 0.0, -1.0, 1.0)
+    for name, pairs in {
+        "left": (phases[:-1], phases[:-1]),
+        "right": (phases[1:], phases[1:]),
+        "f_left": (pulse.shape(phases[:-1]), pulse.shape(phases[:-1])),
+        "f_right": (pulse.shape(phases[1:]), pulse.shape(phases[1:])),
+        "sign": (-rise, rise),
+    }.items():
+        record[f"crossing_{name}"].ravel()[: 2 * (ends - 1)] = np.stack(pairs, axis=1).ravel()
     angles = multiple * phases[:, None] + shift
     record["end_cosine"][:ends, :count] = np.cos(angles)
     record["end_sine"][:ends, :count] = np.sin(angles)

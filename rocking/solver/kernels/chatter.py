@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking.solver.excitation import shape_and_slope
+from rocking.solver.excitation import shape_at
 
 
 @kernel
 def ground_acceleration(flight: Record, phase: float) -> float:
     """a f(phi) [-]."""
-    return flight.a * shape_and_slope(phase, flight)[0]
+    return flight.a * shape_at(phase, flight)
 
 
 @kernel

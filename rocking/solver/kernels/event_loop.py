@@ -65,7 +65,7 @@ def next_uplift(flight: Record) -> bool:
     flight.next_phase, flight.next_w = flight.interval_phase[flight.interval], 0.0
     flight.next_sign = -flight.interval_level[flight.interval]  # positive ground acceleration: negative rotation
     flight.uplifts, flight.impacts_before_uplift = flight.uplifts + 1, flight.impacts
-    for k in range(flight.terms):
+    for k in range(flight.terms if flight.by_arcs == 1 else 0):
         flight.cosine0[k] = flight.interval_cosine[flight.interval, k]
         flight.sine0[k] = flight.interval_sine[flight.interval, k]
     if flight.outcome == NO_UPLIFT:

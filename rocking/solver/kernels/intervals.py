@@ -9,8 +9,8 @@ left end:
   between; no maximum of z inside;
 - q' >= 0 or q' <= 0 determine the zeros of w, which are the peaks, in the same way.
 
-Single sinusoids have closed forms for the interval ends and the cosine and sine there; other excitations use a
-bracketed Newton method.
+Single sinusoids have closed forms for the interval ends and the cosine and sine there; for other excitations
+`rocking.solver.crossings` finds them.
 """
 
 from __future__ import annotations
@@ -18,36 +18,9 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
-from rocking.solver.excitation import is_unit_sinusoid, shape_and_slope
-
-
-@kernel
-def find_crossing(level: float, left: float, right: float, rising: bool, flight: Record) -> float:
-    """The phase at which f, monotone on [left, right] with a crossing inside, equals `level`: bracketed Newton.
-
-    The next step is at most the square of a step over the distance to the nearest extremum, which is an end.
-    """
-    start, end = left, right
-    phi = 0.5 * (left + right)
-    for _ in range(100):
-        f, slope = shape_and_slope(phi, flight)
-        if f == level:
-            return phi
-        if (f > level) == rising:
-            right = phi
-        else:
-            left = phi
-        follow = phi - (f - level) / slope if slope != 0.0 else left
-        if not left < follow < right:
-            follow = 0.5 * (left + right)
-        elif (follow - phi) ** 2 <= 1e-17 * abs(phi) * min(follow - start, end - follow):
-            return follow
-        if abs(follow - phi) <= 4.5e-16 * abs(
-            phi
-        ):  # otherwise the iteration may alternate between two adjacent doubles
-            return follow
-        phi = follow
-    return phi
+from rocking._numba.simd import LANES
+from rocking.solver.crossings import find_crossings
+from rocking.solver.excitation import is_unit_sinusoid
 
 
 @kernel
@@ -61,19 +34,21 @@ def set_interval(flight: Record, index: int, phase: float, level: float, rise: f
 @kernel
 def split_into_intervals(slenderness: float, flight: Record) -> int:
     """Fill `flight.interval_*` (intervals + 1) for 1/a = `slenderness` < 1; returns the number of intervals."""
-    terms = flight.terms
+    angles = flight.terms if flight.by_arcs == 1 else 0  # of which Taylor steps need no cosines and sines
     single = is_unit_sinusoid(flight)
     # half-width of |f| > 1/a about each extremum: cos(cap) = 1/a, accurate also for 1/a close to 1
     root = math.sqrt((1.0 - slenderness) * (1.0 + slenderness))
     half_width = math.atan2(root, slenderness) if single else 0.0
+    if not single:
+        find_crossings(slenderness, flight)
     count = 0
     for piece in range(flight.pieces):
-        left, right = flight.end_phase[piece], flight.end_phase[piece + 1]
+        left = flight.end_phase[piece]
         f_left, f_right = flight.end_shape[piece], flight.end_shape[piece + 1]
         rise = -1.0 if f_left > f_right else 1.0
         level = 1.0 if f_left > slenderness else (-1.0 if f_left < -slenderness else 0.0)
         set_interval(flight, count, left, level, rise)
-        for k in range(terms):
+        for k in range(angles):
             flight.interval_cosine[count, k], flight.interval_sine[count, k] = (
                 flight.end_cosine[piece, k],
                 flight.end_sine[piece, k],
@@ -92,14 +67,15 @@ def split_into_intervals(slenderness: float, flight: Record) -> int:
                 set_interval(flight, count, flight.half_period_phase[piece] + distance, level, rise)
                 flight.interval_cosine[count, 0], flight.interval_sine[count, 0] = value, cosine * root
             else:
-                phi = left if entered else find_crossing(target, left, right, rise > 0.0, flight)
+                crossing = 2 * piece + (0 if turn == -rise else 1)
+                phi = left if entered else flight.crossing_phase[crossing // LANES, crossing % LANES]
                 set_interval(flight, count, phi, level, rise)
-                for k in range(terms):
+                for k in range(angles):
                     angle = flight.multiple[k] * phi + flight.shift[k]
                     flight.interval_cosine[count, k], flight.interval_sine[count, k] = math.cos(angle), math.sin(angle)
             count += 1
     set_interval(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
-    for k in range(terms):
+    for k in range(angles):
         flight.interval_cosine[count, k], flight.interval_sine[count, k] = (
             flight.end_cosine[flight.pieces, k],
             flight.end_sine[flight.pieces, k],

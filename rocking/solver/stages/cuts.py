@@ -11,15 +11,12 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, store
+from rocking._numba.simd import LANES, any_lane, load, maximum, minimum, select, splat, store
 from rocking._numba.simd_exponentials import arccosine
-from rocking.solver.excitation import is_unit_sinusoid
-from rocking.solver.stages.excitation import shapes_and_slopes
+from rocking.solver.crossings import refine_crossings
+from rocking.solver.excitation import is_unit_sinusoid, shapes_and_slopes
 from rocking.solver.stages.hermite import hermite_roots
 from rocking.solver.stages.state import SLENDERNESS
-
-MAX_NEWTON_STEPS = 100
-"""Steps after which the bracketed Newton iteration stops; bisection alone needs 55."""
 
 
 @kernel
@@ -71,9 +68,7 @@ def init_nodes(pulse: Record, group: Record) -> None:
 def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, rising: bool, wanted: Any) -> Any:
     """The phases at which f, monotone on a piece of the pulse, equals `level`, where the mask `wanted` is true.
 
-    The two nodes beside the level give the bracket, and the cubic through both the first guess. The last step of
-    the bracketed Newton iteration is the one after which the next, at most its square over the distance to the nearest
-    extremum, is below rounding.
+    The two nodes beside the level give the bracket, and the cubic through both the first guess.
     """
     left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
     spacing = (right - left) / (LANES - 1.0)
@@ -90,19 +85,5 @@ def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, 
     high = minimum(low + spacing, splat(right))
     phase = low + hermite_roots(f_low - level, slope_low, f_high - level, slope_high, high - low)
     phase = select((phase > low) & (phase < high), phase, 0.5 * (low + high))
-    going = wanted
-    for _ in range(MAX_NEWTON_STEPS):
-        f, slope = shapes_and_slopes(pulse, phase)
-        above = (f >= level) if rising else (f <= level)
-        high, low = select(going & above, phase, high), select(going & ~above, phase, low)
-        following = phase - (f - level) / slope
-        inside = (following >= low) & (following <= high)
-        following = select(inside, following, 0.5 * (low + high))
-        moved = absolute(following - phase)
-        edge = minimum(following - left, right - following)
-        phase = select(going, following, phase)
-        arrived = inside & (moved * moved <= 1e-17 * absolute(phase) * edge)
-        going = going & ~arrived & (high - low > 4.5e-16 * absolute(phase))
-        if not any_lane(going):
-            break
-    return phase
+    rise = splat(1.0 if rising else -1.0)
+    return refine_crossings(pulse, level, rise, (splat(left), splat(right)), low, high, phase, wanted)

@@ -15,13 +15,12 @@ from rocking._numba.simd import load, maximum, minimum, select, splat, square_ro
 from rocking._numba.simd_exponentials import exponential
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking.solver.arcs.arc import SERIES_RADIUS
-from rocking.solver.excitation import WAVELET, expand_gaussian_product, is_unit_sinusoid
+from rocking.solver.excitation import WAVELET, expand_gaussian_product, is_unit_sinusoid, polynomial_at
 from rocking.solver.stages.state import AT_UPLIFT, OMEGA, PHASE, SLENDERNESS, W0
 from rocking.solver.stages.wavelets import (
     MAX_WAVELET_REACH,
     WAVELET_SERIES_RADIUS,
     particular_solution,
-    polynomial_at,
 )
 from rocking.solver.state import SERIES_LENGTH, WAVELET_SERIES_LENGTH
 
@@ -59,21 +58,6 @@ def excitation_at_angles(pulse: Record, group: Record) -> Any:
     for k in range(pulse.terms):
         f += pulse.amplitude[k] * load(group.cosine, k)
     return f
-
-
-@kernel
-def shapes_and_slopes(pulse: Record, phase: SimdVector) -> Any:
-    """f [-] and df/dphi at phases."""
-    if pulse.family == WAVELET:
-        value, first, _ = polynomial_at(pulse, phase)
-        gaussian = exponential(phase * phase * (-1.0 / pulse.spread))
-        return value * gaussian, (first + phase * (-2.0 / pulse.spread) * value) * gaussian
-    f, slope = splat(0.0), splat(0.0)
-    for k in range(pulse.terms):
-        sine, cosine = sine_and_cosine(phase * pulse.multiple[k] + pulse.shift[k])
-        f += pulse.amplitude[k] * cosine
-        slope -= pulse.amplitude[k] * pulse.multiple[k] * sine
-    return f, slope
 
 
 @kernel

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from rocking._numba.compilation import Record, SimdVector, kernel
+from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, any_lane, load, select
 from rocking._numba.simd_error_function import scaled_erfc
 from rocking._numba.simd_exponentials import exponential
@@ -30,15 +30,6 @@ WAVELET_SERIES_RADIUS, MAX_WAVELET_REACH = 1.8, 0.9
 
 HALF_ROOT_PI = 0.5 * math.sqrt(math.pi)
 """sqrt(pi)/2 [-]."""
-
-
-@kernel
-def polynomial_at(pulse: Record, phase: SimdVector) -> Any:
-    """The polynomial of the wavelet, its first and half of its second derivative."""
-    p = pulse.polynomial
-    value = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
-    slope = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
-    return value, slope, p[2] + phase * (3.0 * p[3])
 
 
 @kernel
