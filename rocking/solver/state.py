@@ -111,8 +111,6 @@ def _flight_layout() -> np.dtype[np.void]:
             ),  # Taylor coefficients of z about the point of the last `expand_series`
             # its Taylor steps
             ("segment_end", np.int64),  # index of the interval end at which the steps must end next
-            ("destabilised", np.int64),  # whether the block is destabilised up to there
-            ("restoring_phase", np.float64),  # otherwise, phase from which the acceleration is restoring
             ("elapsed", np.float64),  # time since the flight's start
             ("largest_z", np.float64),  # largest z so far
             # end of the first flight, which does not depend on eta
@@ -162,6 +160,11 @@ def _steps_layout() -> np.dtype[np.void]:
             ("w0", np.float64, lanes),
             ("starts_at_uplift", np.float64, lanes),  # 1 if it starts with an uplift through |a f| = 1, else 0
             ("limit", np.float64, lanes),  # largest step size [tau]
+            ("in_use", np.float64, lanes),  # 1 if the lane follows a block, else 0
+            ("destabilised", np.float64, lanes),  # 1 if the block is destabilised up to the end of the segment, else 0
+            ("restoring_phase", np.float64, lanes),  # otherwise, phase from which the acceleration is restoring
+            ("at_ground", np.float64, lanes),  # 1 if the flight starts here, else 0
+            ("known", np.float64, lanes),  # largest z of the response so far: smaller peaks do not count
             # the block and the strength of the pulse
             ("strength", np.float64, lanes),  # sgn(theta) a
             ("omega", np.float64, lanes),
@@ -177,6 +180,9 @@ def _steps_layout() -> np.dtype[np.void]:
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
+            ("impact", np.float64, lanes),  # see `rocking.solver.taylor.lane_events`
+            ("impact_w", np.float64, lanes),
+            ("peak", np.float64, lanes),
             ("taken", np.int64, lanes),  # number of steps of the flight
             # the excitation, as in `FLIGHT_STATE`
             *excitation_fields(),

@@ -12,7 +12,8 @@ from rocking._numba.simd import LANES
 from rocking.errors import SearchError
 from rocking.solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
 from rocking.solver.state import IN_FLIGHT
-from rocking.solver.taylor.flight import MAX_STEPS, process_step, start_steps
+from rocking.solver.taylor.flight import MAX_STEPS, free_lanes, process_step, start_steps
+from rocking.solver.taylor.lane_events import locate_events
 from rocking.solver.taylor.step import init_block, take_step
 
 
@@ -113,6 +114,7 @@ def solve_batch(
         Filled.
     """
     following, busy, taken = 0, 0, steps.taken
+    free_lanes(steps)
     for lane in range(LANES):
         taken[lane] = 0
     for lane in range(LANES):
@@ -121,6 +123,7 @@ def solve_batch(
             busy += 1
     while busy > 0 and not is_stopped(stop):
         take_step(steps)
+        locate_events(steps)
         for lane in range(LANES):
             flight = flights[lane]
             if flight.cell < 0:
@@ -139,4 +142,5 @@ def solve_batch(
                 continue
             following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, stop, responses)
             if flight.cell < 0:
+                steps.in_use[lane] = 0.0
                 busy -= 1

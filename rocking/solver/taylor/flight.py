@@ -12,9 +12,11 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import splat, store
 from rocking.errors import SearchError
 from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS, PULSE_END
 from rocking.solver.taylor.events import evaluate_series, first_crossing, refine_root, second_derivative_bound
+from rocking.solver.taylor.lane_events import UNDECIDED, locate_events
 from rocking.solver.taylor.step import init_block, take_step
 
 MAX_STEPS = 1_000_000
@@ -33,17 +35,24 @@ def is_destabilised(flight: Record, interval: int) -> bool:
 def next_segment(flight: Record, steps: Record, lane: int) -> None:
     """Set the phase at which the steps of this lane must end next."""
     until, count = flight.interval, flight.interval_count
-    flight.restoring_phase = steps.phase[lane]
+    restoring_phase = steps.phase[lane]
     if steps.w0[lane] >= 0.0:
         while until < count and is_destabilised(flight, until):
             until += 1
         if until > flight.interval:
-            flight.restoring_phase = flight.interval_phase[until]
-    flight.destabilised = int(until == count or is_destabilised(flight, until))
-    while until < count and is_destabilised(flight, until) == (flight.destabilised == 1):
+            restoring_phase = flight.interval_phase[until]
+    destabilised = until == count or is_destabilised(flight, until)
+    while until < count and is_destabilised(flight, until) == destabilised:
         until += 1
+    steps.restoring_phase[lane], steps.destabilised[lane] = restoring_phase, 1.0 if destabilised else 0.0
     flight.segment_end = until
     steps.limit[lane] = (flight.interval_phase[until] - steps.phase[lane]) / steps.omega[lane]
+
+
+@kernel
+def free_lanes(steps: Record) -> None:
+    """Mark all lanes as unused."""
+    store(steps.in_use, 0, splat(0.0))
 
 
 @kernel
@@ -53,13 +62,14 @@ def start_steps(flight: Record, steps: Record, lane: int) -> None:
     steps.phase[lane], steps.z0[lane], steps.w0[lane] = flight.phase, 0.0, flight.w0
     steps.starts_at_uplift[lane] = flight.starts_at_uplift
     steps.strength[lane] = flight.sign * flight.a
+    steps.in_use[lane], steps.at_ground[lane], steps.known[lane] = 1.0, 1.0, flight.peak_rotation
     next_segment(flight, steps, lane)
 
 
 @kernel
 def impact_in_step(steps: Record, lane: int, destabilised: bool, starts_at_ground: bool) -> float:
     """Time of the impact within the step, or -1; `starts_at_ground` if the step starts at z = 0."""
-    z, rate, order = steps.z, steps.rate, steps.order
+    z, order = steps.z, steps.order
     h, z1, w0, w1 = steps.h[lane], steps.z1[lane], steps.w0[lane], steps.w1[lane]
     if not destabilised:
         if z1 > 0.0:
@@ -71,10 +81,16 @@ def impact_in_step(steps: Record, lane: int, destabilised: bool, starts_at_groun
         return -1.0
     if z1 <= 0.0:
         return refine_root(z, lane, order, 0.0, h, True, False, h - z1 / w1)[0]
-    if w1 > 0.0:
-        bottom = first_crossing(rate, lane, order - 1, 0.0, h, False, steps.second_derivative_bound[lane])
-        if bottom > 0.0 and evaluate_series(z, lane, order, bottom) <= 0.0:
-            return refine_root(z, lane, order, 0.0, bottom, True, False, 0.5 * bottom)[0]
+    return impact_at_dip(steps, lane) if w1 > 0.0 else -1.0
+
+
+@kernel
+def impact_at_dip(steps: Record, lane: int) -> float:
+    """Time of the impact before a minimum of z between w < 0 and w > 0 while the block is destabilised, or -1."""
+    z, order = steps.z, steps.order
+    bottom = first_crossing(steps.rate, lane, order - 1, 0.0, steps.h[lane], False, steps.second_derivative_bound[lane])
+    if bottom > 0.0 and evaluate_series(z, lane, order, bottom) <= 0.0:
+        return refine_root(z, lane, order, 0.0, bottom, True, False, 0.5 * bottom)[0]
     return -1.0
 
 
@@ -114,20 +130,25 @@ def highest_peak(steps: Record, lane: int, start: float, h: float, z1: float, w1
 def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, float]:
     """Process the events of the last step of a lane, and prepare the next step if the flight continues.
 
+    `locate_events` must have been called.
+
     Returns
     -------
     what ended the flight, or `IN_FLIGHT`; velocity w and rotation z there. `flight` holds the time since its start and
     the largest z.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
-    destabilised = flight.destabilised == 1
-    impact = impact_in_step(steps, lane, destabilised, flight.elapsed == 0.0)
+    destabilised, impact, peak = steps.destabilised[lane] > 0.0, steps.impact[lane], steps.peak[lane]
     if impact >= 0.0:
-        h, z, w = impact, 0.0, evaluate_series(steps.rate, lane, steps.order - 1, impact)
-    if not destabilised:
-        known = max(flight.peak_rotation, flight.largest_z)
-        restoring_time = (flight.restoring_phase - steps.phase[lane]) / steps.omega[lane]
-        flight.largest_z = max(flight.largest_z, highest_peak(steps, lane, restoring_time, h, z, w, known))
+        h, z, w = impact, 0.0, steps.impact_w[lane]
+    elif destabilised and steps.w0[lane] < 0.0 and w > 0.0:
+        impact = impact_at_dip(steps, lane)
+        if impact >= 0.0:
+            h, z, w = impact, 0.0, evaluate_series(steps.rate, lane, steps.order - 1, impact)
+    if peak == UNDECIDED:
+        restoring_time = (steps.restoring_phase[lane] - steps.phase[lane]) / steps.omega[lane]
+        peak = highest_peak(steps, lane, restoring_time, h, z, w, steps.known[lane])
+    flight.largest_z = max(flight.largest_z, peak)
     flight.elapsed += h
     if impact >= 0.0:
         return IMPACT, w, z
@@ -137,6 +158,7 @@ def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, 
     elif z + w >= 1.0 + flight.a:  # see `long_flight`
         return OVERTURNS, w, z
     steps.z0[lane], steps.w0[lane], steps.starts_at_uplift[lane] = z, w, 0.0
+    steps.at_ground[lane], steps.known[lane] = 0.0, max(flight.peak_rotation, flight.largest_z)
     if h < steps.limit[lane]:
         steps.phase[lane] += steps.omega[lane] * h
         steps.limit[lane] = (flight.interval_phase[flight.segment_end] - steps.phase[lane]) / steps.omega[lane]
@@ -152,10 +174,12 @@ def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, 
 @kernel
 def flight_by_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
     """Follow one flight in the first lane to its end, as `process_step`."""
+    free_lanes(steps)
     init_block(steps, 0, flight.alpha, flight.omega)
     start_steps(flight, steps, 0)
     for _ in range(MAX_STEPS):
         take_step(steps)
+        locate_events(steps)
         ended, w, z = process_step(flight, steps, 0)
         if ended != IN_FLIGHT:
             return ended, w, z

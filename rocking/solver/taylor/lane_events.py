@@ -1,0 +1,99 @@
+"""Impact and peak within a Taylor step of all lanes at once; see `rocking.solver.taylor.flight` for the conditions.
+
+What needs a search, a minimum of z while the block is destabilised and peaks that the bound of |w''| does not single
+out, is left to the scalar functions of `rocking.solver.taylor.flight`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rocking._numba.compilation import Record, Series, SimdVector, kernel
+from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, store
+
+MAX_NEWTON_STEPS = 100
+"""Steps after which the bracketed Newton iteration stops; bisection alone needs 55."""
+
+NO_IMPACT, UNDECIDED = -1.0, -1.0
+"""Time of an impact that does not take place in the step; peak that is left to the scalar functions."""
+
+
+@kernel
+def evaluate(series: Series, top: int, h: SimdVector) -> SimdVector:
+    """Values of the series of degree `top` at h."""
+    value = load(series, top)
+    for i in range(1, top + 1):
+        value = value * h + load(series, top - i)
+    return value
+
+
+@kernel
+def refine_roots(
+    series: Series, top: int, low: SimdVector, high: SimdVector, deflated: Any, guess: SimdVector, wanted: Any
+) -> Any:
+    """The decreasing zeros of series between `low` and `high` where the mask `wanted` is true, and the slopes there.
+
+    The mask `deflated` tells where the series is divided by h, which removes the zero at the start of a flight. The
+    bracketed Newton iteration is that of `rocking.solver.taylor.events.refine_root`.
+    """
+    h = select((guess > low) & (guess < high), guess, 0.5 * (low + high))
+    going, before, slope, divides = wanted, splat(0.0), splat(0.0), any_lane(deflated & wanted)
+    for _ in range(MAX_NEWTON_STEPS):
+        value, rate = load(series, top), splat(0.0)
+        for i in range(1, top + 1):
+            rate = rate * h + value
+            value = value * h + load(series, top - i)
+        if divides:
+            quotient = value / h
+            rate = select(deflated, (rate - quotient) / h, rate)
+            value = select(deflated, quotient, value)
+        above = value > 0.0
+        low, high = select(going & above, h, low), select(going & ~above, h, high)
+        following = h - value / rate
+        following = select((following >= low) & (following <= high), following, 0.5 * (low + high))
+        step = absolute(following - h)
+        h, slope = select(going, following, h), select(going, rate, slope)
+        going = going & ~(step * step * step <= 1e-16 * absolute(h) * before * before)  # the next is below rounding
+        if not any_lane(going):
+            break
+        before = step
+    return h, slope
+
+
+@kernel
+def locate_events(steps: Record) -> None:
+    """Set `impact`, the time of the impact in the step or `NO_IMPACT`, `impact_w`, and `peak` of the lanes in use.
+
+    `peak` is the largest z inside the step, before the impact, if it can exceed `known`, else 0; or `UNDECIDED`.
+    """
+    in_use, destabilised = load(steps.in_use, 0) > 0.0, load(steps.destabilised, 0) > 0.0
+    at_ground = load(steps.at_ground, 0) > 0.0
+    h, w0, z, w = load(steps.h, 0), load(steps.w0, 0), load(steps.z1, 0), load(steps.w1, 0)
+    zero = splat(0.0)
+    lands = in_use & (z <= 0.0) & ~(destabilised & (w0 >= 0.0))
+    impact = splat(NO_IMPACT)
+    if any_lane(lands):
+        # first guess: the zero of a parabola from z = 0, otherwise a Newton step from the end of the step
+        guess = select(at_ground, 2.0 * w0 * h / (w0 - w), h - z / w)
+        root, _ = refine_roots(steps.z, steps.order, zero, h, at_ground, guess, lands)
+        h, z = select(lands, root, h), select(lands, zero, z)
+        w = select(lands, evaluate(steps.rate, steps.order - 1, h), w)
+        impact = select(lands, h, impact)
+    store(steps.impact, 0, impact)
+    store(steps.impact_w, 0, w)
+    # peaks: the conditions of `highest_peak`
+    start = (load(steps.restoring_phase, 0) - load(steps.phase, 0)) / load(steps.omega, 0)
+    bound = load(steps.second_derivative_bound, 0)
+    sagitta = 0.125 * bound * h * h
+    steady = (w0 * w > 0.0) & (minimum(absolute(w0), absolute(w)) > sagitta)
+    speed = maximum(absolute(w0), absolute(w)) + sagitta
+    low = 0.5 * (load(steps.z0, 0) + z + speed * h) <= load(steps.known, 0)
+    possible = in_use & ~destabilised & (start < h) & ~steady & ~low
+    peak = select(possible, splat(UNDECIDED), zero)
+    turns = possible & (w0 >= 0.0) & (w < 0.0)
+    if any_lane(turns):
+        start = maximum(start, zero)
+        top, slope = refine_roots(steps.rate, steps.order - 1, start, h, ~turns & turns, h * w0 / (w0 - w), turns)
+        single = turns & (2.0 * absolute(slope) > bound * maximum(top - start, h - top))
+        peak = select(single, evaluate(steps.z, steps.order, top), peak)
+    store(steps.peak, 0, peak)
