@@ -20,11 +20,42 @@ NO_IMPACT, UNDECIDED = -1.0, -1.0
 
 @kernel
 def evaluate(series: Series, top: int, h: SimdVector) -> SimdVector:
-    """Values of the series of degree `top` at h."""
-    value = load(series, top)
-    for i in range(1, top + 1):
-        value = value * h + load(series, top - i)
-    return value
+    """Values of the series of degree `top` at h; `evaluate_series` of `rocking.solver.taylor.events`."""
+    square, last = h * h, top - top % 2
+    even, odd = load(series, last), splat(0.0)
+    if last < top:
+        odd = load(series, top)
+    for i in range(2, last + 1, 2):
+        n = last - i
+        even = even * square + load(series, n)
+        odd = odd * square + load(series, n + 1)
+    return even + h * odd
+
+
+@kernel
+def values_and_slopes(series: Series, top: int, h: SimdVector) -> Any:
+    """Values of the series of degree `top` at h, and their derivatives; `value_and_slope` for one lane."""
+    square, last = h * h, top - top % 2
+    even, odd, even_slope, odd_slope = load(series, last), splat(0.0), splat(0.0), splat(0.0)
+    if last < top:
+        odd = load(series, top)
+    for i in range(2, last + 1, 2):
+        n = last - i
+        even_slope = even_slope * square + even
+        even = even * square + load(series, n)
+        odd_slope = odd_slope * square + odd
+        odd = odd * square + load(series, n + 1)
+    return even + h * odd, odd + 2.0 * h * (even_slope + h * odd_slope)
+
+
+@kernel
+def second_derivative_bounds(series: Series, top: int, h: SimdVector) -> SimdVector:
+    """Bounds of the second derivatives of the series of degree `top` on [0, h]."""
+    bound = splat(0.0)
+    for i in range(top - 1):
+        n = top - i
+        bound = bound * h + absolute(load(series, n)) * (n * (n - 1.0))
+    return bound
 
 
 @kernel
@@ -39,10 +70,7 @@ def refine_roots(
     h = select((guess > low) & (guess < high), guess, 0.5 * (low + high))
     going, before, slope, divides = wanted, splat(0.0), splat(0.0), any_lane(deflated & wanted)
     for _ in range(MAX_NEWTON_STEPS):
-        value, rate = load(series, top), splat(0.0)
-        for i in range(1, top + 1):
-            rate = rate * h + value
-            value = value * h + load(series, top - i)
+        value, rate = values_and_slopes(series, top, h)
         if divides:
             quotient = value / h
             rate = select(deflated, (rate - quotient) / h, rate)
@@ -94,6 +122,10 @@ def locate_events(steps: Record) -> None:
     if any_lane(turns):
         start = maximum(start, zero)
         top, slope = refine_roots(steps.rate, steps.order - 1, start, h, ~turns & turns, h * w0 / (w0 - w), turns)
-        single = turns & (2.0 * absolute(slope) > bound * maximum(top - start, h - top))
+        reach = maximum(top - start, h - top)
+        single = turns & (2.0 * absolute(slope) > bound * reach)  # |w - slope (t - top)| <= bound (t - top)^2/2
+        if any_lane(turns & ~single):  # the bound of the whole step is too large for an early impact
+            bound = second_derivative_bounds(steps.rate, steps.order - 1, h)
+            single = turns & (2.0 * absolute(slope) > bound * reach)
         peak = select(single, evaluate(steps.z, steps.order, top), peak)
     store(steps.peak, 0, peak)
