@@ -117,15 +117,20 @@ def locate_events(steps: Record) -> None:
     speed = maximum(absolute(w0), absolute(w)) + sagitta
     low = 0.5 * (load(steps.z0, 0) + z + speed * h) <= load(steps.known, 0)
     possible = in_use & ~destabilised & (start < h) & ~steady & ~low
-    peak = select(possible, splat(UNDECIDED), zero)
-    turns = possible & (w0 >= 0.0) & (w < 0.0)
+    peak, undecided = select(possible, splat(UNDECIDED), zero), possible
+    turns, start = possible & (w0 >= 0.0) & (w < 0.0), maximum(start, zero)
+    reach, slope, tops = h, zero, zero
     if any_lane(turns):
-        start = maximum(start, zero)
         top, slope = refine_roots(steps.rate, steps.order - 1, start, h, ~turns & turns, h * w0 / (w0 - w), turns)
         reach = maximum(top - start, h - top)
+        tops = evaluate(steps.z, steps.order, top)
         single = turns & (2.0 * absolute(slope) > bound * reach)  # |w - slope (t - top)| <= bound (t - top)^2/2
-        if any_lane(turns & ~single):  # the bound of the whole step is too large for an early impact
-            bound = second_derivative_bounds(steps.rate, steps.order - 1, h)
-            single = turns & (2.0 * absolute(slope) > bound * reach)
-        peak = select(single, evaluate(steps.z, steps.order, top), peak)
+        peak, undecided = select(single, tops, peak), undecided & ~single
+    if any_lane(undecided):  # with the bound up to the impact, and w where the acceleration becomes restoring
+        bound = second_derivative_bounds(steps.rate, steps.order - 1, h)
+        single = undecided & turns & (2.0 * absolute(slope) > bound * reach)
+        peak = select(single, tops, peak)
+        w0 = evaluate(steps.rate, steps.order - 1, start)
+        steady = (w0 * w > 0.0) & (minimum(absolute(w0), absolute(w)) > 0.125 * bound * (h - start) * (h - start))
+        peak = select(undecided & steady, zero, peak)
     store(steps.peak, 0, peak)

@@ -21,7 +21,10 @@ from rocking.solver.excitation import expand_excitation
 def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
     """Set a lane to a block of slenderness angle `alpha` [rad] (0: slender) and frequency ratio `omega`."""
     steps.omega[lane] = omega
-    steps.slender[lane], steps.alpha[lane] = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
+    slender, angle = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
+    if steps.slender[lane] == slender and steps.alpha[lane] == angle and steps.s_rate[lane] != 0.0:
+        return  # the angle of the block before
+    steps.slender[lane], steps.alpha[lane] = slender, angle
     # by the same function as S and C, so that these are exactly 1 at z = 0
     sines, cosines = sine_and_cosine(load(steps.alpha, 0))
     store(steps.sine_alpha, 0, sines)
