@@ -40,9 +40,6 @@ METHODS: tuple[str, ...] = get_args(Method)
 SAFETY = 6.0
 """Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
 
-SOURCES = np.array(["solver", "cube", "solver"])
-"""Source of a response by its state."""
-
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
@@ -125,12 +122,12 @@ class Cube:
             found = _empty(points)
         else:
             found, used = self._interpolated(points, limit)
-        result = _named(found)
+        result = _response(found)
         left = np.flatnonzero(found.state == UNKNOWN)
         if left.size and method == "cube":
             self._refuse(points[left[:1]], limit)
         if method == "cube":
-            result.source[...] = "cube"
+            result.from_cube[...] = True
         if left.size:
             result.put(left, _solve(self.pulse, points[left], stop))
         return result.reshape(shape), used
@@ -151,7 +148,7 @@ class Cube:
         Responses elsewhere are undefined.
         """
         found, _ = self._interpolated(points, limit)
-        return found.state == INTERPOLATED, _named(found)
+        return found.state == INTERPOLATED, _response(found)
 
     def _interpolated(self, points: Points, limit: float) -> tuple[Found, list[CubeSlice]]:
         """Responses of the points, and the slices used."""
@@ -253,15 +250,15 @@ def _empty(points: Points) -> Found:
     )
 
 
-def _named(found: Found) -> BoundedResponse:
-    """The responses with their sources."""
+def _response(found: Found) -> BoundedResponse:
+    """The responses as their users see them."""
     return BoundedResponse(
         peak_rotation=found.peak_rotation,
         outcome=found.outcome,
         impacts=found.impacts,
         exceeded_alpha=found.exceeded_alpha,
         error_bound=found.error_bound,
-        source=SOURCES.take(found.state),
+        from_cube=found.state == INTERPOLATED,
     )
 
 

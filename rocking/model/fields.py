@@ -144,6 +144,7 @@ ERROR_BOUND = ResponseField(
     "the block overturns",
     "infinite where the outcome changes within the rounding of the parameters",
 )
+FROM_CUBE = ResponseField("from_cube", "?", "1", "3.2", "whether it is interpolated in a data set; else it is solved")
 SOURCE = ResponseField("source", "U", "1", "3.2", "cube (interpolated data set) or solver")
 
 RESPONSE_FIELDS = (
@@ -161,7 +162,7 @@ RESPONSE_FIELDS = (
 )
 """Fields of `rocking.Response`, in order, and of the record that the solver writes for each block."""
 
-BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, SOURCE)
+BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, FROM_CUBE)
 """Fields of a response with an error bound, of an interpolated cube or of the solver."""
 
 CUBE_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, PEAK_MODE)

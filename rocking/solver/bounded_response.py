@@ -41,8 +41,8 @@ class BoundedResponse:
     error_bound : float64 array [-]
         Bound of the absolute error of `peak_rotation`; nan where the block overturns, infinite where the outcome
         changes within the rounding of the parameters.
-    source : str array
-        "cube" (interpolated data set) or "solver".
+    from_cube : bool array
+        Whether it is interpolated in a data set; else it is solved.
     """
 
     peak_rotation: Array
@@ -50,7 +50,12 @@ class BoundedResponse:
     impacts: NDArray[np.int32]
     exceeded_alpha: Flags
     error_bound: Array
-    source: NDArray[np.str_]
+    from_cube: Flags
+
+    @property
+    def source(self) -> NDArray[np.str_]:
+        """Names of the sources: "cube" (interpolated data set) or "solver"."""
+        return np.where(self.from_cube, "cube", "solver")
 
     @property
     def overturned(self) -> Flags:
@@ -64,7 +69,7 @@ class BoundedResponse:
             parts = (
                 f"{np.count_nonzero(~self.overturned)} survive",
                 f"{np.count_nonzero(self.overturned)} overturn",
-                f"{np.count_nonzero(self.source == 'cube')} from a cube",
+                f"{np.count_nonzero(self.from_cube)} from a cube",
             )
             return f"<rocking.BoundedResponse of {shape} blocks: {', '.join(parts)}>"
         outcome = Outcome(int(self.outcome))
@@ -134,5 +139,5 @@ def solve_with_bound(
     bound[found.overturned[0]] = np.nan
     bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
     return BoundedResponse(
-        peak, outcome, found.impacts[0], found.exceeded_alpha[0], bound, np.full(peak.shape, "solver")
+        peak, outcome, found.impacts[0], found.exceeded_alpha[0], bound, np.zeros(peak.shape, np.bool_)
     )

@@ -16,14 +16,14 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking.lookup.collection import CubeCollection
 from rocking.model.checks import check
-from rocking.model.fields import BOUNDED_FIELDS, SOURCE
+from rocking.model.fields import BOUNDED_FIELDS, FROM_CUBE
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import FREQUENCY_RATIO, SLENDERNESS, LookupOptions, alpha_of
 
 CHUNK_SIZE = 50_000
 """Points between two checks of the stop flag [-]: some hundredths of a second."""
 
-FIELDS: dict[str, DTypeLike] = {field.name: field.dtype for field in BOUNDED_FIELDS if field is not SOURCE}
+FIELDS: dict[str, DTypeLike] = {field.name: field.dtype for field in BOUNDED_FIELDS if field is not FROM_CUBE}
 """Fields of `BoundedResponse` that are kept, and their types."""
 
 BYTES_PER_POINT = sum(np.dtype(dtype).itemsize for dtype in FIELDS.values()) + 1
@@ -101,7 +101,7 @@ def evaluate_many(
         part, met = evaluate(cubes, options, **{name: values[here] for name, values in groups.items()}, stop=stop)
         for name, values in fields.items():
             values[here] = getattr(part, name)
-        from_cube[here] = part.source == "cube"
+        from_cube[here] = part.from_cube
         versions |= dict.fromkeys(met)
     return BatchResult(fields, from_cube, (*versions,))
 
