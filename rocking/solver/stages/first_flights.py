@@ -75,28 +75,24 @@ def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells
             append(cells, FIRST_LISTS + (1 if sign > 0.0 else 0), place)
         place = following
     for which in range(FIRST_LISTS, FIRST_LISTS + 2):
-        if varies(which, slenderness, cells):
-            sort_by_slenderness(which, slenderness, cells)
+        sort_by_slenderness(which, slenderness, cells)
     return shared
-
-
-@kernel
-def varies(which: int, slenderness: FloatArray, cells: Record) -> bool:
-    """Whether most vectors of cells of a list contain different slendernesses."""
-    places, count, varied = cells.lists[which], cells.counts[which], 0
-    for first in range(0, count - LANES + 1, LANES):
-        change = slenderness[places[first + LANES - 1]] - slenderness[places[first]]
-        varied += abs(change) * BUCKETS > 1.0
-    return bool(2 * varied * LANES > count)
 
 
 @kernel
 def sort_by_slenderness(which: int, slenderness: FloatArray, cells: Record) -> None:
     """Order a list by slenderness, on which the number of flights and of iterations mainly depends.
 
-    Vectors of cells in random order wait for the slowest of their cells.
+    Vectors of cells in random order wait for the slowest of their cells. A list remains as it is if most of its vectors
+    hold cells of about the same slenderness.
     """
     places, ends, ordered, count = cells.lists[which], cells.ends, cells.ordered, cells.counts[which]
+    varied = 0
+    for first in range(0, count - LANES + 1, LANES):
+        change = slenderness[places[first + LANES - 1]] - slenderness[places[first]]
+        varied += abs(change) * BUCKETS > 1.0
+    if 2 * varied * LANES <= count:
+        return
     ends[:] = 0
     for i in range(count):
         ends[int(slenderness[places[i]] * BUCKETS)] += 1
