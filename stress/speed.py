@@ -21,8 +21,9 @@ LONG_CELL = 20.0
 SLOW = 400.0
 """Time over the median ordinary cell above which a cell is slow and must have many impacts."""
 
-MAX_PER_IMPACT = 8.0
-"""Most ordinary cells that an impact of a slow cell may take; an ordinary slender cell is solved in a SIMD vector."""
+MAX_PER_IMPACT = 12.0
+"""Most ordinary cells that an impact of a slow cell may take. Ordinary cells are solved sixteen at a time, slow ones one
+by one; the slowest need 1.5 us an impact, under a wavelet."""
 
 
 def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
