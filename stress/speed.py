@@ -22,8 +22,8 @@ SLOW = 400.0
 """Time over the median ordinary cell above which a cell is slow and must have many impacts."""
 
 MAX_PER_IMPACT = 12.0
-"""Most ordinary cells that an impact of a slow cell may take. Ordinary cells are solved sixteen at a time, slow ones one
-by one; the slowest need 1.5 us an impact, under a wavelet."""
+"""Most ordinary cells that an impact of a slow cell may take. Ordinary cells are solved sixteen at a time, slow ones
+alone; the slowest need 1.5 us an impact, under a wavelet."""
 
 
 def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
