@@ -24,8 +24,9 @@ def chatter_ends_in_rest(flight: Record, w: float, eta: float, phase: float, end
     impact velocity is at most w sqrt((q2 + k z_m)/(q1 - k z_m)). With the restitution this bounds a geometric series.
     True only if its sum fits into the window and no flight can exceed the peak so far.
     """
+    if not phase + flight.omega * (8.0 * w / (1.0 - eta)) <= end:  # the window is longer: most impacts end here
+        return False
     scale = math.sin(flight.alpha) / flight.alpha if flight.alpha > 0.0 else 1.0
-    stiffness = 1.0 + math.tan(flight.alpha)
     u0 = ground_acceleration(flight, phase)
     window = 8.0 * w / (scale * (1.0 - abs(u0)) * (1.0 - eta))
     if not phase + flight.omega * window <= end:
@@ -36,7 +37,7 @@ def chatter_ends_in_rest(flight: Record, w: float, eta: float, phase: float, end
     if weakest <= 0.0:
         return False
     height = w * w / weakest  # above z_m while k z_m stays below weakest/2
-    softening = stiffness * height
+    softening = (1.0 + math.tan(flight.alpha)) * height
     if softening > 0.5 * weakest or height > peak:
         return False
     spread = max(
