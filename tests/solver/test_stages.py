@@ -7,6 +7,7 @@ import pytest
 
 import rocking
 from rocking._numba.compilation import kernel
+from rocking._numba.simd import WORDS
 from rocking.excitation.pulses import SinusoidalPulse
 from rocking.solver.kernels.batch import write_response
 from rocking.solver.kernels.event_loop import advance_by_arc, init_state
@@ -76,6 +77,22 @@ def assert_agree(stages, loop, s, eta):
         plain = (s < 0.9) & (eta < 0.9) & np.isfinite(error)  # close to 1 in either the problem is ill-conditioned
         assert np.count_nonzero(error[plain] > 1e-13) <= 0.05 * np.count_nonzero(plain), field
         assert error[plain].max(initial=0.0) < 1e-9, field
+
+
+def test_responses_are_records_of_eight_words():
+    """`write_responses` writes them as such: six numbers, two integers, three bytes."""
+    names = (
+        "peak_rotation",
+        "uplift_time",
+        "first_impact_time",
+        "first_impact_velocity",
+        "end_rotation",
+        "end_velocity",
+    )
+    offsets = {name: RESPONSE_RECORD.fields[name][1] for name in RESPONSE_RECORD.names}
+    numbers = dict(zip(names, range(0, 48, 8), strict=True))
+    assert offsets == numbers | {"impacts": 48, "peak_mode": 52, "outcome": 56, "chatter": 57, "exceeded_alpha": 58}
+    assert RESPONSE_RECORD.itemsize == 8 * WORDS
 
 
 @pytest.mark.parametrize("name", SIGNED)
