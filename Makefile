@@ -31,7 +31,7 @@ reproduce: .venv/project ## make data sets, figures and claims of the paper in r
 atlas-small atlas: .venv/project
 	$(RUN) --directory $@ --configfile workflow/config/$@.yaml
 
-atlas-small: ## make data sets of all nine pulses in atlas-small/results, a quarter of an hour
+atlas-small: ## make data sets of all nine pulses in atlas-small/results, ten minutes
 atlas: ## the same on a fine grid, 27 restitutions and 10 angles, in atlas/results, some hours; it may be interrupted
 
 verify: .venv/project ## compare every file in results/ with the manifest and list differences (RESULTS=: others; AGAINST=: other manifest)
