@@ -216,16 +216,11 @@ def pulse_state(pulse: AbstractPulse) -> Record:
     ends = len(phases)
     record["pieces"] = ends - 1
     record["end_phase"][:ends] = phases
-    record["end_shape"][:ends] = pulse.shape(phases)
-    rise = np.where(np.diff(pulse.shape(phases)) < 0.0, -1.0, 1.0)
-    for name, pairs in {
-        "left": (phases[:-1], phases[:-1]),
-        "right": (phases[1:], phases[1:]),
-        "f_left": (pulse.shape(phases[:-1]), pulse.shape(phases[:-1])),
-        "f_right": (pulse.shape(phases[1:]), pulse.shape(phases[1:])),
-        "sign": (-rise, rise),
-    }.items():
-        record[f"crossing_{name}"].ravel()[: 2 * (ends - 1)] = np.stack(pairs, axis=1).ravel()
+    record["end_shape"][:ends] = f = pulse.shape(phases)
+    for name, values in {"left": phases[:-1], "right": phases[1:], "f_left": f[:-1], "f_right": f[1:]}.items():
+        record[f"crossing_{name}"].ravel()[: 2 * (ends - 1)] = np.repeat(values, 2)
+    rise = np.where(np.diff(f) < 0.0, -1.0, 1.0)
+    record["crossing_sign"].ravel()[: 2 * (ends - 1)] = np.stack((-rise, rise), axis=1).ravel()
     angles = multiple * phases[:, None] + shift
     record["end_cosine"][:ends, :count] = np.cos(angles)
     record["end_sine"][:ends, :count] = np.sin(angles)
