@@ -25,18 +25,16 @@ WORDS = 8
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
-_LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _LLVM_BITS = ir.VectorType(ir.IntType(64), LANES)
-
-
 _LLVM_MASK = ir.VectorType(ir.IntType(1), LANES)
 
 
-class _VectorType(types.Type):
-    """The numba type of a vector."""
+class VectorType(types.Type):
+    """The numba type of a vector of `lanes` doubles."""
 
-    def __init__(self) -> None:
-        super().__init__("Lanes")
+    def __init__(self, lanes: int) -> None:
+        super().__init__(f"Lanes{lanes}")
+        self.llvm = ir.VectorType(ir.DoubleType(), lanes)
 
 
 class _MaskType(types.Type):
@@ -46,13 +44,14 @@ class _MaskType(types.Type):
         super().__init__("LanesMask")
 
 
-_VECTOR_TYPE, _MASK_TYPE = _VectorType(), _MaskType()
+_VECTOR_TYPE, _MASK_TYPE = VectorType(LANES), _MaskType()
+_LLVM_VECTOR = _VECTOR_TYPE.llvm
 
 
-@register_model(_VectorType)
+@register_model(VectorType)
 class _VectorModel(models.PrimitiveModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
-        super().__init__(manager, fe_type, _LLVM_VECTOR)
+        super().__init__(manager, fe_type, fe_type.llvm)
 
 
 @register_model(_MaskType)
@@ -65,10 +64,11 @@ def _constant(value: float) -> Any:
     return ir.Constant(_LLVM_VECTOR, [value] * LANES)
 
 
-def _splat(builder: Any, value: Any) -> Any:
-    undefined = ir.Constant(_LLVM_VECTOR, ir.Undefined)
-    single = builder.insert_element(undefined, value, ir.Constant(ir.IntType(32), 0))
-    return builder.shuffle_vector(single, undefined, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
+def _splat(builder: Any, value: Any, kind: VectorType = _VECTOR_TYPE) -> Any:
+    undefined, number = ir.Constant(kind.llvm, ir.Undefined), ir.IntType(32)
+    single = builder.insert_element(undefined, value, ir.Constant(number, 0))
+    lanes = kind.llvm.count
+    return builder.shuffle_vector(single, undefined, ir.Constant(ir.VectorType(number, lanes), [0] * lanes))
 
 
 def _row_address(builder: Any, array: Any, row: Any) -> Any:
@@ -194,7 +194,7 @@ def _pack_integers(builder: Any, low: Any, high: Any) -> Any:
     return builder.bitcast(builder.or_(low, builder.shl(high, ir.Constant(_LLVM_BITS, [32] * LANES))), _LLVM_VECTOR)
 
 
-def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
+def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
     """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address."""
 
     def typed(*given: Any) -> Any:
@@ -215,34 +215,35 @@ def _instruction(generate: Callable[..., Any], result: Any, *parameters: Any) ->
         1: lambda _, x: typed(x),
         2: lambda _, x, y: typed(x, y),
         3: lambda _, x, y, z: typed(x, y, z),
+        4: lambda _, a, b, c, d: typed(a, b, c, d),
     }
     return intrinsic(forms[len(parameters)])
 
 
-load = _instruction(
+load = instruction(
     lambda builder, *place: builder.load(_row_address(builder, *place), align=8), _VECTOR_TYPE, None, types.intp
 )
 """load(array, row): a row of an array (rows, LANES); row 0 of an array (LANES,)."""
 
-load_elements = _instruction(_load_elements, _VECTOR_TYPE, None, types.intp)
+load_elements = instruction(_load_elements, _VECTOR_TYPE, None, types.intp)
 """load_elements(array, start): the elements from `start` on of an array (cells,)."""
 
-gather = _instruction(_gather, _VECTOR_TYPE, None, None)
+gather = instruction(_gather, _VECTOR_TYPE, None, None)
 """gather(array, places): element `places[i]` of an array (cells,) in lane i."""
 
-store = _instruction(
+store = instruction(
     lambda builder, array, row, x: builder.store(x, _row_address(builder, array, row), align=8),
     *(types.void, None, types.intp, _VECTOR_TYPE),
 )
 """store(array, row, x): set a row."""
 
-splat = _instruction(_splat, _VECTOR_TYPE, types.float64)
+splat = instruction(_splat, _VECTOR_TYPE, types.float64)
 """splat(number): the number in every lane."""
 
-absolute = _instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
+absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
 """absolute(x), lane by lane."""
 
-maximum = _instruction(
+maximum = instruction(
     lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
     _VECTOR_TYPE,
     _VECTOR_TYPE,
@@ -250,7 +251,7 @@ maximum = _instruction(
 )
 """maximum(x, y), lane by lane."""
 
-minimum = _instruction(
+minimum = instruction(
     lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y),
     _VECTOR_TYPE,
     _VECTOR_TYPE,
@@ -258,37 +259,37 @@ minimum = _instruction(
 )
 """minimum(x, y), lane by lane."""
 
-approx_log2 = _instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
+approx_log2 = instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
 """log2 of positive numbers from the bits of the doubles read as integers: at most 0.09 too small; -1023 for 0."""
 
-approx_exp2 = _instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
+approx_exp2 = instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
-square_root = _instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)
+square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)
 """square_root(x), lane by lane, correctly rounded."""
 
-power_of_two = _instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)
+power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x of integers x from -1022 to 1023."""
 
-sine_of_quadrant = _instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+sine_of_quadrant = instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
 """sine_of_quadrant(n, s, c): sin(r + n pi/2) of integers n from s = sin(r) and c = cos(r)."""
 
-cosine_of_quadrant = _instruction(_cosine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+cosine_of_quadrant = instruction(_cosine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
 """cosine_of_quadrant(n, s, c): cos(r + n pi/2), as `sine_of_quadrant`."""
 
-select = _instruction(
+select = instruction(
     lambda builder, mask, x, y: builder.select(mask, x, y), _VECTOR_TYPE, _MASK_TYPE, _VECTOR_TYPE, _VECTOR_TYPE
 )
 """select(mask, x, y): x where the mask is true, else y."""
 
-lane_bits = _instruction(
+lane_bits = instruction(
     lambda builder, mask: builder.zext(builder.bitcast(mask, ir.IntType(LANES)), ir.IntType(64)),
     *(types.int64, _MASK_TYPE),
 )
 """lane_bits(mask): an integer with bit i set where lane i is true."""
 
-any_lane = _instruction(
+any_lane = instruction(
     lambda builder, mask: builder.icmp_unsigned(
         "!=", builder.bitcast(mask, ir.IntType(LANES)), ir.Constant(ir.IntType(LANES), 0)
     ),
@@ -296,7 +297,7 @@ any_lane = _instruction(
 )
 """any_lane(mask): whether it is true in some lane."""
 
-fill_mask = _instruction(
+fill_mask = instruction(
     lambda builder, value: builder.select(
         value, ir.Constant(_LLVM_MASK, [True] * LANES), ir.Constant(_LLVM_MASK, [False] * LANES)
     ),
@@ -304,36 +305,50 @@ fill_mask = _instruction(
 )
 """fill_mask(value): the truth value in every lane."""
 
-gather_rows = _instruction(_gather_rows, types.void, None, None, None)
+gather_rows = instruction(_gather_rows, types.void, None, None, None)
 """gather_rows(source, places, target): row `places[i]` of `source` becomes column i of `target` (LANES, LANES)."""
 
-scatter_rows = _instruction(_scatter_rows, types.void, None, None, None)
+scatter_rows = instruction(_scatter_rows, types.void, None, None, None)
 """scatter_rows(source, places, target): the inverse, column i of `source` becomes row `places[i]` of `target`."""
 
-scatter_records = _instruction(_scatter_records, types.void, None, None, None)
+scatter_records = instruction(_scatter_records, types.void, None, None, None)
 """scatter_records(source, places, target): column i of `source` (WORDS, LANES) becomes the record `places[i]` of an
 array of records of `WORDS` doubles; it is not written where that is negative."""
 
-pack_integers = _instruction(_pack_integers, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+pack_integers = instruction(_pack_integers, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
 """pack_integers(x, y): bits of the integers x and y of 32 bits, x in the lower half."""
 
 
-def _operation(operation: Any, generate: Callable[..., Any], result: Any) -> None:
+def _operation(operation: Any, generate: Callable[..., Any], vector: VectorType, result: Any) -> None:
     """Define `operation` for two vectors, or a vector and a number."""
 
     @infer_global(operation)
     class Typing(AbstractTemplate):
         def generic(self, args: Any, _: Any) -> Any:
-            if _VECTOR_TYPE not in args or not all(isinstance(one, (_VectorType, types.Number)) for one in args):
+            if vector not in args or not all(one == vector or isinstance(one, types.Number) for one in args):
                 return None
-            return signature(result, *(one if one is _VECTOR_TYPE else types.float64 for one in args))
+            return signature(result, *(one if one == vector else types.float64 for one in args))
 
     def lower(_: Any, builder: Any, sig: Any, args: Any) -> Any:
-        operands = [x if kind is _VECTOR_TYPE else _splat(builder, x) for kind, x in zip(sig.args, args, strict=True)]
+        operands = [x if kind == vector else _splat(builder, x, vector) for kind, x in zip(sig.args, args, strict=True)]
         return generate(builder, *operands)
 
-    for left, right in ((_VECTOR_TYPE, _VECTOR_TYPE), (_VECTOR_TYPE, types.float64), (types.float64, _VECTOR_TYPE)):
+    for left, right in ((vector, vector), (vector, types.float64), (types.float64, vector)):
         lower_builtin(operation, left, right)(lower)
+
+
+def define_arithmetic(vector: VectorType) -> None:
+    """Define +, -, * and / for two vectors of a type, or a vector and a number."""
+    for operation, name in (
+        (operator.add, "fadd"),
+        (operator.iadd, "fadd"),
+        (operator.sub, "fsub"),
+        (operator.isub, "fsub"),
+        (operator.mul, "fmul"),
+        (operator.imul, "fmul"),
+        (operator.truediv, "fdiv"),
+    ):
+        _operation(operation, lambda builder, x, y, name=name: getattr(builder, name)(x, y), vector, vector)
 
 
 def _mask_operation(operation: Any, count: int, generate: Callable[..., Any]) -> None:
@@ -350,17 +365,7 @@ def _mask_operation(operation: Any, count: int, generate: Callable[..., Any]) ->
     lower_builtin(operation, *[_MASK_TYPE] * count)(lower)
 
 
-for _operator, _name in (
-    (operator.add, "fadd"),
-    (operator.iadd, "fadd"),
-    (operator.sub, "fsub"),
-    (operator.isub, "fsub"),
-    (operator.mul, "fmul"),
-    (operator.imul, "fmul"),
-    (operator.truediv, "fdiv"),
-):
-    _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
-
+define_arithmetic(_VECTOR_TYPE)
 for _operator, _name in (
     (operator.lt, "<"),
     (operator.le, "<="),
@@ -368,7 +373,7 @@ for _operator, _name in (
     (operator.ge, ">="),
     (operator.eq, "=="),
 ):
-    _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
+    _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _VECTOR_TYPE, _MASK_TYPE)
 
 for _operator, _name in (
     (operator.and_, "and_"),
