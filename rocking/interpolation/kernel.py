@@ -1,35 +1,43 @@
 """Compiled interpolation of spectrum cubes at many points, with the error bound of each.
 
 A point is interpolated from up to four slices of restitution, four slices of slenderness angle and 4 x 4 nodes of each.
-What is known of a cell lies in one record of 16 bytes (`CELL_RECORD`), so that a point on slices reads one record and
-four rows of peaks: most of the time is spent waiting for memory. The kernel takes arrays only; files and classes of
-cubes belong to `rocking.lookup`.
+Waiting for memory takes most of the time. So points are processed in blocks, in three steps, each of which prefetches
+what the next one reads:
+
+1. the cells of the points are located;
+2. their records (`rocking.interpolation.cells`) decide which points overturn, which are unknown, and the error bounds
+   of the others;
+3. only for these the peaks (`rocking.interpolation.strips`) are read and interpolated.
+
+The kernel takes arrays only; files and classes of cubes belong to `rocking.lookup`.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import FloatArray, Record, contiguous_array, entry, kernel
-from rocking._numba.memory import load_float32, load_float64, load_int32, prefetch
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.memory import load_float32, load_int32, prefetch
+from rocking._numba.quads import load_quad, numbers_of, quad, select_quad
+from rocking._numba.simd import LANES, store
+from rocking._numba.simd_exponentials import logarithm
+from rocking.interpolation.cells import ALPHA_ERROR, CELL_BYTES, FORM_BITS, INTERPOLATION_ERROR, RESTITUTION_ERROR
 from rocking.interpolation.stencils import (
-    NO_STENCIL,
     OVERTURNS,
-    PEAK,
     SQUARED,
     STENCIL_SIZE,
     Mesh,
     cell_of,
     lagrange_weights,
     padded_weights,
-    slice_products,
-    slice_window,
 )
+from rocking.interpolation.strips import NODE_BYTES, ROW_BYTES, STRIP_STEP, strip_count
+from rocking.interpolation.windows import AngleAxis, groups_of, load_some
 from rocking.model.outcome import Outcome
-from rocking.model.outcome_code import impacts_of_code, outcome_of_code, overturning_code
+from rocking.model.outcome_code import impacts_of_code, outcome_of_code
 
 UNKNOWN_IMPACTS = -1
 """Value of `impacts` where the nodes around a point have different numbers."""
@@ -37,80 +45,46 @@ UNKNOWN_IMPACTS = -1
 UNKNOWN, INTERPOLATED, NO_UPLIFT = 0, 1, 2
 """Values of `Found.state`: not determined by the cubes within the tolerance, interpolated, 1/a >= 1."""
 
-CELL_RECORD = np.dtype(
+BLOCK = LANES
+"""Points that take a step together."""
+
+WORK = 4 * BLOCK
+"""Points between the first step and the last."""
+
+POINT = np.dtype(
     [
-        ("code", np.int32),
-        ("interpolation_error", np.float32),
-        ("restitution_error", np.float32),
-        ("alpha_error", np.float32),
-    ],
-    align=True,
-)
-"""What is known of a cell.
-
-`code` is -1 where nothing is interpolated, else 4 v + `stencil`. Where all blocks of the cell overturn in the same way,
-v is their overturning code (`rocking.model.outcome_code`), else 1 + the impacts of the four corners, 0 where these
-differ. The errors are the variables of the cube [-].
-"""
-
-BLOCK = 16
-"""Points whose cells are located, and read ahead of their use, together."""
-
-_ROW, _COLUMN, _FIRST, _COUNT, _GROUP = range(5)
-"""Columns of the places of a block: cell, first angle and number of angles, group of restitutions."""
-
-PLACE_SIZE = 5
-"""Number of these columns."""
-
-_SAFE = int(Outcome.SAFE)
-
-CELL_BYTES = CELL_RECORD.itemsize
-INTERPOLATION_ERROR, RESTITUTION_ERROR, ALPHA_ERROR = 4, 8, 12
-"""Size of a cell's record and offsets of its errors [bytes]."""
-
-FORM_BITS = 2
-"""Bits of a code that state the stencil: `PEAK`, `SQUARED` or `OVERTURNS`."""
-
-
-SLICE_WINDOW = np.dtype(
-    [
-        ("restitutions", np.float64, STENCIL_SIZE),
-        ("products", np.float64, STENCIL_SIZE),
-        ("lower", np.int64),
+        ("index", np.int64),
+        ("group", np.int64),
         ("size", np.int64),
-        ("cells", np.int64, STENCIL_SIZE),
-        ("peaks", np.int64, STENCIL_SIZE),
+        ("first", np.int64),
+        ("count", np.int64),
+        ("below", np.int64),
+        ("row", np.int64),
+        ("column", np.int64),
+        ("cell", np.int64),
+        ("peak", np.int64),
+        ("some", np.int64),
+        ("every", np.int64),
+        ("log", np.float64),
+        ("bound", np.float64),
+        ("by_angle", np.float64, STENCIL_SIZE),
+        ("by_slice", np.float64, STENCIL_SIZE),
     ]
 )
-"""The slices of restitution from which points on one slice, or between the same two, are interpolated.
+"""A point on its way through the steps.
 
-`restitutions` are those of the slices [-], `products` the denominators of their Lagrange weights; `lower` is the slice
-at or below the restitutions of the points, `size` the number of slices used. `cells` and `peaks` are addresses: of the
-array (angles, n - 1, m - 1) of `CELL_RECORD` of each slice, and of its variable `peak_rotation`, float64 (angles, n, m)
-[-]; those from `size` on are not read.
+`index` is its place in the arrays of points, `group` its group of restitutions (`group_points`) and `size` the number
+of their slices, 0 for a point that is not interpolated. The `count` angles from `first` on are used; `below` is the
+place among them of the one at or below the angle of the point. (`row`, `column`) is the cell, `log` the logarithm of
+the frequency ratio [-]. `cell` and `peak` are the offsets of the first record, and of the first node of the first
+stencil, in the tables of a slice [bytes]. `some` has the bits of any code of the cells, `every` the bits of all codes.
+`bound` is the error bound [-]; `by_angle` and `by_slice` are the weights of the angles and slices.
 """
 
+_NOT_DETERMINED, _OVERTURNS, _SURVIVES = range(3)
+"""What the records state about a point."""
 
-class AngleAxis(NamedTuple):
-    """The slenderness angles of a cube.
-
-    Attributes
-    ----------
-    angles, squares : float arrays (angles,)
-        Ascending [rad], and their squares [rad2], the variable of interpolation: the equation of motion depends on the
-        square of the angle only.
-    products : float array (windows, STENCIL_SIZE)
-        Denominators of the Lagrange weights of the windows that start at each angle.
-    """
-
-    angles: NDArray[np.float64]
-    squares: NDArray[np.float64]
-    products: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, angles: NDArray[np.float64]) -> AngleAxis:
-        """The axis of some ascending angles [rad]."""
-        return cls(contiguous_array(angles), angles**2, slice_products(angles**2))
+_SAFE = int(Outcome.SAFE)
 
 
 class Found(NamedTuple):
@@ -130,96 +104,6 @@ class Found(NamedTuple):
     error_bound: NDArray[np.float64]
 
 
-def pack_cells(
-    stencil: NDArray[np.int8],
-    outcome: NDArray[np.int8],
-    impacts: NDArray[np.int32],
-    interpolation_error: NDArray[np.float32],
-    restitution_error: NDArray[np.float32],
-    alpha_error: NDArray[np.float32],
-) -> NDArray[np.void]:
-    """The records (angles, n - 1, m - 1) of the cells of a cube, from its variables (angles, n, m)."""
-    lower = np.s_[:, :-1, :-1]
-    corner = impacts[lower]
-    equal = np.logical_and.reduce(
-        [corner == impacts[:, i : i - 1 or None, j : j - 1 or None] for i in (0, 1) for j in (0, 1)]
-    )
-    form = stencil[lower].astype(np.int32)
-    value = np.where(form == OVERTURNS, overturning_code(outcome[lower], corner), np.where(equal, corner + 1, 0))
-    cells = np.empty(form.shape, CELL_RECORD)
-    cells["code"] = np.where(form == NO_STENCIL, -1, (value << FORM_BITS) + form)
-    cells["interpolation_error"] = interpolation_error[lower]
-    cells["restitution_error"] = restitution_error[lower]
-    cells["alpha_error"] = alpha_error[lower]
-    return cells
-
-
-@entry
-def group_points(restitution: FloatArray, slices: FloatArray, group: FloatArray, counts: FloatArray) -> None:
-    """Find the slices of restitution from which points are interpolated.
-
-    Parameters
-    ----------
-    restitution : float array (points,)
-        eta [-].
-    slices : float array (n,)
-        Restitutions of the cubes, ascending [-].
-    group : int32 array (points,), filled
-        2 k for a point on slice k, 2 k + 1 between it and the next one, -1 outside of the slices.
-    counts : int64 array (2 n,), filled
-        Number of points of each group.
-    """
-    counts[:] = 0
-    for point in range(len(restitution)):
-        group[point] = _group(restitution[point], slices)
-        if group[point] >= 0:
-            counts[group[point]] += 1
-
-
-@kernel
-def _group(value: float, slices: FloatArray) -> int:
-    """2 k on slice k, 2 k + 1 between it and the next one, -1 outside of the slices."""
-    below = -1
-    for one in slices:
-        below += one <= value
-    if below < 0 or np.isnan(value):
-        return -1
-    if slices[below] == value:
-        return 2 * below
-    return 2 * below + 1 if below + 1 < len(slices) else -1
-
-
-@kernel
-def _interpolate_layer(address: int, stride: int, squared: bool, by_row: Record, by_column: Record) -> float:
-    """Interpolate 4 x 4 node values, or (1 - value)^2 if `squared`, with the weights of rows and columns.
-
-    The first value is at `address`; rows are `stride` bytes apart.
-    """
-    c0, c1, c2, c3 = 0.0, 0.0, 0.0, 0.0  # one for each column: the compiler makes vectors of them
-    for p in range(4):
-        row = address + p * stride
-        c0 += by_row[p] * _form(load_float64(row), squared)
-        c1 += by_row[p] * _form(load_float64(row + 8), squared)
-        c2 += by_row[p] * _form(load_float64(row + 16), squared)
-        c3 += by_row[p] * _form(load_float64(row + 24), squared)
-    total: float = c0 * by_column[0] + c1 * by_column[1] + c2 * by_column[2] + c3 * by_column[3]
-    return total
-
-
-@kernel
-def _peak_of(value: float) -> float:
-    """The peak from an interpolated (1 - peak)^2."""
-    root: float = np.sqrt(max(value, 0.0))
-    return 1.0 - root
-
-
-@kernel
-def _form(value: float, squared: bool) -> float:
-    """The interpolated variable, (1 - value)^2 or the value; a product in both cases, without a branch."""
-    rest: float = (1.0 if squared else 0.0) - value
-    return rest * (rest if squared else -1.0)
-
-
 @entry
 def interpolate_many(
     slenderness: FloatArray,
@@ -228,13 +112,15 @@ def interpolate_many(
     alpha: FloatArray,
     mesh: Mesh,
     axis: AngleAxis,
-    group: FloatArray,
+    groups: FloatArray,
     windows: FloatArray,
     tolerance: float,
     safety: float,
     solver_error: float,
-    places: FloatArray,
+    work: FloatArray,
+    survivors: FloatArray,
     logs: FloatArray,
+    angle_groups: FloatArray,
     counts: FloatArray,
     found: Found,
 ) -> None:
@@ -248,15 +134,15 @@ def interpolate_many(
         The nodes.
     axis : AngleAxis
         The angles.
-    group : int32 array (points,)
-        Groups of the points, of `group_points`.
+    groups : int32 array (points,)
+        Groups of the points by their restitutions, of `group_points`.
     windows : array (groups,) of `SLICE_WINDOW`
-        The slices of each group; those of size 0 are not interpolated.
+        The slices of each group of restitutions; those of size 0 are not interpolated.
     tolerance : float
         Largest error bound [-].
     safety, solver_error : float
         The bound is `safety` times the sum of the measured errors, plus `solver_error` [-].
-    places, logs : int64 array (BLOCK, PLACE_SIZE), float array (BLOCK,)
+    work, survivors, logs, angle_groups : arrays (WORK,) of `POINT`, int64 (2, BLOCK), float (BLOCK,) and (BLOCK,)
         Working memory.
     counts : int64 array (groups,)
         Increased by the number of points of each group that were interpolated.
@@ -264,152 +150,218 @@ def interpolate_many(
         Responses of all points.
     """
     points = len(slenderness)
-    for start in range(0, points, BLOCK):
-        size = min(BLOCK, points - start)
-        for k in range(size):
-            point = start + k
-            s, w, angle = slenderness[point], frequency_ratio[point], alpha[point]
-            logs[k] = np.log(w)
-            i = cell_of(mesh.rows, s, mesh.rows, s, mesh.row_guide)
-            j = cell_of(mesh.frequency_ratio, w, mesh.columns, logs[k], mesh.column_guide)
-            first, count = _angle_window(axis, angle)
-            own = group[point]
-            slices = windows[own].size if own >= 0 else 0
-            if slices == 0 or i < 0 or j < 0 or s >= 1.0:
-                count = 0
-            places[k, _ROW], places[k, _COLUMN], places[k, _FIRST], places[k, _COUNT] = i, j, first, count
-            places[k, _GROUP] = own
-            _prefetch_point(places[k], mesh, windows)
-        for k in range(size):
-            point = start + k
-            if places[k, _COUNT]:
-                counts[places[k, _GROUP]] += _interpolate_point(
-                    point,
-                    places[k],
-                    (slenderness[point], logs[k], restitution[point], alpha[point]),
-                    mesh,
-                    axis,
-                    windows,
-                    (tolerance, safety, solver_error),
-                    found,
-                )
+    blocks = -(-points // BLOCK)
+    surviving = surviving_before = 0
+    for block in range(blocks + 2):
+        start = block * BLOCK
+        if start < points:
+            store(logs, 0, logarithm(load_some(frequency_ratio, start, logs)))
+            store(angle_groups, 0, groups_of(load_some(alpha, start, angle_groups), axis.angles))
+        for k in range(start, min(start + BLOCK, points)):
+            point = work[k % WORK]
+            point.index, point.group, point.log = k, groups[k], logs[k - start]
+            point.size = windows[groups[k]].size if groups[k] >= 0 else 0
+            _locate(point, slenderness[k], frequency_ratio[k], int(angle_groups[k - start]), mesh, axis)
+        for k in range(start, min(start + BLOCK, points)):
+            point = work[k % WORK]
+            if point.size:
+                _prefetch_cells(point, windows[point.group])
+        surviving_before, surviving = surviving, 0
+        for k in range(max(start - BLOCK, 0), min(start, points)):
+            point = work[k % WORK]
+            if point.size:
+                place = restitution[k], alpha[k]
+                known = _judge(point, windows[point.group], place, axis, (tolerance, safety, solver_error))
+                if known == _OVERTURNS:
+                    _put_overturning(point, found)
+                    counts[point.group] += 1
+                survivors[block % 2, surviving] = k % WORK
+                surviving += known == _SURVIVES
+        for k in range(surviving):
+            point = work[survivors[block % 2, k]]
+            _prefetch_peaks(point, windows[point.group], mesh)
+        for k in range(surviving_before):
+            point = work[survivors[1 - block % 2, k]]
+            counts[point.group] += _interpolate(point, windows[point.group], slenderness[point.index], mesh, found)
 
 
 @kernel
-def _angle_window(axis: AngleAxis, angle: float) -> tuple[int, int]:
-    """First and number of the angles from which a point is interpolated; the number is 0 outside of the axis."""
-    below, size = -1, len(axis.angles)
-    for k in range(size):
-        below += axis.angles[k] <= angle
-    if below < 0:
-        return 0, 0
-    if axis.angles[below] == angle:
-        return below, 1
-    return slice_window(size, below) if below + 1 < size else (0, 0)
+def _locate(point: Record, s: float, w: float, angle_group: int, mesh: Mesh, axis: AngleAxis) -> None:
+    """Set the cell and the angles of a point, and its size to 0 if it is outside of them."""
+    i, j = cell_of(mesh.rows, s, s), cell_of(mesh.columns, w, point.log)
+    if i < 0 or j < 0 or angle_group < 0 or s >= 1.0:
+        point.size = 0
+        return
+    first, count = axis.windows[angle_group, 0], axis.windows[angle_group, 1]
+    rows, columns = len(mesh.rows.values), len(mesh.columns.values)
+    strip = (j - 1) // STRIP_STEP
+    point.row, point.column = i, j
+    point.first, point.count, point.below = first, count, (angle_group >> 1) - first
+    point.cell = CELL_BYTES * ((i * (columns - 1) + j) * len(axis.angles) + first)
+    point.peak = ROW_BYTES * ((first * strip_count(columns) + strip) * rows + i - 1)
+    point.peak += NODE_BYTES * (j - 1 - strip * STRIP_STEP)
 
 
 @kernel
-def _prefetch_point(place: FloatArray, mesh: Mesh, windows: FloatArray) -> None:
-    """Prefetch the records and peaks of a point."""
-    i, j, first, count, own = place[_ROW], place[_COLUMN], place[_FIRST], place[_COUNT], place[_GROUP]
-    rows, columns = len(mesh.rows), len(mesh.columns)
-    for layer in range(first, first + count):
-        for e in range(windows[own].size):
-            prefetch(windows[own].cells[e] + CELL_BYTES * ((layer * (rows - 1) + i) * (columns - 1) + j))
-            for p in range(STENCIL_SIZE):
-                prefetch(windows[own].peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j - 1))
-                prefetch(windows[own].peaks[e] + 8 * ((layer * rows + i - 1 + p) * columns + j + 2))
+def _prefetch_cells(point: Record, window: Record) -> None:
+    """Prefetch the records of a point: of the first and the last of its angles, from each slice."""
+    for e in range(point.size):
+        cell = window.cells[e] + point.cell
+        prefetch(cell)
+        prefetch(cell + CELL_BYTES * (point.count - 1))
 
 
 @kernel
-def _interpolate_point(
-    point: int,
-    place: FloatArray,
-    coordinates: Record,
-    mesh: Mesh,
-    axis: AngleAxis,
-    windows: FloatArray,
-    limits: Record,
-    found: Found,
-) -> bool:
-    """`interpolate_many` for one point, given its cell and the window of its angle."""
-    i, j, first, count = place[_ROW], place[_COLUMN], place[_FIRST], place[_COUNT]
-    window = windows[place[_GROUP]]
-    size = window.size
-    s, x, eta, angle = coordinates
-    tolerance, safety, solver_error = limits
-    rows, columns = len(mesh.rows), len(mesh.columns)
-    # offsets in bytes: of the cell and of the first node of its stencil in the first layer, and of one layer
-    cell_layer, peak_layer = CELL_BYTES * (rows - 1) * (columns - 1), 8 * rows * columns
-    cell_offset = CELL_BYTES * (i * (columns - 1) + j) + first * cell_layer
-    peak_offset = 8 * ((i - 1) * columns + j - 1) + first * peak_layer
-    lower = window.cells[window.lower] + cell_offset
+def _judge(point: Record, window: Record, place: Record, axis: AngleAxis, limits: Record) -> int:
+    """What the records of a point state; sets its codes, and if it survives its bound and weights."""
+    count, size, first = point.count, point.size, point.first
+    eta, angle = place
+    lower = window.cells[window.lower] + point.cell
     error = 0.0
     by_angle = by_slice = (1.0, 0.0, 0.0, 0.0)
     if count > 1:
         by_angle = padded_weights(axis.squares, axis.products[first], first, count, angle * angle)
-        below = np.searchsorted(axis.angles, angle) - 1 - first
-        error = float(load_float32(lower + below * cell_layer + ALPHA_ERROR))
+        error = float(load_float32(lower + CELL_BYTES * point.below + ALPHA_ERROR))
         if size > 1:  # between slices: the larger of the two measured on either side, nan if either is
-            upper = window.cells[window.lower + 1] + cell_offset
-            error = np.maximum(error, float(load_float32(upper + below * cell_layer + ALPHA_ERROR)))
+            upper = window.cells[window.lower + 1] + point.cell
+            error = np.maximum(error, float(load_float32(upper + CELL_BYTES * point.below + ALPHA_ERROR)))
     if size > 1:
         by_slice = padded_weights(window.restitutions, window.products, 0, size, eta)
-    kind, agree, all_squared, impacts = -1, True, True, -2
+    some = every = int(load_int32(lower))
     for a in range(count):
         if size > 1:
-            error += abs(by_angle[a]) * load_float32(lower + a * cell_layer + RESTITUTION_ERROR)
+            error += abs(by_angle[a]) * load_float32(lower + CELL_BYTES * a + RESTITUTION_ERROR)
         for e in range(size):
-            cell = window.cells[e] + cell_offset + a * cell_layer
+            cell = window.cells[e] + point.cell + CELL_BYTES * a
             code = load_int32(cell)
-            this = code if code & 3 == OVERTURNS else PEAK
-            agree = agree and code >= 0 and kind in (-1, this)
-            kind = this
-            all_squared = all_squared and code & 3 == SQUARED
-            corners = (code >> FORM_BITS) - 1
-            impacts = corners if impacts in (-2, corners) else UNKNOWN_IMPACTS
+            some |= code
+            every &= code
             error += abs(by_angle[a] * by_slice[e]) * load_float32(cell + INTERPOLATION_ERROR)
-    if not agree or np.isnan(error):
-        return False
-    if kind & 3 == OVERTURNS:
-        code = kind >> FORM_BITS
-        found.peak_rotation[point] = np.nan
-        found.outcome[point] = outcome_of_code(code)
-        found.impacts[point] = impacts_of_code(code)
-        found.exceeded_alpha[point] = True
-        found.error_bound[point] = np.nan
-        found.state[point] = INTERPOLATED
-        return True
-    bound = safety * error + solver_error
-    if bound > tolerance:
-        return False
-    by_row = lagrange_weights(mesh.rows, mesh.row_products, i - 1, s)
-    by_column = lagrange_weights(mesh.columns, mesh.column_products, j - 1, x)
-    peak = 0.0
-    for a in range(count):
-        layer_squared = all_squared
-        if not all_squared:
-            layer_squared = True
-            for e in range(size):
-                code = load_int32(window.cells[e] + cell_offset + a * cell_layer)
-                layer_squared = layer_squared and code & 3 == SQUARED
-        layer_value = 0.0
-        for e in range(size):
-            squared = load_int32(window.cells[e] + cell_offset + a * cell_layer) & 3 == SQUARED
-            stencil = window.peaks[e] + peak_offset + a * peak_layer
-            value = _interpolate_layer(stencil, 8 * columns, squared, by_row, by_column)
-            # (1 - peak)^2 is interpolated where all slices have it, as when the errors were measured
-            layer_value += by_slice[e] * (_peak_of(value) if squared and not layer_squared else value)
-        peak += by_angle[a] * (_peak_of(layer_value) if layer_squared and not all_squared else layer_value)
-    if all_squared:
-        peak = _peak_of(peak)
+    point.some, point.every = some, every
+    if some < 0 or np.isnan(error):
+        return _NOT_DETERMINED
+    if some & OVERTURNS:
+        return _OVERTURNS if some == every else _NOT_DETERMINED
+    tolerance, safety, solver_error = limits
+    point.bound = safety * error + solver_error
+    for k in range(STENCIL_SIZE):
+        point.by_angle[k], point.by_slice[k] = by_angle[k], by_slice[k]
+    return _SURVIVES if point.bound <= tolerance else _NOT_DETERMINED
+
+
+@kernel
+def _put_overturning(point: Record, found: Found) -> None:
+    """Set the response of a point whose cells all overturn in the same way."""
+    k, code = point.index, point.some >> FORM_BITS
+    found.peak_rotation[k] = np.nan
+    found.outcome[k] = outcome_of_code(code)
+    found.impacts[k] = impacts_of_code(code)
+    found.exceeded_alpha[k] = True
+    found.error_bound[k] = np.nan
+    found.state[k] = INTERPOLATED
+
+
+@kernel
+def _layer_bytes(mesh: Mesh) -> int:
+    """Size of the peaks of one angle [bytes]."""
+    strips: int = strip_count(len(mesh.columns.values))
+    return ROW_BYTES * len(mesh.rows.values) * strips
+
+
+@kernel
+def _prefetch_peaks(point: Record, window: Record, mesh: Mesh) -> None:
+    """Prefetch the peaks of a point: four rows of a strip, from each slice and angle."""
+    layer = _layer_bytes(mesh)
+    for e in range(point.size):
+        peak = window.peaks[e] + point.peak
+        for _ in range(point.count):
+            prefetch(peak)
+            prefetch(peak + ROW_BYTES)
+            prefetch(peak + 2 * ROW_BYTES)
+            prefetch(peak + 3 * ROW_BYTES)
+            peak += layer
+
+
+@kernel
+def _interpolate(point: Record, window: Record, s: float, mesh: Mesh, found: Found) -> bool:
+    """Set the response of a surviving point; False if it is not known whether its peak exceeds alpha."""
+    k, layer = point.index, _layer_bytes(mesh)
+    by_row = lagrange_weights(mesh.rows, point.row - 1, s)
+    by_column = lagrange_weights(mesh.columns, point.column - 1, point.log)
+    if (point.some ^ point.every) & SQUARED:
+        peak = _interpolate_both_forms(point, window, layer, by_row, by_column)
+    else:
+        squared = point.every & SQUARED != 0
+        columns = quad(0.0, 0.0, 0.0, 0.0)
+        for e in range(point.size):
+            stencil = window.peaks[e] + point.peak
+            for a in range(point.count):
+                columns += point.by_angle[a] * point.by_slice[e] * _sum_rows(stencil, squared, by_row)
+                stencil += layer
+        value = _sum_columns(columns, by_column)
+        peak = _peak_of(value) if squared else value
     # a block that survives passes alpha if and only if its peak does: unknown for a peak within its bound of alpha
-    if abs(peak - 1.0) <= bound:
+    if abs(peak - 1.0) <= point.bound:
         return False
-    found.peak_rotation[point] = max(peak, 0.0)
-    found.outcome[point] = _SAFE
-    found.impacts[point] = impacts
-    found.exceeded_alpha[point] = peak > 1.0
-    found.error_bound[point] = bound
-    found.state[point] = INTERPOLATED
+    found.peak_rotation[k] = max(peak, 0.0)
+    found.outcome[k] = _SAFE
+    impacts = (point.every >> FORM_BITS) - 1
+    found.impacts[k] = impacts if point.some >> FORM_BITS == point.every >> FORM_BITS else UNKNOWN_IMPACTS
+    found.exceeded_alpha[k] = peak > 1.0
+    found.error_bound[k] = point.bound
+    found.state[k] = INTERPOLATED
     return True
+
+
+@kernel
+def _interpolate_both_forms(point: Record, window: Record, layer: int, by_row: Record, by_column: Record) -> float:
+    """The peak of a point where (1 - peak)^2 is interpolated in some of its cells, and the peak in others."""
+    peak = 0.0
+    for a in range(point.count):
+        cell, stencil = point.cell + CELL_BYTES * a, point.peak + a * layer
+        all_squared = True
+        for e in range(point.size):
+            all_squared = all_squared and load_int32(window.cells[e] + cell) & SQUARED != 0
+        value = 0.0
+        for e in range(point.size):
+            squared = load_int32(window.cells[e] + cell) & SQUARED != 0
+            one = _sum_columns(_sum_rows(window.peaks[e] + stencil, squared, by_row), by_column)
+            # (1 - peak)^2 is interpolated where all slices have it, as when the errors were measured
+            value += point.by_slice[e] * (_peak_of(one) if squared and not all_squared else one)
+        peak += point.by_angle[a] * (_peak_of(value) if all_squared else value)
+    return peak
+
+
+@kernel
+def _sum_rows(address: int, squared: bool, by_row: Record) -> Any:
+    """Sums over the rows of a stencil of the values, or (1 - value)^2 if `squared`, with weights: one for each column.
+
+    The first value is at `address`.
+    """
+    total = by_row[0] * _form(load_quad(address), squared)
+    total += by_row[1] * _form(load_quad(address + ROW_BYTES), squared)
+    total += by_row[2] * _form(load_quad(address + 2 * ROW_BYTES), squared)
+    total += by_row[3] * _form(load_quad(address + 3 * ROW_BYTES), squared)
+    return total
+
+
+@kernel
+def _form(values: Any, squared: bool) -> Any:
+    """The interpolated variable, (1 - value)^2 or the value; a product in both cases, without a branch."""
+    rest = (1.0 if squared else 0.0) - values
+    return rest * select_quad(squared, rest, quad(-1.0, -1.0, -1.0, -1.0))
+
+
+@kernel
+def _sum_columns(columns: Any, by_column: Record) -> float:
+    """Sum of four columns with weights."""
+    c0, c1, c2, c3 = numbers_of(columns)
+    total: float = c0 * by_column[0] + c1 * by_column[1] + c2 * by_column[2] + c3 * by_column[3]
+    return total
+
+
+@kernel
+def _peak_of(value: float) -> float:
+    """The peak from an interpolated (1 - peak)^2."""
+    root: float = np.sqrt(max(value, 0.0))
+    return 1.0 - root

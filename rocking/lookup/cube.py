@@ -21,14 +21,14 @@ from rocking.interpolation.kernel import (
     BLOCK,
     INTERPOLATED,
     NO_UPLIFT,
-    PLACE_SIZE,
-    SLICE_WINDOW,
+    POINT,
     UNKNOWN,
+    WORK,
     Found,
-    group_points,
     interpolate_many,
 )
 from rocking.interpolation.stencils import slice_index, slice_window
+from rocking.interpolation.windows import SLICE_WINDOW, group_points
 from rocking.lookup.cube_slice import CubeSlice
 from rocking.lookup.points import Points
 from rocking.model.outcome import Outcome
@@ -153,12 +153,14 @@ class Cube:
     def _interpolated(self, points: Points, limit: float) -> tuple[Found, list[CubeSlice]]:
         """Responses of the points, and the slices used."""
         found = _empty(points)
-        group, counts = np.empty(found.state.size, np.int32), np.empty(2 * self.restitutions.size, np.int64)
-        group_points(points.restitution, self.restitutions, group, counts)
+        groups, present = np.empty(found.state.size, np.int32), np.zeros(2 * self.restitutions.size + 1, np.bool_)
+        group_points(points.restitution, self.restitutions, groups, present, np.empty(BLOCK))
         wanted = {
-            k: slices for k, count in enumerate(counts.tolist()) if count and (slices := self._slices(*divmod(k, 2)))
+            k: slices
+            for k, some in enumerate(present[:-1].tolist())
+            if some and (slices := self._slices(*divmod(k, 2)))
         }
-        counts[:] = 0
+        counts = np.zeros(present.size, np.int64)
         left = wanted
         while left:
             own = next(iter(left.values()))[0]
@@ -174,12 +176,14 @@ class Cube:
                 points.alpha,
                 own.mesh,
                 own.angles,
-                group,
+                groups,
                 windows,
                 limit,
                 SAFETY,
                 SOLVER_ERROR,
-                np.empty((BLOCK, PLACE_SIZE), np.int64),
+                np.empty(WORK, POINT),
+                np.empty((2, BLOCK), np.int64),
+                np.empty(BLOCK),
                 np.empty(BLOCK),
                 counts,
                 found,

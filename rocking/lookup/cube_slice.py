@@ -14,12 +14,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking._numba.compilation import contiguous_array
 from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import AXES, decode_spectrum, read_content
 from rocking.errors import DatasetError, InvalidArgumentError
-from rocking.interpolation.kernel import SLICE_WINDOW, AngleAxis, pack_cells
+from rocking.interpolation.cells import pack_cells
 from rocking.interpolation.stencils import STENCIL_SIZE, Mesh, slice_products
+from rocking.interpolation.strips import strips_of
+from rocking.interpolation.windows import SLICE_WINDOW, AngleAxis
 
 Array = NDArray[np.float64]
 
@@ -47,9 +48,9 @@ class CubeSlice:
         The angles.
     sha256 : str
         Digest of the file, the version of the data.
-    peaks : float array (angles, n, m)
-        The variable `peak_rotation`; contiguous, may be read-only.
-    cells : array (angles, n - 1, m - 1) of `CELL_RECORD`
+    peaks : float array (angles, strips, n, STRIP_SIZE)
+        The variable `peak_rotation` in strips of columns (`rocking.interpolation.strips`); may be read-only.
+    cells : array (n - 1, m - 1, angles) of `CELL_RECORD`
         What is known of each cell; contiguous, may be read-only.
     """
 
@@ -164,7 +165,7 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
         restitution=restitution_of(cube),
         restitutions=restitutions_of(cube),
         sha256=sha256,
-        peaks=contiguous_array(cube["peak_rotation"].values),
+        peaks=strips_of(cube["peak_rotation"].values),
         cells=pack_cells(*(cube[name].values for name in CELL_VARIABLES)),
     )
 

@@ -21,14 +21,18 @@ from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import AXES, decode_spectrum
 from rocking.datasets.shared_cache import SharedCache
 from rocking.errors import DatasetError, InvalidArgumentError
-from rocking.interpolation.kernel import CELL_RECORD, pack_cells
+from rocking.interpolation.cells import CELL_RECORD, pack_cells
+from rocking.interpolation.strips import STRIP_SIZE, strip_count, strips_of
 from rocking.lookup.cube_slice import CELL_VARIABLES, CubeSlice, pulse_of, restitution_of, restitutions_of, slice_of
 
-LAYOUT = 1
+LAYOUT = 2
 """Version of the content of a file of tables; to be increased when `_layout`, `pack_cells` or `CELL_RECORD` change."""
 
 DIGEST_BYTES = hashlib.sha256().digest_size
 READ_BYTES = 1_000_000
+
+ROWS = 16
+"""Rows of cells of which the records are made together."""
 
 
 class PackedTables:
@@ -86,7 +90,7 @@ class PackedTables:
 
 
 def write_tables(file: IO[bytes], cube: xr.Dataset, sha256: str) -> None:
-    """Write the tables of a spectrum cube, one angle at a time.
+    """Write the tables of a spectrum cube, one part at a time.
 
     Parameters
     ----------
@@ -101,8 +105,9 @@ def write_tables(file: IO[bytes], cube: xr.Dataset, sha256: str) -> None:
     header = {"descr": np.lib.format.dtype_to_descr(layout), "fortran_order": False, "shape": ()}
     np.lib.format.write_array_header_1_0(file, header)
     for k in range(cube.sizes["alpha"]):
-        file.write(pack_cells(*(cube[name].values[k : k + 1] for name in CELL_VARIABLES)).data)
-    file.write(np.ascontiguousarray(cube["peak_rotation"].values).data)
+        file.write(strips_of(cube["peak_rotation"].values[k : k + 1]).data)
+    for i in range(0, cube.sizes["slenderness"] - 1, ROWS):
+        file.write(pack_cells(*(cube[name].values[:, i : i + ROWS + 1] for name in CELL_VARIABLES)).data)
     for name in AXES:
         file.write(np.ascontiguousarray(cube[name].values).data)
     few = {"restitutions": restitutions_of(cube), "restitution": restitution_of(cube)}
@@ -143,8 +148,8 @@ def _layout(cube: xr.Dataset) -> np.dtype[np.void]:
     angles, rows, columns = cube["peak_rotation"].shape
     return np.dtype(
         [
-            ("cells", CELL_RECORD, (angles, rows - 1, columns - 1)),
-            ("peaks", np.float64, (angles, rows, columns)),
+            ("peaks", np.float64, (angles, strip_count(columns), rows, STRIP_SIZE)),
+            ("cells", CELL_RECORD, (rows - 1, columns - 1, angles)),
             *((name, np.float64, cube[name].shape) for name in AXES),
             ("restitutions", np.float64, restitutions_of(cube).shape),
             ("restitution", np.float64),

@@ -172,11 +172,11 @@ class _Grid:
 
     def no_errors(self, etas: Array, angles: Array) -> Array:
         """An array (etas, angles, n - 1, m - 1) of nan, for errors of the cells."""
-        return np.full((etas.size, angles.size, self.mesh.rows.size - 1, self.mesh.columns.size - 1), np.nan)
+        return np.full((etas.size, angles.size, self.mesh.rows.values.size - 1, self.columns.size - 1), np.nan)
 
     def nodes(self, etas: Array, angle: float) -> Response:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
-        return self._solve(self.mesh.rows[:, None], self.columns, etas, angle)
+        return self._solve(self.mesh.rows.values[:, None], self.columns, etas, angle)
 
     def errors_in_cells(self, layers: Sequence[GridLayer], etas: Array, angle: float) -> Array:
         """Largest error [-] at the probes of each cell: shape (restitutions, n - 1, m - 1).

@@ -26,6 +26,7 @@ from rocking.excitation.shapes import MAX_SINUSOIDS
 from rocking.history import sampling
 from rocking.interpolation import kernel as lookup_kernel
 from rocking.interpolation import stencils as interpolation
+from rocking.interpolation import windows
 from rocking.lookup.open import open_cube
 from rocking.solver.arcs.arc import cosh_minus_one_and_sinh
 from rocking.solver.kernels import batch as rock_many
@@ -45,7 +46,7 @@ ENTRIES = (
         sampling.sample_free_rocking,
     ),
     *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
-    *(lookup_kernel.group_points, lookup_kernel.interpolate_many),
+    *(windows.group_points, lookup_kernel.interpolate_many),
     *(trends.match_trends, trends.learn_trends, trends.follow_trends),
 )
 

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from rocking._numba.simd import LANES
 from rocking.errors import InvalidArgumentError
-from rocking.interpolation.kernel import group_points, pack_cells
+from rocking.interpolation.cells import pack_cells
 from rocking.interpolation.stencils import (
     NO_STENCIL,
     OVERTURNS,
@@ -24,6 +25,8 @@ from rocking.interpolation.stencils import (
     slice_products,
     slice_window,
 )
+from rocking.interpolation.strips import STRIP_SIZE, STRIP_STEP, strips_of
+from rocking.interpolation.windows import AngleAxis, group_points
 from rocking.model.outcome import Outcome
 from rocking.model.outcome_code import overturning_code
 
@@ -41,9 +44,9 @@ def test_weights_sum_to_one_and_are_unit_vectors_at_the_nodes():
     mesh = Mesh.of(UNEVEN, UNEVEN)
     for first in range(UNEVEN.size - 3):
         for x in np.linspace(UNEVEN[first], UNEVEN[first + 3], 31):
-            assert sum(lagrange_weights(mesh.rows, mesh.row_products, first, x)) == pytest.approx(1.0, abs=1e-14)
+            assert sum(lagrange_weights(mesh.rows, first, x)) == pytest.approx(1.0, abs=1e-14)
         for k in range(4):
-            at_node = lagrange_weights(mesh.rows, mesh.row_products, first, UNEVEN[first + k])
+            at_node = lagrange_weights(mesh.rows, first, UNEVEN[first + k])
             np.testing.assert_array_equal(at_node, np.eye(4)[k])
 
 
@@ -53,7 +56,7 @@ def cubic(x, y):
 
 def test_cubics_are_interpolated_exactly():
     mesh = Mesh.of(UNEVEN, np.exp(UNEVEN[:9]))
-    values = cubic(mesh.rows[:, None], mesh.columns)
+    values = cubic(mesh.rows.coordinates[:, None], mesh.columns.coordinates)
     valid = np.random.default_rng(1).random(values.shape) < 0.97
     values[~valid] = np.nan
     cells = np.nonzero(interpolated_cells(valid))
@@ -66,7 +69,7 @@ def test_cubics_are_interpolated_exactly():
 
 def test_squared_cells_interpolate_the_square_of_one_minus_the_value():
     mesh = Mesh.of(UNEVEN, np.exp(UNEVEN))
-    root = np.sqrt(0.1 + 0.2 * mesh.rows[:, None] * mesh.columns)
+    root = np.sqrt(0.1 + 0.2 * mesh.rows.coordinates[:, None] * mesh.columns.coordinates)
     cells = np.nonzero(interpolated_cells(np.ones(root.shape, dtype=bool)))
     found = interpolate(1.0 - root, mesh, cells, np.full(cells[0].size, SQUARED), (0.3, 0.6))
     x, y = mesh.within(cells, (0.3, 0.6))
@@ -89,8 +92,8 @@ def test_error_decreases_with_the_fourth_power_of_the_step_on_uneven_axes():
 
 def cells_of(axis, values):
     mesh = Mesh.of(axis, axis)
-    rows = [cell_of(mesh.rows, x, mesh.rows, x, mesh.row_guide) for x in values]
-    columns = [cell_of(mesh.frequency_ratio, x, mesh.columns, np.log(x), mesh.column_guide) for x in values]
+    rows = [cell_of(mesh.rows, x, x) for x in values]
+    columns = [cell_of(mesh.columns, x, np.log(x)) for x in values]
     assert rows == columns
     return rows
 
@@ -158,15 +161,44 @@ def test_weights_of_a_window_are_lagrange_weights_and_zero_above_it(count):
         np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 
-def test_points_are_grouped_by_the_slices_that_they_need():
+@pytest.mark.parametrize("count", [1, 15, 16, 17, 601])
+def test_points_are_grouped_by_the_slices_that_they_need(count):
     rng = np.random.default_rng(6)
     slices = np.array([0.80, 0.85, 0.90, 0.94])
-    eta = rng.permutation(np.concatenate([rng.uniform(0.75, 1.0, 500), rng.choice(slices, 100), [np.nan]]))
-    group, counts = np.full(eta.size, -7, dtype=np.int32), np.full(8, -7, dtype=np.int64)
-    group_points(eta, slices, group, counts)
+    eta = rng.permutation(np.concatenate([rng.uniform(0.75, 1.0, 500), rng.choice(slices, 100), [np.nan]]))[:count]
+    groups, present = np.full(eta.size, -7, dtype=np.int32), np.zeros(9, dtype=bool)
+    group_points(eta, slices, groups, present, np.ones(LANES))
     below, on_slice = slice_index(slices, eta)
-    np.testing.assert_array_equal(group, np.where(below < 0, -1, 2 * below + ~on_slice))
-    np.testing.assert_array_equal(counts, np.bincount(group[group >= 0], minlength=8))
+    np.testing.assert_array_equal(groups, np.where(below < 0, -1, 2 * below + ~on_slice))
+    np.testing.assert_array_equal(np.flatnonzero(present[:-1]), np.unique(groups[groups >= 0]))
+    assert present[-1] == (groups < 0).any()
+
+
+def test_without_slices_all_points_are_outside():
+    groups, present = np.zeros(20, dtype=np.int32), np.zeros(1, dtype=bool)
+    group_points(np.linspace(0.0, 1.0, 20), np.empty(0), groups, present, np.ones(LANES))
+    assert present.all()
+    assert (groups == -1).all()
+
+
+@pytest.mark.parametrize("count", range(1, 8))
+def test_angles_of_each_group(count):
+    axis = AngleAxis.of(np.linspace(0.0, 0.5, count))
+    assert axis.windows[::2].tolist() == [[k, 1] for k in range(count)]
+    assert axis.windows[1::2].tolist() == [[*slice_window(count, k)] for k in range(count - 1)]
+
+
+@pytest.mark.parametrize("columns", range(4, 23))
+def test_each_stencil_lies_in_four_cache_lines_of_one_strip(columns):
+    values = np.random.default_rng(columns).random((2, 5, columns))
+    strips = strips_of(values)
+    assert strips.ctypes.data % 64 == 0
+    assert strips.flags.c_contiguous
+    for first in range(columns - 3):
+        strip, start = divmod(first, STRIP_STEP)
+        assert start + 4 <= STRIP_SIZE
+        np.testing.assert_array_equal(strips[:, strip, :, start : start + 4], values[:, :, first : first + 4])
+    assert strips[:, -1, :, columns - STRIP_STEP * (strips.shape[1] - 1) :].sum() == 0.0
 
 
 def test_record_of_a_cell_holds_its_stencil_outcome_impacts_and_errors():
@@ -178,9 +210,9 @@ def test_record_of_a_cell_holds_its_stencil_outcome_impacts_and_errors():
     cells = pack_cells(stencil, outcome, impacts, *errors)
     assert cells.dtype.itemsize == 16
     value = overturning_code(int(Outcome.OVERTURNED_AFTER_IMPACT), 1)
-    np.testing.assert_array_equal(cells["code"], [[[4 * (1 + 1) + PEAK, SQUARED], [-1, 4 * value + OVERTURNS]]])
+    assert cells["code"].tolist() == [[[4 * (1 + 1) + PEAK], [SQUARED]], [[-1], [4 * value + OVERTURNS]]]
     for name, error in zip(("interpolation_error", "restitution_error", "alpha_error"), errors, strict=True):
-        np.testing.assert_array_equal(cells[name], error[:, :-1, :-1])
+        np.testing.assert_array_equal(cells[name][:, :, 0], error[0, :-1, :-1])
 
 
 def test_value_on_a_slice():
