@@ -14,7 +14,7 @@ from stress.evaluate import evaluate_family
 from stress.families import BY_NAME, select_families
 from stress.figure import draw
 from stress.report import markdown, violations
-from stress.speed import relative_times, time_summary
+from stress.speed import relative_times, single_times, time_summary
 from stress.tables import read_table
 
 
@@ -30,11 +30,13 @@ def main() -> None:
     for count, name in enumerate(dict.fromkeys(("ordinary", *selected)), start=1):
         progress(f"family {count}: {name}")
         records[name], parts[name] = evaluate_family(read_table(name))
-    times = relative_times(parts)
+    times, single = relative_times(parts), single_times(read_table("ordinary"))
     for name, record in records.items():
-        record["time"] = time_summary(times[name], parts[name]["impacts"], read_table(name))
+        record["time"] = time_summary(times[name], parts[name], single, read_table(name))
     violated = violations(records)
-    save({"families": records, "violations": violated, "versions": versions("numpy", "numba")}, out)
+    measured = {"rigid" if rigid else "slender": time for rigid, time in single.items()}
+    found = {"families": records, "violations": violated, "single_ordinary_cell_us": measured}
+    save(found | {"versions": versions("numpy", "numba")}, out)
     table = markdown(records)
     out.with_suffix(".md").write_text(table)
     draw(

@@ -90,11 +90,14 @@ def violations(records: Mapping[str, Mapping[str, Any]]) -> list[str]:
                 largest_error if largest_error > MAX_ERROR_IN_ULPS else 0,
                 "times the effect of one ulp is the largest error",
             ),
-            "times": (slow if slow > MAX_PER_IMPACT else 0, "ordinary cells per impact is the time of a slow cell"),
+            "times": (
+                slow if slow > MAX_PER_IMPACT else 0,
+                "single ordinary cells per impact is the time of a slow cell",
+            ),
         }
         checked = {requirement: checked[requirement] for requirement in BY_NAME[name].requirements}
         for symmetry in EXACT_SYMMETRIES:
             same = record["symmetries"][symmetry]
             checked[symmetry] = (same["cells"] - same["identical"], f"cells differ in their bits: {symmetry}")
-        found += [f"{name}: {value:.0f} {text}" for value, text in checked.values() if value > 0]
+        found += [f"{name}: {value:.2g} {text}" for value, text in checked.values() if value > 0]
     return found

@@ -21,9 +21,11 @@ LONG_CELL = 20.0
 SLOW = 400.0
 """Time over the median ordinary cell above which a cell is slow and must have many impacts."""
 
-MAX_PER_IMPACT = 12.0
-"""Most ordinary cells that an impact of a slow cell may take. Ordinary cells are solved sixteen at a time, slow ones
-alone; the slowest need 1.5 us an impact, under a wavelet."""
+MAX_PER_IMPACT = 1.0
+"""Most single ordinary cells that an impact of a slow cell may take; slow cells are solved one by one, too."""
+
+SINGLE_CELLS, SINGLE_ROUNDS = 24, 100
+"""Ordinary cells, slender and rigid each, that are also solved in a call of their own, and how often."""
 
 
 def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
@@ -37,6 +39,25 @@ def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
     return found
 
 
+def single_times(ordinary: Table) -> dict[bool, float]:
+    """Return the median time of ordinary cells solved one in a call, slender (False) and rigid (True) [us].
+
+    The time of a call for a block that does not uplift is subtracted.
+    """
+    found: dict[bool, float] = {}
+    for kind in (False, True):
+        cells = np.flatnonzero((ordinary["alpha"] > 0.0) == kind)
+        chosen = cells[np.linspace(0, cells.size - 1, SINGLE_CELLS).astype(int)]
+        times = []
+        for k in chosen:
+            cell: dict[str, Any] = {name: np.array([ordinary[name][k]]) for name in INPUTS}
+            pulse, idle = str(ordinary.pulse[k]), cell | {"slenderness": np.array([2.0])}
+            rounds = range(SINGLE_ROUNDS)
+            times.append(min(_seconds(pulse, cell) for _ in rounds) - min(_seconds(pulse, idle) for _ in rounds))
+        found[kind] = 1e6 * float(np.median(times))
+    return found
+
+
 def relative_times(parts: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[np.float64]]:
     """Return times (cells,) over the median of the ordinary cells, slender and rigid each over their own [-]."""
     ordinary = parts["ordinary"]
@@ -44,11 +65,14 @@ def relative_times(parts: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str,
     return {name: part["time"] / np.where(part["rigid"], usual[True], usual[False]) for name, part in parts.items()}
 
 
-def time_summary(times: NDArray[np.float64], impacts: NDArray[np.int64], table: Table) -> dict[str, Any]:
-    """Summarise times over the ordinary (cells,) [-] with the impacts that were followed; 0 per impact if none is
-    slow.
+def time_summary(
+    times: NDArray[np.float64], part: Mapping[str, NDArray[Any]], single: Mapping[bool, float], table: Table
+) -> dict[str, Any]:
+    """Summarise times over the ordinary (cells,) [-], of which slow ones have many impacts.
+
+    The time of an impact is given in single ordinary cells [-]; 0 if no cell is slow.
     """
-    per_impact = times / (1.0 + impacts)
+    per_impact = part["time"] / np.where(part["rigid"], single[True], single[False]) / (1.0 + part["impacts"])
     return {
         "median": float(np.median(times)),
         "largest": float(np.max(times)),
