@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from rocking.plot.style import BLACK, BLUE, GREY, STYLE, VERMILION, WIDTH
+from stress.speed import SLOW
 
 FLOOR = 1e-3
 """Smaller errors, 0 included, are drawn here [units of the conditioning]."""
@@ -43,7 +44,7 @@ def draw(
     axes[0].set(yticks=range(len(errors)), yticklabels=list(errors), ylim=(len(errors) - 0.5, -0.5))
     axes[0].set_xlabel("error of the peak over the effect of one ulp of the input [-]")
     axes[1].set_xlabel("time over the median ordinary cell [-]")
-    axes[1].axvline(100.0, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
+    axes[1].axvline(SLOW, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     for suffix in (".png", ".svg"):
         figure.savefig(path.with_suffix(suffix), dpi=180)
