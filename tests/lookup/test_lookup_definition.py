@@ -1,0 +1,187 @@
+"""Compiled lookups against their definition in plain Python, on made-up cubes with all kinds of cells."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from rocking.datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
+from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, slice_window
+from rocking.lookup.cube import SAFETY, Cube
+from rocking.lookup.cube_slice import slice_of
+from rocking.lookup.points import Points
+from rocking.model.outcome import Outcome
+from rocking.solver.bounded_response import SOLVER_ERROR
+
+ETAS = np.array([0.70, 0.75, 0.78, 0.85, 0.90, 0.95])
+ALPHAS = np.radians([0.0, 4.0, 10.0, 15.0, 22.0])
+ROWS, COLUMNS = np.cumsum([0.1, *[0.02, 0.05, 0.1] * 5]), np.geomspace(0.5, 12.0, 22)
+
+
+def make_variables(rng):
+    """Variables of a cube whose cells overturn in the upper rows, and are rarely without a stencil."""
+    shape = len(ALPHAS), len(ROWS), len(COLUMNS)
+    overturns = np.broadcast_to((np.arange(len(ROWS)) > 9)[:, None], shape[1:]) & (rng.random(shape) < 0.995)
+    stencil = np.where(overturns, OVERTURNS, rng.random(shape) < 0.5)
+    stencil[:, :, :11] = np.where(overturns, OVERTURNS, SQUARED)[:, :, :11]  # the same form in all slices
+    stencil[rng.random(shape) < 0.01] = NO_STENCIL
+    inner = np.zeros(shape, dtype=bool)
+    inner[:, 1:-2, 1:-2] = True
+    stencil[~inner & (stencil != OVERTURNS)] = NO_STENCIL
+    errors = {name: 10.0 ** rng.uniform(-8.0, -5.0, shape) for name in VARIABLES if name.endswith("_error")}
+    for name in ("restitution_error", "alpha_error"):
+        errors[name][rng.random(shape) < 0.03] = np.nan
+    columns = np.arange(len(COLUMNS))
+    return errors | {
+        "peak_rotation": 0.5 + 0.6 * rng.random(shape),
+        "stencil": stencil,
+        "outcome": np.where(overturns, int(Outcome.OVERTURNED_AFTER_IMPACT), int(Outcome.SAFE)),
+        "impacts": np.broadcast_to(1 + columns // 6, shape) + (rng.random(shape) < 0.01),
+    }
+
+
+@pytest.fixture(scope="module")
+def cubes():
+    rng = np.random.default_rng(11)
+    axes = dict(zip(DIMENSIONS, (ALPHAS, ROWS, COLUMNS), strict=True))
+    found = []
+    for eta in ETAS:
+        made = make_variables(rng)
+        variables = {name: made.get(name, np.zeros_like(made["outcome"])) for name in VARIABLES}
+        cube = build_spectrum_dataset(variables, pulse="sine", restitution=eta, axes=axes)
+        found.append(cube.assign_attrs(restitution_slices=ETAS))
+    return found
+
+
+def window_of(axis, value):
+    """First, number and lower one of the slices from which a value is interpolated; None outside of them."""
+    below = np.searchsorted(axis, value, side="right") - 1
+    if below < 0 or value > axis[-1]:
+        return None
+    if axis[below] == value:
+        return below, 1, below
+    return *slice_window(axis.size, below), below
+
+
+def weights_of(nodes, x):
+    return [np.prod([(x - m) / (node - m) for m in nodes if m != node]) for node in nodes]
+
+
+def overturning(cells):
+    """What is known where one cell at least overturns."""
+    kinds = {(int(cell.outcome), int(cell.impacts[0, 0]), cell.stencil) for cell in cells}
+    if len(kinds) > 1:
+        return None
+    outcome, impacts, _ = kinds.pop()
+    return outcome, impacts, True, np.nan, np.nan
+
+
+def peak_from(values, cells, weights):
+    """Interpolated peak; (1 - peak)^2 is interpolated between those that all have it, first slices, then angles."""
+    squared = np.array([[cell.stencil == SQUARED for cell in row] for row in cells])
+    by_angle, by_slice = weights
+
+    def back(value):
+        return 1.0 - np.sqrt(max(value, 0.0))
+
+    if squared.all():
+        return back(by_angle @ values @ by_slice)
+    layers = []
+    for own, one in zip(values, squared, strict=True):
+        singles = [
+            value if one.all() or not is_squared else back(value) for value, is_squared in zip(own, one, strict=True)
+        ]
+        layers.append(back(by_slice @ singles) if one.all() else by_slice @ singles)
+    return by_angle @ layers
+
+
+def expected(cubes, point, tolerance):
+    """Outcome, impacts, whether alpha is passed, peak and bound of a point; None if the cubes do not determine them."""
+    s, w, eta, alpha = point
+    windows = window_of(ETAS, eta), window_of(ALPHAS, alpha)
+    inside = ROWS[0] <= s <= ROWS[-1] and COLUMNS[0] <= w <= COLUMNS[-1] and s < 1.0
+    if None in windows or not inside:
+        return None
+    (e0, size, e_lower), (a0, count, a_lower) = windows
+    i = min(np.searchsorted(ROWS, s, side="right") - 1, len(ROWS) - 2)
+    j = min(np.searchsorted(COLUMNS, w, side="right") - 1, len(COLUMNS) - 2)
+
+    def cell_at(e, a):
+        part = {name: cubes[e][name].values[a] for name in VARIABLES}
+        values = {name: part[name][i, j] for name in VARIABLES if name != "impacts"}
+        stencil = part["peak_rotation"][i - 1 : i + 3, j - 1 : j + 3]
+        return SimpleNamespace(**values, impacts=part["impacts"][i : i + 2, j : j + 2], nodes=stencil)
+
+    cells = [[cell_at(e, a) for e in range(e0, e0 + size)] for a in range(a0, a0 + count)]
+    flat = [cell for row in cells for cell in row]
+    by_slice = np.array(weights_of(ETAS[e0 : e0 + size], eta))
+    by_angle = np.array(weights_of(ALPHAS[a0 : a0 + count] ** 2, alpha**2))
+    error = sum(
+        abs(one * other) * float(cell.interpolation_error)
+        for row, one in zip(cells, by_angle, strict=True)
+        for cell, other in zip(row, by_slice, strict=True)
+    )
+    if size > 1:
+        error += sum(abs(by_angle[k]) * float(cell_at(e_lower, a0 + k).restitution_error) for k in range(count))
+    if count > 1:
+        either = [cell_at(e, a_lower).alpha_error for e in range(e_lower, e_lower + 1 + (size > 1))]
+        error += float(np.maximum.reduce(either))
+    if any(cell.stencil == NO_STENCIL for cell in flat) or np.isnan(error):
+        return None
+    if any(cell.stencil == OVERTURNS for cell in flat):
+        return overturning(flat)
+    bound = SAFETY * error + SOLVER_ERROR
+    x, y = weights_of(ROWS[i - 1 : i + 3], s), weights_of(np.log(COLUMNS[j - 1 : j + 3]), np.log(w))
+    values = [
+        [x @ ((1.0 - cell.nodes) ** 2 if cell.stencil == SQUARED else cell.nodes) @ y for cell in row] for row in cells
+    ]
+    peak = peak_from(np.array(values), cells, (by_angle, by_slice))
+    if bound > tolerance or abs(peak - 1.0) <= bound:
+        return None
+    numbers = {int(one) if (cell.impacts == one).all() else -1 for cell in flat for one in cell.impacts[:1, 0]}
+    return int(Outcome.SAFE), numbers.pop() if len(numbers) == 1 else -1, peak > 1.0, max(peak, 0.0), bound
+
+
+def random_points(between, count):
+    rng = np.random.default_rng(12)
+    eta, alpha = (
+        rng.uniform(axis[0] - 0.02 * np.ptp(axis), axis[-1] + 0.02 * np.ptp(axis), count)
+        if free
+        else rng.choice(axis, count)
+        for axis, free in zip((ETAS, ALPHAS), between, strict=True)
+    )
+    inner = rng.choice(ROWS, count), rng.choice(COLUMNS, count)  # some points lie on the nodes
+    s = np.where(rng.random(count) < 0.1, inner[0], rng.uniform(0.08, 1.02, count))
+    w = np.where(rng.random(count) < 0.1, inner[1], np.exp(rng.uniform(np.log(0.45), np.log(13.0), count)))
+    return Points(s, w, eta, np.abs(alpha))
+
+
+@pytest.mark.parametrize("between", [(False, False), (True, False), (False, True), (True, True)])
+def test_lookups_follow_their_definition(cubes, between):
+    slices = [slice_of(cube) for cube in cubes]
+    cube, points = Cube("sine", ETAS, slices.__getitem__), random_points(between, 1003)
+    known, found = cube.interpolate(points, 1e-4)
+    seen = {"unknown": 0, "survives": 0, "overturns": 0}
+    for k in range(1003):
+        fields = points.slenderness[k], points.frequency_ratio[k], points.restitution[k], points.alpha[k]
+        answer = expected(cubes, fields, 1e-4)
+        assert known[k] == (answer is not None), fields
+        seen["unknown"] += answer is None
+        if answer is None:
+            continue
+        seen["overturns" if np.isnan(answer[3]) else "survives"] += 1
+        assert (found.outcome[k], found.impacts[k], found.exceeded_alpha[k]) == answer[:3], fields
+        np.testing.assert_allclose((found.peak_rotation[k], found.error_bound[k]), answer[3:], rtol=1e-9, atol=1e-13)
+    assert min(seen.values()) > 30, seen
+
+
+def test_responses_do_not_depend_on_the_other_points(cubes):
+    slices = [slice_of(cube) for cube in cubes]
+    cube, points = Cube("sine", ETAS, slices.__getitem__), random_points((True, True), 500)
+    known, found = cube.interpolate(points, 1e-4)
+    order = np.random.default_rng(13).permutation(500)
+    for part in (order, order[:1], order[:15], order[:16], order[:33]):
+        again, other = cube.interpolate(points[part], 1e-4)
+        np.testing.assert_array_equal(again, known[part])
+        for name in ("peak_rotation", "error_bound", "outcome", "impacts"):
+            np.testing.assert_array_equal(getattr(other, name)[again], getattr(found, name)[part][again])
