@@ -48,7 +48,7 @@ def random_points(cube: Cube, count: int, between: tuple[bool, bool], random: np
 def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[str, float]:
     """Compare the responses of the cubes with the solver."""
     start = time.perf_counter()
-    known, found = cube.interpolate(points, tolerance)
+    known, found = cube.interpolate(points, tolerance, threads=1)
     seconds = time.perf_counter() - start
     known_points, found = points[known], found[known]
     exact = peak_response(cube.pulse, **vars(known_points))

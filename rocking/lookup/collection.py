@@ -147,6 +147,7 @@ class CubeCollection:
         alpha: ArrayLike | None = None,
         tolerance: float = 1e-4,
         method: str = "auto",
+        threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> tuple[BoundedResponse, tuple[str, ...]]:
         """Responses as `Cube.response`, from all cubes of a pulse, and the sha256 of each cube that was used.
@@ -163,6 +164,8 @@ class CubeCollection:
             Largest error of an interpolated peak_rotation [-], >= 0.
         method : {"auto", "cube", "solver"}
             As `Cube.response`; "auto" also uses the solver where a cube is missing or damaged.
+        threads : int, optional
+            Number of threads for large arrays, >= 1; by default all cores.
         stop : StopFlag, optional
             The computation ends with `StoppedError` soon after another thread sets it.
 
@@ -177,9 +180,7 @@ class CubeCollection:
         """
         get_pulse(pulse)
         cube = self.cube(pulse, method)
-        result, used = cube.evaluate(
-            slenderness, frequency_ratio, restitution, alpha, tolerance=tolerance, method=method, stop=stop
-        )
+        result, used = cube.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop)
         return result, tuple(one.sha256 for one in used)
 
     def problem(self, name: str) -> str | None:

@@ -8,6 +8,7 @@ restitutions and between the angles were measured against the solver when the cu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -33,12 +34,18 @@ from rocking.lookup.cube_slice import CubeSlice
 from rocking.lookup.points import Points
 from rocking.model.outcome import Outcome
 from rocking.solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
+from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
 
 SAFETY = 6.0
 """Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
+
+MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
+"""Fewest and most points that a thread interpolates at a time."""
+
+_OUTCOME_WITHOUT_UPLIFT = int(Outcome.NO_UPLIFT)
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -71,6 +78,7 @@ class Cube:
         alpha: ArrayLike | None = None,
         tolerance: float = 1e-4,
         method: str = "auto",
+        threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BoundedResponse:
         """Outcome and peak rotation with an error bound not above `tolerance`; the arguments broadcast.
@@ -87,6 +95,8 @@ class Cube:
             Largest error of an interpolated peak_rotation [-], >= 0.
         method : {"auto", "cube", "solver"}
             "auto" uses the solver where the cubes do not meet the tolerance, "cube" raises an error there.
+        threads : int, optional
+            Number of threads for large arrays, >= 1; by default all cores.
         stop : StopFlag, optional
             The computation ends with `StoppedError` soon after another thread sets it.
 
@@ -97,7 +107,7 @@ class Cube:
         OutsideCubeError
             With `method="cube"`: outside the axes, where kinds of response meet, or if the bound exceeds the tolerance.
         """
-        return self.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, stop)[0]
+        return self.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop)[0]
 
     def evaluate(
         self,
@@ -107,11 +117,14 @@ class Cube:
         alpha: ArrayLike | None,
         tolerance: float,
         method: str,
+        threads: int | None,
         stop: StopFlag | None,
     ) -> tuple[BoundedResponse, list[CubeSlice]]:
         """`response`, and the cubes from which points were interpolated, in the order of `used`."""
         one_of("method", method, METHODS)
         limit = float(in_range("tolerance", tolerance, 0.0, np.inf, closed="left"))
+        if threads is not None:
+            in_range("threads", threads, 1, np.inf)
         if restitution is None:
             if self.restitutions.size != 1:
                 raise InvalidArgumentError("restitution", None, "a number: there are several cubes")
@@ -121,7 +134,7 @@ class Cube:
         if method == "solver":
             found = _empty(points)
         else:
-            found, used = self._interpolated(points, limit)
+            found, used = self._interpolated(points, limit, threads, stop)
         result = _response(found)
         left = np.flatnonzero(found.state == UNKNOWN)
         if left.size and method == "cube":
@@ -129,7 +142,7 @@ class Cube:
         if method == "cube":
             result.from_cube[...] = True
         if left.size:
-            result.put(left, _solve(self.pulse, points[left], stop))
+            result.put(left, _solve(self.pulse, points[left], threads, stop))
         return result.reshape(shape), used
 
     def used(self, restitution: Array) -> list[int]:
@@ -142,15 +155,17 @@ class Cube:
             needed |= dict.fromkeys(range(first, first + count))
         return list(needed)
 
-    def interpolate(self, points: Points, limit: float) -> tuple[Flags, BoundedResponse]:
+    def interpolate(self, points: Points, limit: float, threads: int | None = None) -> tuple[Flags, BoundedResponse]:
         """Where the cubes give a response with an error bound of at most `limit` (points,), and the responses.
 
-        Responses elsewhere are undefined.
+        Responses elsewhere are undefined. `threads` as in `response`.
         """
-        found, _ = self._interpolated(points, limit)
+        found, _ = self._interpolated(points, limit, threads, None)
         return found.state == INTERPOLATED, _response(found)
 
-    def _interpolated(self, points: Points, limit: float) -> tuple[Found, list[CubeSlice]]:
+    def _interpolated(
+        self, points: Points, limit: float, threads: int | None, stop: StopFlag | None
+    ) -> tuple[Found, list[CubeSlice]]:
         """Responses of the points, and the slices used."""
         found = _empty(points)
         groups, present = np.empty(found.state.size, np.int32), np.zeros(2 * self.restitutions.size + 1, np.bool_)
@@ -166,28 +181,11 @@ class Cube:
             own = next(iter(left.values()))[0]
             alike = {k: slices for k, slices in left.items() if slices[0] is own or slices[0].fits(own)}
             left = {k: slices for k, slices in left.items() if k not in alike}
-            windows = np.zeros(counts.size, SLICE_WINDOW)
+            windows = np.zeros(present.size, SLICE_WINDOW)
             for k, slices in alike.items():
                 windows[k] = slices[0].window(*slices[1:])
-            interpolate_many(
-                points.slenderness,
-                points.frequency_ratio,
-                points.restitution,
-                points.alpha,
-                own.mesh,
-                own.angles,
-                groups,
-                windows,
-                limit,
-                SAFETY,
-                SOLVER_ERROR,
-                np.empty(WORK, POINT),
-                np.empty((2, BLOCK), np.int64),
-                np.empty(BLOCK),
-                np.empty(BLOCK),
-                counts,
-                found,
-            )
+            for given in _interpolate(points, groups, own, windows, limit, found, threads, stop):
+                counts += given
         used = [slices for k, slices in wanted.items() if counts[k]]
         lower, others = [one for one, *_ in used], [one for _, *rest in used for one in rest]
         # the slices are compared by identity
@@ -241,16 +239,59 @@ class Cube:
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 
 
+def _interpolate(
+    points: Points,
+    groups: NDArray[np.int32],
+    own: CubeSlice,
+    windows: NDArray[np.void],
+    limit: float,
+    found: Found,
+    threads: int | None,
+    stop: StopFlag | None,
+) -> list[NDArray[np.int64]]:
+    """Fill `found` from the slices of the windows, with the axes of `own`; numbers of points given, of each group."""
+    size, cores = groups.size, int(threads) if threads else AVAILABLE_CORES
+    counts: list[NDArray[np.int64]] = []
+
+    def fill(part: slice, _: NDArray[np.uint8]) -> None:
+        given = np.zeros(windows.size, np.int64)
+        interpolate_many(
+            points.slenderness[part],
+            points.frequency_ratio[part],
+            points.restitution[part],
+            points.alpha[part],
+            own.mesh,
+            own.angles,
+            groups[part],
+            windows,
+            limit,
+            SAFETY,
+            SOLVER_ERROR,
+            np.empty(WORK, POINT),
+            np.empty((2, BLOCK), np.int64),
+            np.empty(BLOCK),
+            np.empty(BLOCK),
+            given,
+            Found(*[field[part] for field in found]),  # type: ignore[arg-type]  # in order
+        )
+        counts.append(given)
+
+    fill_chunks(fill, size, min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
+    return counts
+
+
 def _empty(points: Points) -> Found:
     """Responses of points that are not interpolated: those without uplift are final."""
-    state = np.where(points.slenderness < 1.0, np.int8(UNKNOWN), np.int8(NO_UPLIFT))
+    size = points.slenderness.size
+    state = np.zeros(size, np.int8)  # UNKNOWN
+    state[points.slenderness >= 1.0] = NO_UPLIFT
     return Found(
         state,
-        np.zeros(state.size),
-        np.full(state.size, Outcome.NO_UPLIFT, dtype=np.int8),
-        np.zeros(state.size, dtype=np.int32),
-        np.zeros(state.size, dtype=np.bool_),
-        np.zeros(state.size),
+        np.zeros(size),
+        np.full(size, _OUTCOME_WITHOUT_UPLIFT, np.int8),
+        np.zeros(size, np.int32),
+        np.zeros(size, np.bool_),
+        np.zeros(size),
     )
 
 
@@ -266,12 +307,13 @@ def _response(found: Found) -> BoundedResponse:
     )
 
 
-def _solve(pulse: str, points: Points, stop: StopFlag | None) -> BoundedResponse:
+def _solve(pulse: str, points: Points, threads: int | None, stop: StopFlag | None) -> BoundedResponse:
     return solve_with_bound(
         pulse,
         slenderness=points.slenderness,
         frequency_ratio=points.frequency_ratio,
         restitution=points.restitution,
         alpha=points.alpha,
+        threads=threads,
         stop=stop,
     )

@@ -102,6 +102,7 @@ def solve_with_bound(
     frequency_ratio: ArrayLike,
     restitution: ArrayLike,
     alpha: ArrayLike | None,
+    threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> BoundedResponse:
     """Solve twice, with the groups as given and slightly smaller, and bound the error of the peak by the difference.
@@ -118,6 +119,8 @@ def solve_with_bound(
         1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
     alpha : array_like or None
         Slenderness angle [rad]; None or 0 for the slender limit.
+    threads : int, optional
+        Number of threads for large arrays, >= 1; by default all cores.
     stop : StopFlag, optional
         Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -130,7 +133,7 @@ def solve_with_bound(
     s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))
     shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
     groups = {"slenderness": s * shift, "frequency_ratio": w * shift, "restitution": eta * shift}
-    found = peak_response(pulse, **groups, alpha=angle, stop=stop)
+    found = peak_response(pulse, **groups, alpha=angle, threads=threads, stop=stop)
     peak, outcome = found.peak_rotation[0], found.outcome[0]
     with np.errstate(invalid="ignore"):
         change = np.abs(found.peak_rotation[1] - peak)

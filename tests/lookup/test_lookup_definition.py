@@ -5,9 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from rocking._numba.cancellation import StopFlag
 from rocking.datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
+from rocking.errors import InvalidArgumentError, StoppedError
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, slice_window
-from rocking.lookup.cube import SAFETY, Cube
+from rocking.lookup.cube import MIN_CHUNK, SAFETY, Cube
 from rocking.lookup.cube_slice import slice_of
 from rocking.lookup.points import Points
 from rocking.model.outcome import Outcome
@@ -185,3 +187,20 @@ def test_responses_do_not_depend_on_the_other_points(cubes):
         np.testing.assert_array_equal(again, known[part])
         for name in ("peak_rotation", "error_bound", "outcome", "impacts"):
             np.testing.assert_array_equal(getattr(other, name)[again], getattr(found, name)[part][again])
+
+
+def test_threads_share_large_arrays_and_are_stopped(cubes):
+    slices = [slice_of(cube) for cube in cubes]
+    cube, few = Cube("sine", ETAS, slices.__getitem__), random_points((True, True), 1000)
+    many = Points(*(np.tile(getattr(few, name), 3 * MIN_CHUNK // 1000) for name in few.__dataclass_fields__))
+    known, found = cube.interpolate(many, 1e-4, threads=1)
+    again, other = cube.interpolate(many, 1e-4, threads=3)
+    np.testing.assert_array_equal(again, known)
+    for name in ("peak_rotation", "error_bound", "outcome", "impacts"):
+        np.testing.assert_array_equal(getattr(other, name)[known], getattr(found, name)[known])
+    stop = StopFlag()
+    stop.set()
+    with pytest.raises(StoppedError):
+        cube.response(**vars(many), stop=stop)
+    with pytest.raises(InvalidArgumentError, match="`threads` = 0"):
+        cube.response(**vars(few), threads=0)
