@@ -49,7 +49,7 @@ BLOCK = LANES
 """Points that take a step together."""
 
 WORK = 4 * BLOCK
-"""Points between the first step and the last."""
+"""Points for which there is memory between the first step and the last: three blocks, and a power of two."""
 
 POINT = np.dtype(
     [

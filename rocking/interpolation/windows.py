@@ -56,12 +56,9 @@ class AngleAxis(NamedTuple):
     @classmethod
     def of(cls, angles: NDArray[np.float64]) -> AngleAxis:
         """The axis of some ascending angles [rad]."""
-        windows = [(k, 1) for k in range(angles.size) for _ in range(2)]
-        for k in range(angles.size - 1):
-            windows[2 * k + 1] = slice_window(angles.size, k)
-        return cls(
-            contiguous_array(angles), angles**2, slice_products(angles**2), np.array(windows[: 2 * angles.size - 1])
-        )
+        size, squares = angles.size, angles**2
+        windows = [slice_window(size, k // 2) if k % 2 else (k // 2, 1) for k in range(2 * size - 1)]
+        return cls(contiguous_array(angles), squares, slice_products(squares), np.array(windows))
 
 
 @entry
