@@ -47,7 +47,7 @@ def panel(ax: Axes, record: dict[str, Any], measure: str) -> None:
     kind, pulse = record["diagram"].split("-")
     names = {"slender": "slender block", "rigid": "rigid block, 20°", "sine": "one sine", "ricker": "Ricker wavelet"}
     ax.set_title(f"{names[kind]}, {names[pulse]}")
-    ax.set(xscale="log", yscale="log", xlim=(1e0, 1e-16), ylim=(0.1, 2e5))
+    ax.set(xscale="log", yscale="log", xlim=(1e0, 1e-16), ylim=(0.03, 5e4))
     ax.grid(visible=True, which="major", linewidth=0.3, alpha=0.5)
 
 
