@@ -23,6 +23,12 @@ from rocking.model.response import Outcome
 MAX_STEP = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
 
+MAX_STEPS = 250_000
+"""Number of steps during the ground motion, and after it, from which on they are longer than `MAX_STEP` [-]."""
+
+LAST_FLIGHT = 100.0
+"""Longest flight of free rocking [tau]: within a rounding of the unstable equilibrium it lasts 2 ln(2/1e-16) = 75."""
+
 EVENT_OFFSET = 1e-12
 """Relative distance in time of the samples on either side of an event."""
 
@@ -245,10 +251,11 @@ def contact_extremes(motion: SampledMotion) -> ContactExtremes:
 def _fine_samples(motion: SampledMotion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:
     """Times and rotations: both sides of every event, and small steps where the block moves, until it overturns."""
     end = motion.pulse_end
-    events = np.concatenate([impact_times, motion.event_times(record), [end]])
-    tau = np.concatenate(
-        [np.linspace(0.0, motion.horizon, 400), events, events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET)]
-    )
+    after = max(impact_times.max(initial=end) - end, 0.0) + LAST_FLIGHT
+    steps = max(MAX_STEP / motion.ground_rate, end / MAX_STEPS), max(MAX_STEP, after / MAX_STEPS)
+    events = np.concatenate([impact_times, motion.jump_times(record), [end]])
+    sides = events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET)
+    tau = np.concatenate([np.linspace(0.0, motion.horizon, 400), events, *sides, motion.kink_times])
     tau = np.unique(np.clip(tau, 0.0, motion.horizon))
     while True:
         rotation, velocity = motion.sample(tau)
@@ -258,7 +265,7 @@ def _fine_samples(motion: SampledMotion, record: Record, impact_times: Floats) -
             tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
         moves = (rotation != 0.0) | (velocity != 0.0)
         step = np.diff(tau)
-        allowed = np.where(tau[:-1] < end, MAX_STEP / motion.ground_rate, MAX_STEP)
+        allowed = np.where(tau[:-1] < end, *steps)
         wide = (moves[1:] | moves[:-1]) & (step > np.maximum(allowed, 8 * EVENT_OFFSET * tau[1:]))
         if not wide.any():
             return tau, rotation

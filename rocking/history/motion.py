@@ -59,8 +59,12 @@ class SampledMotion(Protocol):
     def events(self) -> tuple[Record, Floats]:
         """The record of the solver with the response, and the times of the impacts [tau]."""
 
-    def event_times(self, record: Record) -> Floats:
-        """Times [tau] other than impacts at which the reactions may jump or have a kink."""
+    @property
+    def kink_times(self) -> Floats:
+        """Times [tau] at which the reactions are continuous and may have a kink."""
+
+    def jump_times(self, record: Record) -> Floats:
+        """Times [tau] other than impacts at which the reactions may jump."""
 
     def sample(self, tau: Floats) -> tuple[Floats, Floats]:
         """theta/alpha and d(theta/alpha)/d tau [-] at ascending times `tau`; zero after overturning."""
@@ -110,7 +114,12 @@ class Motion:
         """Largest of 1 and the rate of the phase with respect to tau [-]."""
         return max(1.0, self.frequency_ratio)
 
-    def event_times(self, record: Record) -> Floats:
+    @property
+    def kink_times(self) -> Floats:
+        """None: a pulse is smooth between its ends."""
+        return np.empty(0)
+
+    def jump_times(self, record: Record) -> Floats:
         """Times [tau] of the ends of the intervals of the pulse: of possible uplift, and of extremes of the pulse."""
         cuts = record["interval_phase"][: int(record["interval_count"]) + 1]
         phases = np.concatenate([cuts, [self.pulse.start, *self.pulse.stationary]])

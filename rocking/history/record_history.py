@@ -9,12 +9,15 @@ from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
 from rocking.excitation.records.record import Record
 from rocking.history.contact import add_contact
-from rocking.history.motion import overturned
-from rocking.history.record_motion import build_record_motion
+from rocking.history.motion import Floats, overturned
+from rocking.history.record_motion import RecordMotion, build_record_motion
 from rocking.model.response import Outcome
 
 MAX_SAMPLES = 1_000_000
 """Largest number of uniform samples of a history."""
+
+MIN_CONTINUED = 10_000
+"""Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""
 
 
 def record_history(
@@ -39,8 +42,9 @@ def record_history(
         Duration [s], > 0. By default the motion and 8/p after it; if the block overturns, until |theta|/alpha = 4 or
         |theta| = pi/2.
     samples : int, optional
-        Number of uniform samples, 2 to 1,000,000; by default the samples of the motion, continued after its end. The
-        uplift, impacts and the end of the motion are added.
+        Number of uniform samples, 2 to 1,000,000; by default the samples of the motion, continued after its end by at
+        most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of the motion
+        are added.
     contact : bool
         Whether to add the reactions of the ground and the friction demand (docs/contact.md).
     stop : StopFlag, optional
@@ -71,11 +75,7 @@ def record_history(
     }
     block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     record, impact_times = block.events()
-    if samples is None:
-        count = min(int(block.horizon / block.interval * (1.0 + 1e-12)) + 1, MAX_SAMPLES)
-        grid = block.interval * np.arange(count)
-    else:
-        grid = np.linspace(0.0, block.horizon, int(samples))
+    grid = _default_times(block) if samples is None else np.linspace(0.0, block.horizon, int(samples))
     events = [0.0, block.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
     tau = np.concatenate([grid, impact_times, events])
     tau = np.unique(tau[tau <= block.horizon])
@@ -116,3 +116,13 @@ def record_history(
     if contact:
         history = add_contact(history, block, impact_times)
     return history.swap_dims(tau="time")
+
+
+def _default_times(block: RecordMotion) -> Floats:
+    """Times of the samples of the motion [tau], continued to the horizon at their step or a larger one."""
+    count, most = block.record.samples, max(block.record.samples, MIN_CONTINUED)
+    wanted = min(block.horizon / block.interval * (1.0 + 1e-12), count + most)
+    if wanted < count + most:
+        return block.interval * np.arange(int(wanted) + 1, dtype=np.float64)
+    forced = block.interval * np.arange(count, dtype=np.float64)
+    return np.concatenate([forced, np.linspace(block.pulse_end, block.horizon, most + 1)[1:]])

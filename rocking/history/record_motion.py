@@ -69,12 +69,17 @@ class RecordMotion:
 
     @property
     def ground_rate(self) -> float:
-        """1: the samples themselves are among the events."""
+        """1: the samples themselves are among the kinks."""
         return 1.0
 
-    def event_times(self, record: KernelRecord) -> Floats:
-        """Times [tau] of the samples, where the ground acceleration has kinks; `record` is not needed."""
+    def jump_times(self, record: KernelRecord) -> Floats:
+        """None: the ground acceleration is continuous from the first sample to the last."""
         del record
+        return np.empty(0)
+
+    @property
+    def kink_times(self) -> Floats:
+        """Times [tau] of the samples."""
         return self.interval * np.arange(self.record.samples, dtype=np.float64)
 
     def events(self) -> tuple[KernelRecord, Floats]:

@@ -8,7 +8,8 @@ import xarray as xr
 
 import rocking
 from rocking.excitation.pulses import PULSE_NAMES
-from rocking.history.contact import MAX_FRICTION, PRACTICAL_FRICTION, contact_extremes
+from rocking.history import contact
+from rocking.history.contact import MAX_FRICTION, MAX_STEP, MAX_STEPS, PRACTICAL_FRICTION, contact_extremes
 from rocking.history.motion import build_motion
 
 QUESTIONS = (
@@ -148,3 +149,17 @@ def test_contact_forces_are_computed_on_request_only():
     assert "friction_demand" not in plain
     assert "warnings" not in plain.attrs
     xr.testing.assert_equal(plain, full[list(plain)])
+
+
+def test_a_motion_of_any_length_is_sampled_a_bounded_number_of_times():
+    # an elastic block that almost overturns: 10,000 impacts, each of which takes several units of tau
+    question = {"frequency_ratio": 5.0, "restitution": 1.0, "alpha": 0.2}
+    survives = 1.000001 / rocking.critical_amplitude("sine", **question).amplitude[0]
+    motion = build_motion("sine", slenderness=survives, **question, duration=1e9)
+    record, impact_times = motion.events()
+    assert impact_times[-1] > 20 * MAX_STEP * MAX_STEPS
+    tau, _ = contact._fine_samples(motion, record, impact_times)
+    assert tau.size < 4 * MAX_STEPS + 10 * impact_times.size
+    short = contact_extremes(build_motion("sine", slenderness=survives, **question, duration=100.0))
+    assert contact_extremes(motion).largest_friction_demand == pytest.approx(short.largest_friction_demand, rel=1e-3)
+    assert contact_extremes(motion).smallest_normal_reaction == pytest.approx(short.smallest_normal_reaction, rel=1e-3)

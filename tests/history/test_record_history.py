@@ -52,6 +52,21 @@ def test_between_impacts_the_motion_satisfies_the_equation(alpha: float | None) 
     np.testing.assert_allclose(found.y[1], part.angular_velocity.values, atol=1e-8)
 
 
+def test_by_default_the_samples_are_those_of_the_record_and_some_more() -> None:
+    history = rocking.record_history(MOTION, **BLOCK)
+    interval = BLOCK["frequency_parameter"] * MOTION.time_step
+    assert np.isin(interval * np.arange(MOTION.samples + 700), history.tau).all()
+    assert np.diff(history.time).max() == pytest.approx(MOTION.time_step)
+    long = rocking.Record(np.append(np.zeros(1_200_000), 1.0), 0.01, "m/s2")
+    assert rocking.record_history(long, **BLOCK).time[-1] > long.duration
+    for samples, step in (([0.0, 3.0, -2.0, 1.0], 1e-6), (np.sin(np.arange(20_000)), 1e-5)):
+        short = rocking.Record(samples, step, "m/s2")
+        history = rocking.record_history(short, **BLOCK)
+        events = history.sizes["impact"] + 3
+        assert history.sizes["time"] <= short.samples + max(short.samples, 10_000) + events
+        assert history.time[-1] == pytest.approx(short.duration + 8.0 / BLOCK["frequency_parameter"])
+
+
 def test_impacts_reduce_the_velocity_by_the_restitution() -> None:
     history = rocking.record_history(MOTION, **BLOCK)
     before = rocking.record_history(MOTION, **BLOCK, samples=400_000)
