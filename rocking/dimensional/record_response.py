@@ -18,7 +18,7 @@ from rocking.dimensional.scalar_response import (
     ScalarResponse,
     count_of_impacts,
 )
-from rocking.excitation.records.record import Record
+from rocking.excitation.records.record import TIME_STEP, Record
 from rocking.model.block import Block
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION, ResponseField
 from rocking.model.outcome import Outcome
@@ -38,7 +38,7 @@ DRIFT = 0.1
 """Velocity at the end of a record over its largest above which a warning is given [-]."""
 
 MAX_RESAMPLED = 400_000
-"""Most samples of the refined record; a longer one is not compared."""
+"""Most samples of the refined record; a longer one is not compared, nor one whose step would be too small."""
 
 
 FIELDS = (
@@ -76,7 +76,7 @@ class BlockRecordResponse(ScalarResponse):
         eta [-].
     resampled : Response or None
         The response to the record interpolated band-limited at an eighth of its step; None for a record that would be
-        too long.
+        too long, or its step too small.
     thresholds : ScaleThresholds or None
         Scales of the record at which the outcome changes; None if they were not asked for.
     warnings : tuple of str
@@ -160,9 +160,9 @@ def respond_to_record(
         )
 
     found = solve(record)
-    refined = None
-    if record.samples * REFINEMENT <= MAX_RESAMPLED:
-        refined = solve(record.resampled(record.time_step / REFINEMENT))
+    refined, step = None, record.time_step / REFINEMENT
+    if record.samples * REFINEMENT <= MAX_RESAMPLED and step >= TIME_STEP[0]:
+        refined = solve(record.resampled(step))
     searched = None
     if thresholds:
         highest = min(max(10.0 * uplift, 2.0 * factor), HIGHEST_SCALE)

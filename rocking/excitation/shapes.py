@@ -101,7 +101,7 @@ class AbstractPulse(ABC):
     def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
         """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
         phi = np.asarray(phi, dtype=np.float64)
-        return np.where((phi >= self.start) & (phi <= self.end), self.shape(phi), 0.0)
+        return np.where((phi >= self.start) & (phi <= self.end), self.shape(np.clip(phi, self.start, self.end)), 0.0)
 
     @property
     def monotone_pieces(self) -> tuple[tuple[float, float], ...]:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rocking.errors import InvalidArgumentError, in_range, one_of
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
 from rocking.excitation.records.readers.read_record import read_record
-from rocking.excitation.records.record import UNITS, Record
+from rocking.excitation.records.record import TIME_STEP, UNITS, Record
 from rocking.model.block import Block
 from rocking.model.checks import check
 from rocking.model.parameters import RESTITUTION
@@ -44,6 +44,9 @@ STATED_BY_FILES: dict[str, Any] = dict.fromkeys(("unit", "time_step", "component
 
 MAX_POINTS = 10_000
 """Most levels, and most points of one axis of the map."""
+
+MAX_CELLS = 1_000_000
+"""Most points of the map."""
 
 
 @dataclass(frozen=True)
@@ -226,7 +229,7 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         folder / given["folder"],
         given["pattern"],
         None if given["unit"] is None else one_of("records.unit", given["unit"], UNITS),
-        None if step is None else _number("records.time_step", step, 0.0, math.inf, unit="s"),
+        None if step is None else _number("records.time_step", step, *TIME_STEP, closed="both", unit="s"),
         None if given["component"] is None else str(given["component"]),
         order,
     )
@@ -278,11 +281,10 @@ def _map(given: Any) -> BlockMap:
     _keys("map", given, ("intensity", "half_diagonal", "alpha_deg"))
     angles = _levels("map.alpha_deg", given["alpha_deg"], logarithmic=False)
     in_range("map.alpha_deg", angles, 0.0, 89.0, closed="right", unit="deg")
-    return BlockMap(
-        _number("map.intensity", given["intensity"], 0.0, math.inf),
-        _levels("map.half_diagonal", given["half_diagonal"], logarithmic=False),
-        np.radians(angles),
-    )
+    sizes = _levels("map.half_diagonal", given["half_diagonal"], logarithmic=False)
+    if sizes.size * angles.size > MAX_CELLS:
+        raise InvalidArgumentError("map", f"{sizes.size} times {angles.size} points", f"at most {MAX_CELLS} points")
+    return BlockMap(_number("map.intensity", given["intensity"], 0.0, math.inf), sizes, np.radians(angles))
 
 
 def _sensitivity(given: Any) -> Sensitivity:

@@ -2,6 +2,8 @@
 
 import hashlib
 import math
+import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +12,8 @@ import rocking
 from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.records.record import UNITS
+
+MOTIONS = Path(__file__).parents[2] / "workflow" / "motions"
 
 
 def sine_record(step: float = 0.005, cycles: int = 10, period: float = 0.5, peak: float = 2.0) -> rocking.Record:
@@ -85,6 +89,50 @@ def test_measures_of_a_sine() -> None:
 
 def test_a_record_too_short_for_the_band_has_no_mean_period() -> None:
     assert math.isnan(rocking.Record([0.0, 1.0], 10.0, unit="g").mean_period)
+
+
+def padded_mean_period(a: np.ndarray, dt: float) -> float:
+    """The definition: a whole transform of the record with zeros until the frequencies are 0.05 Hz apart."""
+    size = max(a.size, math.ceil(20.0 / dt))
+    frequency, power = np.fft.rfftfreq(size, dt), np.abs(np.fft.rfft(a, size)) ** 2
+    band = (frequency >= 0.25) & (frequency <= 20.0)
+    return float((power[band] / frequency[band]).sum() / power[band].sum())
+
+
+def test_the_mean_period_is_that_of_the_padded_record() -> None:
+    for path in sorted(MOTIONS.glob("*.csv")):
+        motion = rocking.read_record(path)
+        assert motion.mean_period == padded_mean_period(motion.acceleration, motion.time_step)
+    random = np.random.default_rng(1)
+    for count, step in ((3, 0.02), (50, 0.01), (200, 1e-3), (40, 1e-4), (3000, 1e-4)):  # shorter than a 16th of 20 s
+        short = rocking.Record(random.normal(size=count), step, "m/s2")
+        assert short.mean_period == pytest.approx(padded_mean_period(short.acceleration, step), rel=1e-12)
+
+
+def test_the_mean_period_needs_no_more_memory_than_the_record() -> None:
+    record = rocking.Record([0.0, 1.0, -2.0], 1e-6, "m/s2")
+    assert math.isfinite(record.mean_period)
+    tracemalloc.start()
+    try:
+        assert math.isfinite(record.mean_period)
+        assert tracemalloc.get_traced_memory()[1] < 1_000_000  # a transform of 20 s takes 320 MB
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("step", [1e-300, 1e-12, 9e-7, 10.1, 1e300, math.nan, -0.01])
+def test_time_steps_out_of_range_are_rejected(step: float) -> None:
+    for make in (lambda: rocking.Record([0.0, 1.0], step, "g"), lambda: sine_record().resampled(step)):
+        with pytest.raises(InvalidArgumentError, match=r"`time_step` = .*\[1e-06, 10\] \[s\]"):
+            make()
+
+
+def test_records_that_are_too_long_are_rejected() -> None:
+    assert rocking.Record(np.ones(10_001), 10.0, "g").duration == 1e5
+    with pytest.raises(InvalidArgumentError, match="at most 100000 s, with 10002 samples"):
+        rocking.Record(np.ones(10_002), 10.0, "g")
+    with pytest.raises(InvalidArgumentError, match="at most 10000000 samples, not 10999001"):
+        rocking.Record(np.ones(11_000), 0.01, "g").resampled(1e-5)
 
 
 @pytest.mark.parametrize("order", [0, 1, 2, 4])

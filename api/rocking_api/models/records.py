@@ -10,7 +10,7 @@ from rocking.constants import STANDARD_GRAVITY
 from rocking.dimensional.record_scales import HIGHEST_SCALE
 from rocking.errors import in_range, one_of
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
-from rocking.excitation.records.record import UNITS
+from rocking.excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.blocks import RANGES, HousnerOrNumber, check_block_value, quantity
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params
@@ -50,7 +50,11 @@ class RecordFileParams(Params):
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     name: str = Field("record", description="name of the file, for messages", max_length=200)
     unit: Unit = None
-    time_step: float | None = Field(None, description="time step [s], required if the file states none")
+    time_step: float | None = Field(
+        None,
+        description="time step [s], required if the file states none",
+        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
+    )
     component: str | None = Field(None, description="column or trace of a file with several", max_length=200)
     baseline_order: int | None = Field(
         None,
@@ -62,6 +66,8 @@ class RecordFileParams(Params):
     def check_field(cls, name: str, value: Any) -> None:
         if name in cls.BOUNDS and value is not None:
             in_range(name, value, *cls.BOUNDS[name])
+        elif name == "time_step" and value is not None:
+            in_range(name, value, *TIME_STEP, unit="s")
         elif name == "unit" and value is not None:
             one_of(name, value, UNITS)
         elif name in RANGES or name == "restitution":
@@ -193,9 +199,10 @@ class RecordResponse(BaseModel):
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
     slenderness: float = Field(description="g tan(alpha)/PGA of the scaled record [-]")
     overturned_resampled: bool | None = Field(
-        description="the same under the record interpolated band-limited at an eighth of its step; null: it is too long"
+        description="the same under the record interpolated band-limited at an eighth of its step; null: it is too "
+        "long, or its step too small"
     )
-    peak_rotation_resampled: float | None = Field(description="the same [-]; null if overturned, or too long")
+    peak_rotation_resampled: float | None = Field(description="the same [-]; null if overturned, or not computed")
     thresholds: list[ScaleThreshold] | None = Field(description="ascending; null unless requested")
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"

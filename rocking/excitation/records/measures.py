@@ -17,6 +17,9 @@ MEAN_PERIOD_BAND = 0.25, 20.0
 MEAN_PERIOD_RESOLUTION = 0.05
 """Largest spacing of the frequencies of the mean period [Hz] (Rathje et al. 2004)."""
 
+MAX_PADDING = 16
+"""Samples with appended zeros over those of the record up to which a whole transform is computed [-]."""
+
 
 def _from_zero(increments: Array) -> Array:
     """Cumulative sums of increments (samples - 1,), zero at the first sample, read-only."""
@@ -56,11 +59,22 @@ def significant_duration(a: Array, dt: float, first: float = 0.05, last: float =
 def mean_period(a: Array, dt: float) -> float:
     """T_m = (sum of C^2/f)/(sum of C^2) [s] over the Fourier amplitudes C from 0.25 to 20 Hz (Rathje et al. 1998).
 
-    Zeros are appended until the frequencies are at most 0.05 Hz apart; nan if none lies in the band.
+    Zeros are appended until the frequencies are at most 0.05 Hz apart; nan if none lies in the band. Of a record much
+    shorter than 20 s only the frequencies of the band are computed, so that the memory is that of the record.
     """
     size = max(a.size, math.ceil(1.0 / (MEAN_PERIOD_RESOLUTION * dt)))
-    frequency = np.fft.rfftfreq(size, dt)
-    power = np.abs(np.fft.rfft(a, size)) ** 2
-    band = (frequency >= MEAN_PERIOD_BAND[0]) & (frequency <= MEAN_PERIOD_BAND[1])
-    total = float(power[band].sum())
-    return float((power[band] / frequency[band]).sum() / total) if total > 0.0 else math.nan
+    spacing = 1.0 / (size * dt)
+    lowest, highest = MEAN_PERIOD_BAND
+    k = np.arange(math.floor(lowest / spacing), min(math.ceil(highest / spacing), size // 2) + 1)
+    k = k[(k * spacing >= lowest) & (k * spacing <= highest)]
+    if k.size == 0:
+        return math.nan
+    if size <= MAX_PADDING * a.size:
+        amplitude = np.fft.rfft(a, size)[k]
+    else:
+        from scipy.signal import zoom_fft  # noqa: PLC0415  # takes longer to load than the package
+
+        amplitude = np.asarray(zoom_fft(a, [k[0] / size, (k[-1] + 1) / size], m=k.size, fs=1.0), np.complex128)
+    power = np.abs(amplitude) ** 2
+    total = float(power.sum())
+    return float((power / (k * spacing)).sum() / total) if total > 0.0 else math.nan

@@ -18,6 +18,9 @@ MAX_BASELINE_ORDER = 6
 MAX_RATIO = 1000
 """Largest numerator and denominator of the ratio of two time steps [-]."""
 
+MAX_SAMPLES = 10_000_000
+"""Most samples of a resampled record [-], as of one that is read."""
+
 RATIO_TOLERANCE = 1e-9
 """Relative difference of a ratio of time steps from a fraction [-]: steps are often given in a few digits."""
 
@@ -52,7 +55,8 @@ def resample(a: Array, dt: float, time_step: float) -> Array:
     Raises
     ------
     InvalidArgumentError
-        If the ratio of the steps is not a fraction of integers up to `MAX_RATIO`, or fewer than 2 samples remain.
+        If the ratio of the steps is not a fraction of integers up to `MAX_RATIO`, or the samples would be fewer than 2
+        or more than `MAX_SAMPLES`.
     """
     from scipy.signal import resample_poly  # noqa: PLC0415  # takes longer to load than the package
 
@@ -65,5 +69,7 @@ def resample(a: Array, dt: float, time_step: float) -> Array:
     count = math.floor((a.size - 1) * ratio * (1.0 + RATIO_TOLERANCE)) + 1
     if count < 2:
         raise InvalidArgumentError("time_step", step, f"at most the duration, {(a.size - 1) * dt:g} s")
+    if count > MAX_SAMPLES:
+        raise InvalidArgumentError("time_step", step, f"a step that gives at most {MAX_SAMPLES} samples, not {count}")
     found = resample_poly(a, ratio.numerator, ratio.denominator, window=("kaiser", STOP_BAND))
     return np.asarray(found[:count], dtype=np.float64)

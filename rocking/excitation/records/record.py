@@ -21,6 +21,12 @@ UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01, "mm/s2": 0.001, "g": STANDARD_
 MAX_ACCELERATION = 1e6
 """Largest acceleration of a record [m/s2]; a larger value is a fill value or a wrong unit."""
 
+TIME_STEP = 1e-6, 10.0
+"""Smallest and largest time step of a record [s]: laboratories sample at up to a megahertz."""
+
+MAX_DURATION = 1e5
+"""Longest duration of a record [s], more than a day."""
+
 
 @final
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -32,7 +38,7 @@ class Record:
     acceleration : array_like (samples,)
         At least two samples, finite, not all of them zero.
     time_step : float
-        Time between the samples [s], > 0.
+        Time between the samples [s], [1e-6, 10]; the duration is at most 1e5 s.
     unit : str
         Unit of the samples, a key of `UNITS`: "m/s2", "cm/s2", "gal", "mm/s2" or "g". It has to be stated.
     name : str
@@ -64,9 +70,12 @@ class Record:
             raise InvalidArgumentError("acceleration", f"shape {samples.shape}", "one dimension, at least 2 samples")
         if not samples.any():
             raise InvalidArgumentError("acceleration", "all samples 0", "a motion that is not zero")
-        step = in_range("time_step", time_step, 0.0, np.inf, closed="neither", unit="s")
+        step = in_range("time_step", time_step, *TIME_STEP, unit="s")
         if step.ndim:
             raise InvalidArgumentError("time_step", time_step, "one number")
+        if (samples.size - 1) * step > MAX_DURATION:
+            allowed = f"a duration of at most {MAX_DURATION:g} s, with {samples.size} samples"
+            raise InvalidArgumentError("time_step", float(step), allowed)
         scaled = np.array(samples * factor)  # a copy, which the caller cannot change
         scaled.flags.writeable = False
         given = {"acceleration": scaled, "time_step": float(step), "name": name, "source": source}
@@ -190,13 +199,15 @@ class Record:
         Parameters
         ----------
         time_step : float
-            The new step [s]; its ratio to the old one must be a fraction of integers up to 1000.
+            The new step [s], [1e-6, 10]; its ratio to the old one must be a fraction of integers up to 1000. At most
+            10,000,000 samples are made.
 
         Raises
         ------
         InvalidArgumentError
-            If the step is not such a fraction, or fewer than 2 samples would remain.
+            If the step is not such a fraction, or the samples would be fewer than 2 or too many.
         """
+        in_range("time_step", time_step, *TIME_STEP, unit="s")
         samples = resample(self.acceleration, self.time_step, time_step)
         return Record(
             samples, time_step, "m/s2", self.name, self._processed(f"resampled from {self.time_step:g} s, band-limited")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from os import PathLike
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 from rocking.errors import InvalidArgumentError, RecordFileError, in_range, one_of
 from rocking.excitation.records.readers import columns, esm, knet, peer_at2, seismic
 from rocking.excitation.records.readers.lines import TextFile
-from rocking.excitation.records.record import UNITS, Record
+from rocking.excitation.records.record import TIME_STEP, UNITS, Record
 
 MAX_BYTES = 200_000_000
 """Largest file that is read [bytes]."""
@@ -36,7 +35,7 @@ def read_record(
         Unit of the samples, a key of `rocking.excitation.records.record.UNITS`. Required where the file states none;
         refused where it states another.
     time_step : float, optional
-        Time step [s], > 0; likewise.
+        Time step [s], [1e-6, 10]; likewise.
     component : str, optional
         Name of the column or trace, where the file has several.
 
@@ -71,7 +70,7 @@ def parse_record(
     if unit is not None:
         one_of("unit", unit, UNITS)
     if time_step is not None:
-        in_range("time_step", time_step, 0.0, math.inf, closed="neither", unit="s")
+        in_range("time_step", time_step, *TIME_STEP, unit="s")
     if len(content) > MAX_BYTES:
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
     if seismic.is_seismic(content):
