@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import product
 
-from rocking.errors import InvalidArgumentError, one_of
+from rocking.errors import InvalidArgumentError, in_range, one_of
 
 
 class Orientation(Enum):
@@ -137,6 +137,9 @@ VARIABLES: Mapping[str, Quantity] = {
 _FUNCTIONS: Mapping[str, Callable[[float], float]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
 
 _SIGN = "sgn"
+
+MAX_COMBINATIONS = 1_000_000
+"""Most combinations of exponents that are tried [-]."""
 """The sign of an angle, theta/|theta|: angle and magnitude have the same orientation, their quotient has none."""
 
 
@@ -289,7 +292,7 @@ def admissible_exponents(
     factors : mapping of str to Orientation
         The arguments of the response function; those without orientation are free and left out of the answer.
     largest : int
-        Largest absolute value of an exponent, >= 0.
+        Largest absolute value of an exponent, >= 0; at most 1,000,000 combinations are tried.
 
     Returns
     -------
@@ -301,7 +304,10 @@ def admissible_exponents(
     The paper prints a_g/a for a_g/g in (4.8); (4.3) and (4.7) have a_g/g.
     """
     oriented = {name: orientation for name, orientation in factors.items() if orientation is not Orientation.L0}
-    choices = product(range(-largest, largest + 1), repeat=len(oriented))
+    most = int(0.5 * (MAX_COMBINATIONS ** (1.0 / max(len(oriented), 1)) - 1.0))
+    if in_range("largest", largest, 0, most) != int(largest):
+        raise InvalidArgumentError("largest", largest, "a whole number")
+    choices = product(range(-int(largest), int(largest) + 1), repeat=len(oriented))
     candidates = (dict(zip(oriented, choice, strict=True)) for choice in choices)
     return [exponents for exponents in candidates if is_homogeneous(target, oriented, exponents)]  # (4.8), (4.9)
 

@@ -140,7 +140,7 @@ def serve(
         str | None,
         typer.Option(help="Folder that the workflow filled; ROCKING_RESULTS, or results.", show_default=False),
     ] = None,
-    workers: Annotated[int, typer.Option(help="Number of processes that serve.", min=1)] = 1,
+    workers: Annotated[int, typer.Option(help="Number of processes that serve.", min=1, max=256)] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
     from importlib.metadata import entry_points

@@ -26,9 +26,9 @@ def kappa_lambda(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Arra
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     phi = omega * EXPANSION_TIME + uplift_phase(a)
@@ -43,15 +43,16 @@ def sine_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLik
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau since uplift [-].
     """
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     phi, step = omega * EXPANSION_TIME + uplift_phase(a), tau - EXPANSION_TIME
-    return np.asarray(np.sin(phi) * (1 - (omega * step) ** 2 / 2) + omega * np.cos(phi) * step)  # (3.24)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(np.sin(phi) * (1 - (omega * step) ** 2 / 2) + omega * np.cos(phi) * step)  # (3.24)
 
 
 def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
@@ -60,16 +61,17 @@ def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: A
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau since uplift [-].
     """
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     kappa, lambda_ = kappa_lambda(a, omega)
     decaying, growing, step = kappa / np.e, lambda_ * np.e, tau - EXPANSION_TIME
-    return np.asarray((decaying + growing) * (1 + step**2 / 2) + (growing - decaying) * step)  # (3.25)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray((decaying + growing) * (1 + step**2 / 2) + (growing - decaying) * step)  # (3.25)
 
 
 def ad_hoc_sine(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
@@ -78,9 +80,9 @@ def ad_hoc_sine(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLik
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau since uplift [-].
     """
@@ -105,9 +107,9 @@ def ad_hoc_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arra
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau since uplift [-].
     """
@@ -121,9 +123,9 @@ def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arra
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -140,9 +142,9 @@ def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 
@@ -165,7 +167,7 @@ def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLik
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,19 +9,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking.errors import broadcast
 from rocking.model.checks import check
-from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, Parameter
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, Parameter
 
 Array = NDArray[np.float64]
 
-AMPLITUDE = Parameter("amplitude", "a", "-", 1.0, math.inf, "left", "amplitude of the pulse over g tan(alpha)")
+AMPLITUDE = Parameter(
+    "amplitude", "a", "-", 1.0, 1.0 / SLENDERNESS.lower, "both", "amplitude of the pulse over g tan(alpha)"
+)
 """Below 1 the block does not uplift."""
 
-ANY_FREQUENCY_RATIO = replace(FREQUENCY_RATIO, lower=0.0, upper=math.inf, closed="neither")
+UPLIFTING_AMPLITUDE = replace(AMPLITUDE, closed="right")
+
+ANY_FREQUENCY_RATIO = replace(FREQUENCY_RATIO, lower=1e-12, upper=1e12)
 """The formulas hold beyond the range of the solver."""
 
 POSITIVE_RESTITUTION = replace(RESTITUTION, closed="right")
 
-TIME = Parameter("time", "tau", "-", 0.0, math.inf, "left", "time p t since uplift")
+TIME = Parameter("time", "tau", "-", 0.0, np.inf, "left", "time p t since uplift")
 
 _RANGES = {parameter.name: parameter for parameter in (AMPLITUDE, ANY_FREQUENCY_RATIO, RESTITUTION)}
 

@@ -26,9 +26,9 @@ def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Ar
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -60,9 +60,9 @@ def case_1_1_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     tau = case_1_1_impact_time(amplitude, frequency_ratio)
     velocity = angular_velocity(amplitude, frequency_ratio, np.where(np.isnan(tau), 0.0, tau))  # (3.22)
@@ -77,9 +77,9 @@ def overturning_condition(
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
     time : array_like
@@ -96,8 +96,9 @@ def overturning_condition(
         amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution, time=time, velocity=velocity
     )
     C0, phi = coefficients(a, omega).C0, omega * tau + uplift_phase(a)
-    forced = omega * np.exp(tau - pulse_end(a, omega)) - omega * np.cos(phi) - np.sin(phi)
-    return np.asarray(2 * eta * v + C0 * forced - 2)  # (3.19), (3.20)
+    with np.errstate(over="ignore", invalid="ignore"):
+        forced = omega * np.exp(tau - pulse_end(a, omega)) - omega * np.cos(phi) - np.sin(phi)
+        return np.asarray(2 * eta * v + C0 * forced - 2)  # (3.19), (3.20)
 
 
 def case_1_1_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
@@ -106,9 +107,9 @@ def case_1_1_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitutio
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 
@@ -128,16 +129,16 @@ def amplitude_of_impact_time(impact_time: ArrayLike, frequency_ratio: ArrayLike)
     Parameters
     ----------
     impact_time : array_like
-        tau_i1 since uplift [-], (0, p T_ex].
+        tau_i1 since uplift [-], [1e-30, p T_ex].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
     ndarray
         a [-]: sqrt(a^2 - 1) = [omega^2 (cosh tau - 1) - (1 - cos omega tau)]/[omega sinh tau - sin omega tau].
     """
-    in_range("impact_time", impact_time, 0.0, np.inf, closed="neither")
+    in_range("impact_time", impact_time, 1e-30, np.inf, closed="left")
     tau, omega = checked(impact_time=impact_time, frequency_ratio=frequency_ratio)
     Yc, Ys = arc_terms(tau, omega)
     return np.asarray(np.hypot(1.0, Yc / Ys))  # (3.21)
@@ -163,7 +164,7 @@ def case_1_1_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 

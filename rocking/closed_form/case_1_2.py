@@ -30,9 +30,9 @@ def case_1_2_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Ar
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau since uplift [-]; the value is 2 theta/alpha only from the end of the pulse on.
     """
@@ -49,9 +49,9 @@ def case_1_2_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Ar
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -73,9 +73,9 @@ def free_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayL
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau since uplift [-].
     """
@@ -83,7 +83,7 @@ def free_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayL
     decaying, growing = after_pulse_coefficients(a, omega)
     T = pulse_end(a, omega)
     since_end = tau - T
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         return np.asarray((growing * np.exp(T) * np.exp(since_end) - decaying * np.exp(-since_end)) / 2)  # (3.14)
 
 
@@ -93,9 +93,9 @@ def impact_velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike) ->
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -119,9 +119,9 @@ def case_1_2_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     squared = impact_velocity_squared(amplitude, frequency_ratio)
     return np.asarray(np.sqrt(np.where(squared >= 0, squared, np.nan)))  # (3.15)
@@ -133,9 +133,9 @@ def case_1_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitutio
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 
@@ -156,9 +156,9 @@ def condition_3_18(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Notes
     -----
@@ -178,7 +178,7 @@ def case_1_2_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> A
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 

@@ -17,9 +17,9 @@ def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -36,9 +36,9 @@ def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arr
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -57,7 +57,7 @@ def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------

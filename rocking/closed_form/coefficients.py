@@ -35,7 +35,7 @@ def uplift_phase(amplitude: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a = a_g/(g alpha) [-], [1, inf).
+        a = a_g/(g alpha) [-], [1, 1e12].
 
     Returns
     -------
@@ -54,9 +54,9 @@ def pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     return np.asarray((2 * np.pi - uplift_phase(a)) / omega)
@@ -68,9 +68,9 @@ def integration_constants(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> t
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     starred = coefficients(amplitude, frequency_ratio)
     return np.asarray(starred.A0 / 2), np.asarray(starred.B0 / 2)  # (3.7)
@@ -82,9 +82,9 @@ def coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Coefficien
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     s, K = cot_psi(a), omega / (omega * omega + 1)
@@ -100,9 +100,9 @@ def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -125,9 +125,9 @@ def d0_star(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -147,9 +147,9 @@ def d0_star_expanded(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     s, T = cot_psi(a), pulse_end(a, omega)

@@ -31,9 +31,9 @@ def rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) 
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau = p t since uplift [-], [0, inf).
     """
@@ -50,9 +50,9 @@ def angular_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau = p t since uplift [-], [0, inf).
     """
@@ -95,9 +95,9 @@ def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     time : array_like
         tau = p t since uplift [-], [0, inf).
     """
@@ -105,7 +105,8 @@ def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arr
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     A0, B0, C0 = coefficients(a, omega)
     forced = C0 * np.sin(omega * tau + uplift_phase(a))
-    return np.asarray((A0 * np.exp(-tau) + B0 * np.exp(tau) + forced - 2) / 2)  # (3.4), left side of (3.21)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray((A0 * np.exp(-tau) + B0 * np.exp(tau) + forced - 2) / 2)  # (3.4), left side of (3.21)
 
 
 def state_at_pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
@@ -114,9 +115,9 @@ def state_at_pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tupl
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     """
     T = pulse_end(amplitude, frequency_ratio)
     return rotation(amplitude, frequency_ratio, T), angular_velocity(amplitude, frequency_ratio, T)  # (3.11)

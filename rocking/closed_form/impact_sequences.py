@@ -15,15 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO
+from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
 from rocking.closed_form.no_impact import first_uplift_phase, margin_after_impact
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking.model.checks import check
+from rocking.model.checks import check, check_window
 from rocking.model.parameters import RESTITUTION
 
 _SAMPLES = 48
 """Points per radian of the pulse at which a change of sign of theta is looked for [-]: no two impacts are closer."""
+
+MAX_IMPACTS = 1000
+"""Most impacts that are followed [-]."""
 
 _AMPLITUDES = 401
 """Amplitudes at which overturning is looked for first [-]."""
@@ -46,13 +49,13 @@ def impacts_in_pulse(
     pulse : str or AbstractPulse
         A sum of sinusoids: sine, cosine, C1, ...
     amplitude : float
-        a [-], (1, inf).
+        a [-], (1, 1e12].
     frequency_ratio : float
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : float
         eta [-], [0, 1].
     most : int
-        Number of impacts after which the motion is no longer followed, >= 1.
+        Number of impacts after which the motion is no longer followed, 1 to 1000.
 
     Returns
     -------
@@ -74,9 +77,10 @@ def _motion(
     shape = as_pulse(pulse)
     if not isinstance(shape, SinusoidalPulse):
         raise InvalidArgumentError("pulse", shape.name, "a sum of sinusoids")
-    a = float(in_range("amplitude", amplitude, 1.0, math.inf, closed="neither"))
+    a = float(check(UPLIFTING_AMPLITUDE, amplitude))
     omega = float(check(ANY_FREQUENCY_RATIO, frequency_ratio))
     eta = float(check(RESTITUTION, restitution))
+    in_range("most", most, 1, MAX_IMPACTS)
     phase, y_dot = first_uplift_phase(shape, a), 0.0
     found: list[Impact] = []
     if math.isnan(phase):
@@ -116,14 +120,16 @@ class _Arc:
     def rotation(self, phi: NDArray[np.float64] | float) -> NDArray[np.float64]:
         """theta/alpha [-]."""
         s = (np.asarray(phi) - self.phase) / self.omega
-        return np.asarray(
-            self.side + self._forced(np.asarray(phi))[0] + self.decaying * np.exp(-s) + self.growing * np.exp(s)
-        )
+        with np.errstate(over="ignore", invalid="ignore"):
+            free = self.decaying * np.exp(-s) + self.growing * np.exp(s)
+        return np.asarray(self.side + self._forced(np.asarray(phi))[0] + free)
 
     def velocity(self, phi: NDArray[np.float64] | float) -> NDArray[np.float64]:
         """d(theta/alpha)/d tau [-]."""
         s = (np.asarray(phi) - self.phase) / self.omega
-        return np.asarray(self._forced(np.asarray(phi))[1] - self.decaying * np.exp(-s) + self.growing * np.exp(s))
+        with np.errstate(over="ignore", invalid="ignore"):
+            free = self.growing * np.exp(s) - self.decaying * np.exp(-s)
+        return np.asarray(self._forced(np.asarray(phi))[1] + free)
 
     def first_root(self) -> float | None:
         """Phase of the first return to theta = 0 within the pulse; None if there is none, nan if it is too early."""
@@ -150,7 +156,7 @@ def margin_after_impacts(
     pulse, amplitude, frequency_ratio, restitution
         As for `impacts_in_pulse`.
     impacts : int
-        Impacts before overturning, >= 1.
+        Impacts before overturning, 1 to 999.
 
     Returns
     -------
@@ -159,6 +165,7 @@ def margin_after_impacts(
         boundary of overturning after these impacts, positive inside it; nan if there are fewer impacts, or one more
         while the pulse acts.
     """
+    in_range("impacts", impacts, 1, MAX_IMPACTS - 1)
     found, last = _motion(pulse, amplitude, frequency_ratio, restitution, impacts + 1)
     if len(found) == impacts:
         return margin_after_impact(pulse, amplitude, frequency_ratio, restitution, *found[-1])
@@ -187,7 +194,7 @@ def overturning_interval(
     pulse, frequency_ratio, restitution, impacts
         As for `margin_after_impacts`.
     amplitude : (float, float)
-        Smallest and largest a considered [-], 1 < low < high.
+        Smallest and largest a considered [-], 1 < low < high <= 1e12.
 
     Returns
     -------
@@ -195,10 +202,7 @@ def overturning_interval(
         a [-], roots of the margin; nan at an end where the range ends because the number of impacts changes, and (nan,
         nan) if no amplitude of a grid of 401 is inside.
     """
-    low, high = amplitude
-    if not 1.0 < low < high:
-        raise InvalidArgumentError("amplitude", amplitude, "two ascending amplitudes above 1")
-    grid = np.geomspace(low, high, _AMPLITUDES)
+    grid = _amplitudes(amplitude)
 
     def margin(a: float) -> float:
         return margin_after_impacts(pulse, a, frequency_ratio, restitution, impacts)
@@ -243,7 +247,8 @@ def island_tip(
     InvalidArgumentError
         If the window has no such tip.
     """
-    grid = np.geomspace(*amplitude, _AMPLITUDES)
+    grid = _amplitudes(amplitude)
+    low, high = check_window(ANY_FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
 
     def best(omega: float) -> tuple[float, float]:
         values = np.array([margin_after_impacts(pulse, float(a), omega, restitution, impacts) for a in grid])
@@ -257,8 +262,13 @@ def island_tip(
         )  # fmt: skip
         return max(-float(found.fun), float(values[k])), float(found.x)
 
-    low, high = frequency_ratio
     if not best(low)[0] > 0 > best(high)[0]:
         raise InvalidArgumentError("frequency_ratio", frequency_ratio, "a window in which one region ends")
     tip = float(brentq(lambda omega: best(omega)[0], low, high, xtol=1e-10))
     return tip, best(tip)[1]
+
+
+def _amplitudes(window: tuple[float, float]) -> NDArray[np.float64]:
+    """The grid of amplitudes over a window [-]."""
+    ends = check_window(UPLIFTING_AMPLITUDE, *window, ("amplitude", "amplitude[1]"))
+    return np.geomspace(*ends, _AMPLITUDES)

@@ -17,9 +17,9 @@ def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -38,7 +38,7 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -65,7 +65,7 @@ def limit_velocity(frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------

@@ -56,7 +56,7 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
     pulse : str or AbstractPulse
         Closed form for sums of sinusoids, composite Gauss quadrature for wavelets.
     frequency_ratio : float
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     start_phase : float
         phi at tau_0 [rad], within the pulse.
     """
@@ -90,7 +90,7 @@ def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequenc
     amplitude : float
         a [-], (0, inf).
     frequency_ratio : float
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -124,7 +124,7 @@ def margin_after_impact(
     amplitude : float
         a [-], (0, inf).
     frequency_ratio : float
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : float
         eta [-], [0, 1].
     impact_phase : float

@@ -30,7 +30,7 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 

@@ -30,7 +30,8 @@ def peak_of_velocity(velocity: ArrayLike) -> Array:
     The first form of (4.12) is printed with mgR [1 - cos(alpha - theta_m)]. The potential energy gained in free rocking
     is mgR [cos(alpha - theta_m) - cos alpha], and only its linearisation yields the second form.
     """
-    squared = in_range("velocity", velocity, 0.0, np.inf, closed="left") ** 2
+    with np.errstate(over="ignore"):
+        squared = in_range("velocity", velocity, 0.0, np.inf, closed="left") ** 2
     return _peak(squared)
 
 
@@ -46,9 +47,9 @@ def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 
@@ -69,9 +70,9 @@ def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, res
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
 
@@ -90,9 +91,9 @@ def scale_function(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -117,9 +118,9 @@ def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: Ar
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
     """
@@ -133,9 +134,9 @@ def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restit
     Parameters
     ----------
     amplitude : array_like
-        a [-], [1, inf).
+        a [-], [1, 1e12].
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
     restitution : array_like
         eta [-], [0, 1].
     """

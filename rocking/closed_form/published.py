@@ -16,7 +16,7 @@ def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf); the pulse lasts p t_1 = pi/omega.
+        omega [-], [1e-12, 1e12]; the pulse lasts p t_1 = pi/omega.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def half_sine_amplitude(frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -55,7 +55,7 @@ def cosine_amplitude(frequency_ratio: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_ratio : array_like
-        omega [-], (0, inf).
+        omega [-], [1e-12, 1e12].
 
     Returns
     -------

@@ -11,7 +11,8 @@ from rocking.closed_form.arguments import Array, checked
 def residual(falling: ArrayLike, growing: ArrayLike, constant: ArrayLike, time: ArrayLike) -> Array:
     """I1 e^-tau + I2 e^tau + I3, left side of (A 1); all arguments [-], any broadcast shape."""
     I1, I2, I3, tau = checked(falling=falling, growing=growing, constant=constant, time=time)
-    return np.asarray(I1 * np.exp(-tau) + I2 * np.exp(tau) + I3)  # (A 1)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(I1 * np.exp(-tau) + I2 * np.exp(tau) + I3)  # (A 1)
 
 
 def rising_root(falling: ArrayLike, growing: ArrayLike, constant: ArrayLike) -> Array:

@@ -21,7 +21,7 @@ from rocking.model import block as geometry
 from rocking.model.checks import check
 from rocking.model.linkage import LinearEquation
 from rocking.model.masonry_arch import MasonryArch
-from rocking.model.parameters import RESTITUTION
+from rocking.model.parameters import FREQUENCY_PARAMETER, RESTITUTION
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -36,7 +36,7 @@ class EquivalentBlock(Block):
     alpha : float
         Rotation at which the restoring moment vanishes [rad], (0, pi/2).
     frequency_parameter : float
-        p [rad/s], > 0.
+        p [rad/s], [1e-6, 1e6].
     restitution : float
         eta [-], [0, 1].
     uplift_acceleration : float, optional
@@ -71,7 +71,7 @@ class EquivalentBlock(Block):
         top_height: float | None = None,
     ) -> None:
         in_range("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
-        in_range("frequency_parameter", frequency_parameter, 0.0, math.inf, closed="neither", unit="rad/s")
+        check(FREQUENCY_PARAMETER, frequency_parameter)
         in_range("gravity", gravity, 0.0, math.inf, closed="neither", unit="m/s2")
         check(RESTITUTION, restitution)
         for name, value, unit in (
@@ -180,10 +180,11 @@ class EquivalentBlock(Block):
         in_range("inertia", inertia, 0.0, math.inf, closed="neither", unit="kg m2")
         in_range("base", base, 0.0, math.inf, closed="neither", unit="m")
         in_range("centre_height", centre_height, 0.0, math.inf, closed="neither", unit="m")
+        in_range("gravity", gravity, 0.0, math.inf, closed="neither", unit="m/s2")
         radius = math.hypot(0.5 * base, centre_height)
-        about_pivot = inertia + mass * radius**2
+        about_pivot = inertia + mass * radius * radius
         # angular momentum about the new pivot, as for (2.4)
-        restitution = 1.0 - 0.5 * mass * base**2 / about_pivot
+        restitution = 1.0 - 0.5 * mass * base * base / about_pivot
         if restitution < 0.0:
             raise InvalidArgumentError("base", base, "a base so narrow that the body does not bounce at impacts")
         return cls(
@@ -285,7 +286,7 @@ class EquivalentBlock(Block):
         Parameters
         ----------
         radius, thickness : float
-            Of the centre line, and of the voussoirs [m], > 0.
+            Of the centre line, [1e-3, 1e6], and of the voussoirs, from 1e-6 to below 2 times the radius [m].
         embrace : float
             Angle between the springings [rad], (0, pi].
         voussoirs : int

@@ -193,6 +193,7 @@ def problem_of_pulse(
     InvalidArgumentError
         If no block has these groups: alpha is pi/2 or more, or contradicts `groups.cos_alpha`.
     """
+    in_range("gravity", gravity, 0.0, np.inf, closed="neither", unit="m/s2")
     slope = np.asarray(groups.slenderness) * np.asarray(peak_acceleration) / gravity
     alpha = np.asarray(slope if group_set.is_slender else np.arctan(slope))
     if groups.cos_alpha is not None:

@@ -105,4 +105,4 @@ class Block:
 
     def top_displacement(self, rotation: float) -> float:
         """Horizontal displacement of a top corner [m] at a rotation [rad]: 2 h sin(theta), above the pivot."""
-        return self.top_height * math.sin(rotation)
+        return self.top_height * math.sin(rotation) if math.isfinite(rotation) else math.nan

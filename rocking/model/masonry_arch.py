@@ -22,6 +22,12 @@ from rocking.model.linkage import FourBarLinkage, LinearEquation, Link, Velocity
 MOST_VOUSSOIRS = 24
 """Largest number of voussoirs: the number of mechanisms grows with its fourth power."""
 
+RADII = 1e-3, 1e6
+"""Smallest and largest radius [m]."""
+
+THINNEST = 1e-6
+"""Smallest thickness over the radius [-]; such an arch does not stand."""
+
 
 class Mechanism(NamedTuple):
     """A mechanism of an arch.
@@ -53,9 +59,9 @@ class MasonryArch:
     Parameters
     ----------
     radius : float
-        Radius of the centre line [m], > 0.
+        Radius of the centre line [m], [1e-3, 1e6].
     thickness : float
-        [m], > 0 and below twice the radius.
+        [m], from 1e-6 to below 2 times the radius.
     embrace : float
         Angle between the springings [rad], (0, pi].
     voussoirs : int
@@ -76,8 +82,9 @@ class MasonryArch:
     gravity: float
 
     def __post_init__(self) -> None:
-        in_range("radius", self.radius, 0.0, math.inf, closed="neither", unit="m")
-        in_range("thickness", self.thickness, 0.0, 2.0 * self.radius, closed="neither", unit="m")
+        in_range("radius", self.radius, *RADII, unit="m")
+        thinnest, thickest = THINNEST * self.radius, 2.0 * self.radius
+        in_range("thickness", self.thickness, thinnest, thickest, closed="left", unit="m")
         in_range("embrace", self.embrace, 0.0, math.pi, closed="right", unit="rad")
         in_range("gravity", self.gravity, 0.0, math.inf, closed="neither", unit="m/s2")
         if self.voussoirs not in range(4, MOST_VOUSSOIRS + 1):
@@ -103,10 +110,12 @@ class MasonryArch:
         Raises
         ------
         InvalidArgumentError
-            If the arch is too thin to stand under its weight.
+            If the arch is too thin to stand under its weight, or does not open.
         """
         quadruples = itertools.combinations(range(self.voussoirs + 1), 4)
         found = [one for joints in quadruples for face in (-1, 1) if (one := self._opening(joints, face))]
+        if not found:
+            raise InvalidArgumentError("embrace", self.embrace, "an angle with which the arch opens at four joints")
         if any(one.equation.restoring <= 0.0 for one in found):
             raise InvalidArgumentError("thickness", self.thickness, "a thickness with which the arch stands by itself")
         return min(found, key=lambda one: one.uplift_acceleration)

@@ -5,14 +5,15 @@ Separate from `hazard`, so that a configuration is checked without the imports o
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.errors import InvalidArgumentError, in_range
 
 Array = NDArray[np.float64]
+
+RANGE = 1e-30, 1e30
+"""Smallest and largest intensity and rate: the number of nodes between two points grows with their ratio."""
 
 
 def check_hazard_curve(hazard_curve: tuple[ArrayLike, ArrayLike]) -> tuple[Array, Array]:
@@ -25,8 +26,8 @@ def check_hazard_curve(hazard_curve: tuple[ArrayLike, ArrayLike]) -> tuple[Array
     """
     if len(hazard_curve) != 2:
         raise InvalidArgumentError("hazard_curve", f"{len(hazard_curve)} arrays", "intensities and annual rates")
-    x = in_range("hazard_curve intensity", hazard_curve[0], 0.0, math.inf, closed="neither")
-    rates = in_range("hazard_curve rate", hazard_curve[1], 0.0, math.inf, closed="neither", unit="1/year")
+    x = in_range("hazard_curve intensity", hazard_curve[0], *RANGE)
+    rates = in_range("hazard_curve rate", hazard_curve[1], *RANGE, unit="1/year")
     if x.ndim != 1 or x.size < 2 or x.shape != rates.shape or not np.all(np.diff(x) > 0.0):
         raise InvalidArgumentError(
             "hazard_curve", (x.shape, rates.shape), "ascending intensities, two at least, and rates"

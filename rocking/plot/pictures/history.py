@@ -49,7 +49,7 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
         r"$\alpha$", (1.0, alpha), xycoords=("axes fraction", "data"), xytext=(2, 0), textcoords="offset points",
         va="center", color=GREY,
     )  # fmt: skip
-    ax.set_xlim(0.0, float(x.values[-1]))
+    ax.set_xlim(0.0, float(x.values[-1]) or None)  # one sample has no length
     ax.set_xlabel(label_of(x))
     ax.set_ylabel(r"rotation $\theta$ [deg]" if in_degrees else r"rotation $\theta/\alpha$ [-]")
     ax.set_title(Outcome[data.attrs["outcome"]].sentence, loc="right")
@@ -82,7 +82,7 @@ def ground_acceleration(data: xr.Dataset, ax: Axes | None = None, **style: Any) 
         ax.axhline(sign * uplift, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
     ax.axhline(0.0, color=GREY, linewidth=0.5)
     ax.plot(x, ground.values, **({"color": "black"} | style))
-    ax.set_xlim(0.0, float(x.values[-1]))
+    ax.set_xlim(0.0, float(x.values[-1]) or None)  # one sample has no length
     ax.set_xlabel(label_of(x))
     ax.set_ylabel("ground\nacceleration" + (" [m/s$^2$]" if in_si else "\n" + r"over $g\,\tan\alpha$ [-]"))
     return ax
