@@ -1,0 +1,449 @@
+"""Every number that enters through Python, the command line or HTTP, from 1e-300 to 1e300, under a limit of memory.
+
+`python -m tests.api.extreme_numbers RESULTS` replaces one number of an ordinary call at a time and prints the faults:
+errors other than those about an argument, warnings, status 500, calls beyond the time limit. The parameters are read
+from the signatures, the commands and the OpenAPI description; one that has no ordinary value here is a fault as well.
+`--only NAME` restricts it to the calls whose name contains NAME.
+"""
+
+import argparse
+import inspect
+import json
+import math
+import re
+import resource
+import signal
+import sys
+import tempfile
+import time
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from types import FrameType
+from typing import Any
+from unittest.mock import patch
+
+import typer.main
+from fastapi.testclient import TestClient
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
+from typer.testing import CliRunner
+
+import rocking
+from rocking.cli.app import app as command_line
+from rocking.errors import InvalidArgumentError
+from rocking.groups import Groups, GroupSet, Problem
+from rocking.orientation import Orientation
+from tests.suites.motions import noise
+
+MEMORY = 2 * 1024**3
+"""Limit of the writable memory of the process [bytes]."""
+
+SECONDS = 20.0
+"""Time limit of a call [s]."""
+
+GRANTED = 0.3
+"""Time limit of a request of heavy work in the service [s]; the answer is 504 then."""
+
+POWERS = (300, 30, 12, 6)
+EXTREMES = (
+    *(sign * 10.0 ** (end * power) for power in POWERS for end in (-1, 1) for sign in (1, -1)),
+    *(0.0, math.nan, math.inf, -math.inf),
+)
+"""Values that replace each number."""
+
+INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
+"""Values that replace an integer as well."""
+
+NUMBERS: dict[str, Any] = {
+    "slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85, "alpha": 0.3, "tolerance": 1e-6, "threads": 1,
+    "highest_amplitude": 10.0, "nodes": 16, "duration": 5.0, "samples": 20, "scale": 1.2, "period": 0.6,
+    "half_width": 0.25, "half_height": 1.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
+    "frequency_parameter": 2.0, "pulse_frequency": 10.0, "cycles": 2.0, "phase": 0.5,
+    "acceleration": [0.0, 1.0, -2.0, 0.5], "time_step": 0.01, "order": 1,
+    "intensity": [3.0, 9.0], "demand": 0.5, "confidence": 0.9, "restitution_step": 0.05,
+    "hazard_curve": ([1.0, 10.0], [1e-2, 1e-4]),
+    "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,
+    "stiffness": 500.0, "restoring": 100.0, "load": 200.0,
+    "uplift_acceleration": 2.0, "radius": 4.0, "thickness": 0.6, "embrace": 2.7, "voussoirs": 8,
+    "amplitude": 4.0, "time": 0.5, "velocity": 0.5, "rotation": 0.5, "scaled": 0.5, "impact_time": 1.5,
+    "falling": 1.0, "growing": 0.5, "constant": 0.2, "most": 2, "impacts": 1,
+    "start_phase": 1.0, "impact_phase": 3.0, "impact_velocity": 0.5,
+    "exponents": {"a_g/g": 1, "alpha": -2}, "largest": 2, "cos_alpha": math.cos(0.3),
+}  # fmt: skip
+"""Ordinary values of the parameters of Python by their names."""
+
+WINDOWS: dict[str, Any] = {
+    "rocking.overturning_boundary": {"frequency_ratio": (2.0, 3.0), "slenderness": (0.3, 0.6)},
+    "rocking.Block.boundary": {"period": (0.5, 0.6)},
+    "rocking.closed_form.overturning_interval": {"amplitude": (2.0, 4.0)},
+    "rocking.closed_form.island_tip": {"amplitude": (2.0, 4.0), "frequency_ratio": (2.0, 6.0)},
+}
+"""Parameters that are windows, by the function."""
+
+RECORD, BLOCK = noise(1), rocking.Block(0.25, 1.0)
+FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.0, 16.0])
+OBJECTS: dict[str, Any] = {
+    "pulse": "sine", "excitation": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
+    "motion": RECORD, "record": RECORD, "records": [RECORD, noise(2)], "blocks": BLOCK, "column": BLOCK,
+    "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
+    "fragility": FRAGILITY, "argument": Orientation.L0,
+    "group_set": GroupSet.RIGID_SMALL_ROTATION, "problem": Problem(0.3, 2.0, 5.0, 10.0), "groups": Groups(5.0, 0.6),
+}  # fmt: skip
+"""Arguments that are no numbers."""
+
+OF_PULSES, OF_RECORDS = ("peak_acceleration", "period"), ("scale",)
+"""Numbers of `Block.response` and `Block.history` that belong to one kind of excitation."""
+
+MADE = (rocking.Block, rocking.EquivalentBlock, rocking.Record, Groups, Problem)
+"""Classes that are made from numbers."""
+
+MEASURES = [name for kind in (rocking.Record, rocking.Block) for name in dir(kind) if not name.startswith("_")]
+"""Properties that are read of what was made."""
+
+UNUSED = ("evaluate", "interpolate", "used", "level", "slice_at")
+"""Methods of a cube that are not public."""
+
+OPTIONS: dict[str, tuple[float, str]] = {
+    "slenderness": (0.4, ""), "frequency_ratio": (5.0, ""), "alpha": (0.3, " rad"), "restitution": (0.85, ""),
+    "width": (0.5, " m"), "height": (2.0, " m"), "half_width": (0.25, " m"), "half_height": (1.0, " m"),
+    "peak_acceleration": (4.0, " m/s^2"), "pulse_period": (0.5, " s"),
+    "period_min": (0.5, " s"), "period_max": (0.6, " s"), "duration": (5.0, " s"),
+    "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
+    "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
+    "port": (8000, ""), "workers": (1, ""),
+}  # fmt: skip
+"""Ordinary values of the options that take a number, and their units."""
+
+TEXTS = {
+    "pulse", "blocks", "json", "csv", "units", "contact", "output", "file", "unit", "component", "thresholds", "fit",
+    "configuration", "table", "host", "results", "help", "version",
+}  # fmt: skip
+"""Options and arguments that take none."""
+
+COMMON = {"restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"}
+VARIANTS = (
+    {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
+    {"width", "height", "peak_acceleration", "pulse_period", "period_min", "period_max", "duration"},
+    {"half_width", "half_height", "peak_acceleration", "pulse_period", "period_min", "period_max"},
+)
+"""Options that are given together, beside those that go with all."""
+
+MOTION = [round(math.sin(0.5 * k) * math.sin(0.05 * k), 6) for k in range(60)]
+SAMPLES = "acceleration [m/s2]\n" + "".join(f"{4.0 * value:.6f}\n" for value in MOTION)
+SUITE: dict[str, Any] = {
+    "name": "extreme",
+    "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
+    "blocks": [{"half_width": 0.25, "half_height": 1.0}, {"width": 0.5, "height": 1.0}],
+    "restitution": 0.85,
+    "measure": "pga",
+    "intensity": {"low": 2.0, "high": 9.0, "points": 4},
+    "demand": ["overturning", 0.5],
+    "confidence": 0.9,
+    "map": {
+        "intensity": 6.0,
+        "half_diagonal": {"low": 0.5, "high": 5.0, "points": 3},
+        "alpha_deg": {"low": 6.0, "high": 24.0, "points": 3},
+    },
+    "hazard": {"intensity": [1.0, 20.0], "rate": [1e-2, 1e-5]},
+    "sensitivity": {"intensity": [4.0], "restitution_step": 0.05},
+}
+
+QUERY: dict[str, Any] = {
+    "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
+    "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
+    "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
+}  # fmt: skip
+"""Ordinary values of the parameters of routes that have neither an example nor a default, or an expensive one."""
+
+
+def csv_of(table: dict[str, list[float]]) -> str:
+    rows = zip(*table.values(), strict=True)
+    return "\n".join([",".join(table), *(",".join(map(str, row)) for row in rows)]) + "\n"
+
+
+BLOCK_COLUMNS = {"half_width": 0.25, "half_height": 1.0, "peak_acceleration": 4.0, "pulse_period": 0.5}
+ENCODERS: dict[str, Callable[[Any], str]] = {
+    "application/json": json.dumps,
+    "text/csv": csv_of,
+    "text/plain": lambda body: "".join(f"{body['scale'] * value}\n" for value in MOTION[:20]) + f"{body['last']}\n",
+}
+GROUPS = {"slenderness": [0.4, 0.5], "frequency_ratio": [5.0, 3.0], "restitution": [0.85, 0.9]}
+BODIES: dict[str, dict[str, Any]] = {
+    "/v1/response": {
+        "application/json": {"pulse": "sine", **GROUPS, "alpha_deg": 5.0, "tolerance": 1e-4},
+        "text/csv": GROUPS,
+    },
+    "/v1/blocks/response": {
+        "application/json": {"blocks": [BLOCK_COLUMNS | {"restitution": 0.85}]},
+        "text/csv": {
+            f"{name} ({unit})": [BLOCK_COLUMNS[name]]
+            for name, unit in zip(BLOCK_COLUMNS, ("m", "cm", "g", "s"), strict=True)
+        },
+    },
+    **{
+        f"/v1/records/{name}": {"text/plain": {"scale": 4.0, "last": 1.0}}
+        for name in ("response", "history", "scales", "pulse")
+    },
+}
+"""Ordinary bodies of the routes by media type."""
+
+NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Restitution)\b")
+
+
+class LateError(BaseException):
+    """A call beyond the time limit."""
+
+
+class Walk:
+    """Counts and faults of the calls."""
+
+    def __init__(self, only: str) -> None:
+        self.only = only
+        self.results: Counter[str] = Counter()
+        self.seconds: Counter[str] = Counter()
+        self.faults: list[str] = []
+
+    def call(self, name: str, given: Any, function: Callable[[], str]) -> None:
+        """Call a function that returns how it ended."""
+        if self.only not in name:
+            return
+        began = time.monotonic()
+        signal.setitimer(signal.ITIMER_REAL, SECONDS)
+        try:
+            ended = function()
+        except LateError:
+            ended = f"not ended after {SECONDS:g} s"
+        except Exception as error:  # noqa: BLE001  (any other error is a fault)
+            place = error.__traceback__
+            while place is not None and place.tb_next is not None:
+                place = place.tb_next
+            ended = f"{error!r} in {place and f'{place.tb_frame.f_code.co_filename}:{place.tb_lineno}'}"
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        self.seconds[name] += time.monotonic() - began
+        self.results[ended if ended in ("answered", "refused", "stopped") else "faults"] += 1
+        if ended not in ("answered", "refused", "stopped"):
+            self.faults.append(f"{name} {given}: {ended}")
+
+
+def late(_: int, __: FrameType | None) -> None:
+    raise LateError
+
+
+def replaced(given: Any) -> Iterator[Any]:
+    """The given values with one number replaced, for each number and each replacement."""
+    if isinstance(given, dict):
+        yield from ({**given, name: other} for name, value in given.items() for other in replaced(value))
+    elif isinstance(given, (list, tuple)):
+        for place, value in enumerate(given):
+            yield from (type(given)([*given[:place], other, *given[place + 1 :]]) for other in replaced(value))
+    elif isinstance(given, (float, int)) and not isinstance(given, bool):
+        yield from EXTREMES
+        if isinstance(given, int):
+            yield from INTEGERS
+
+
+def walk_python(walk: Walk, results: Path) -> None:
+    """The public functions, classes and methods of `rocking` with numeric parameters."""
+    cube = rocking.open_cube(results / "spectra" / "sine" / "eta-0.85.nc")
+    equivalent = rocking.EquivalentBlock(0.3, 2.0, restitution=0.85)
+    fit = rocking.fit_pulse(RECORD, family="ricker", blocks=BLOCK)
+    modules = (rocking, rocking.closed_form, rocking.groups, rocking.orientation)
+    named = (
+        (f"{one.__name__}.{key}", getattr(one, key))
+        for one in modules
+        for key in (*rocking.__all__, *vars(one))
+        if hasattr(one, key)
+    )
+    functions: dict[str, Callable[..., Any]] = {
+        name: value
+        for name, value in named
+        if value in MADE or (inspect.isfunction(value) and value.__module__ != "rocking.errors")
+    }
+    objects = {"Block": BLOCK, "EquivalentBlock": equivalent, "Record": RECORD, "Cube": cube, "PulseFit": fit}
+    for name, thing in objects.items():
+        members = {key: getattr(thing, key) for key in dir(thing) if key not in UNUSED}
+        if name == "EquivalentBlock":
+            del members["from_slenderness_angle"]  # of `Block`
+        functions |= {f"rocking.{name}.{key}": value for key, value in members.items() if inspect.ismethod(value)}
+    for name, function in functions.items():
+        parameters = inspect.signature(function).parameters
+        if "._" in name or not any(NUMERIC.search(str(one.annotation)) for one in parameters.values()):
+            continue
+        for excitation in ("sine", RECORD) if "excitation" in parameters and name[-8:] != "spectrum" else ("sine",):
+            try:
+                given = ordinary_arguments(name, function, excitation)
+            except KeyError as error:
+                walk.faults.append(f"{name}: the parameter {error} has no ordinary value in this test")
+                continue
+            numbers = {key: value for key, value in given.items() if key not in OBJECTS}
+            for other in replaced(numbers):
+                changed = ", ".join(f"{key} = {other[key]}" for key in numbers if other[key] is not numbers[key])
+                walk.call(name, changed, partial(evaluate, function, given | other))
+
+
+def ordinary_arguments(name: str, function: Callable[..., Any], excitation: Any) -> dict[str, Any]:
+    """The numbers, and the required objects."""
+    given: dict[str, Any] = {}
+    for key, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind is parameter.VAR_KEYWORD:
+            given |= {"cycles": 2.0, "phase": 0.5}  # of `get_pulse`
+        elif key in OBJECTS:
+            given[key] = excitation if key == "excitation" else OBJECTS[key]
+        elif NUMERIC.search(str(parameter.annotation)):
+            if "excitation" not in given or key not in (OF_PULSES if excitation is RECORD else OF_RECORDS):
+                given[key] = WINDOWS.get(name, NUMBERS).get(key) or NUMBERS[key]
+        elif parameter.annotation == "bool":
+            given[key] = True
+        elif parameter.default is parameter.empty:
+            raise KeyError(key)
+    return given
+
+
+def evaluate(function: Callable[..., Any], given: dict[str, Any]) -> str:
+    try:
+        found = function(**given)
+        repr(found)
+        for name in MEASURES if isinstance(found, (rocking.Record, rocking.Block)) else ():
+            getattr(found, name, None)
+    except InvalidArgumentError:
+        return "refused"
+    return "answered"
+
+
+def walk_commands(walk: Walk, folder: Path) -> None:
+    """All options of all commands that take a number, and the numbers of the configuration of a suite."""
+    cases: dict[str, list[str]] = {"record": [OBJECTS["path"]], "fragility": [str(folder / "suite.json")]}
+    (folder / "suite.json").write_text(json.dumps(SUITE), encoding="utf-8")
+    for name, command in commands("rocking", typer.main.get_command(command_line)):
+        takes = {parameter.name for parameter in command.params}
+        walk.faults += [f"{name}: {one} has no ordinary value in this test" for one in takes - OPTIONS.keys() - TEXTS]
+        words = name.split()[1:]
+        start = [*words, *(["--pulse=sine"] if "pulse" in takes else []), *cases.get(words[-1], [])]
+        start += ["--output=picture.png"] if "output" in takes else []
+        start += ["--csv"] if "csv" in takes and words != ["record"] else []
+        done: set[str] = set()
+        for variant in VARIANTS:
+            options = {key: OPTIONS[key] for key in OPTIONS if key in takes & (variant | COMMON)}
+            for key in options.keys() - done:
+                for other in (*EXTREMES, *INTEGERS) if isinstance(options[key][0], int) else EXTREMES:
+                    given = {**options, key: (other, options[key][1])}
+                    named = (f"--{one.replace('_', '-')}={value}{unit}" for one, (value, unit) in given.items())
+                    walk.call(name, f"{key} = {other}", partial(run_command, [*start, *named]))
+            done |= options.keys()
+    for other in replaced(SUITE):
+        (folder / "suite.json").write_text(json.dumps(other), encoding="utf-8")
+        walk.call("rocking fragility", other, partial(run_command, ["fragility", str(folder / "suite.json"), "--json"]))
+
+
+def commands(name: str, command: Any) -> Iterator[tuple[str, Any]]:
+    if hasattr(command, "commands"):
+        for own, part in command.commands.items():
+            yield from commands(f"{name} {own}", part)
+    else:
+        yield name, command
+
+
+def run_command(argv: list[str]) -> str:
+    found = CliRunner().invoke(command_line, argv)
+    if found.exception is not None and not isinstance(found.exception, SystemExit):
+        raise found.exception
+    endings = {0: "answered", 2: "refused"}
+    return endings.get(found.exit_code, f"exit code {found.exit_code}, {found.output[-300:]}")
+
+
+def walk_routes(walk: Walk, results: Path) -> None:
+    """All numeric parameters of all routes, and the numbers of their bodies."""
+    app = create_app(Settings(results=results, max_seconds=GRANTED, access_log=False))
+    document = app.openapi()
+    routes = [(m.upper(), path, one) for path, some in document["paths"].items() for m, one in some.items()]
+    with TestClient(app) as client:
+        while client.get("/v1/critical_amplitude?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
+            time.sleep(0.1)
+        for method, path, route in routes:
+            name = f"{method} {path}"
+            parameters = {one["name"]: one for one in route.get("parameters", ())}
+            query: dict[str, Any] = {}
+            for key, one in parameters.items():
+                first = one["schema"].get("examples", [None])[0] or one["schema"].get("default")
+                value = QUERY.get(key, first)
+                if value is None and is_numeric(one["schema"]):
+                    walk.faults.append(f"{name}: the parameter {key} has no ordinary value in this test")
+                query[key] = value
+            target = path.format(**{key: query.pop(key) for key in list(query) if f"{{{key}}}" in path})
+            query = {key: value for key, value in query.items() if value is not None}
+            numbers = {key: value for key, value in query.items() if is_numeric(parameters[key]["schema"])}
+            bodies = BODIES.get(path, {}) if method == "POST" else {"": None}
+            for media_type, body in bodies.items():
+                ask = partial(request, client, method, target)
+                if walk.only in name and (ended := ask(query, media_type, body)) not in ("answered", "stopped"):
+                    walk.faults.append(f"{name} with ordinary values: {ended}")
+                for other in replaced(numbers):
+                    changed = ", ".join(f"{key} = {value}" for key, value in other.items() if value is not numbers[key])
+                    walk.call(name, changed, partial(ask, query | other, media_type, body))
+                for other in replaced(body):
+                    walk.call(name, other, partial(ask, query, media_type, other))
+            walk.call(f"health after {name}", "", lambda: request(client, "GET", "/health", {}, "", None))
+
+
+def is_numeric(schema: dict[str, Any]) -> bool:
+    return any(one.get("type") in ("number", "integer") for one in (schema, *schema.get("anyOf", ())))
+
+
+def request(client: TestClient, method: str, path: str, query: dict[str, Any], media_type: str, body: Any) -> str:
+    content = None if body is None else ENCODERS[media_type](body)
+    headers = {"content-type": media_type} if media_type else {}
+    found = client.request(method, path, params=query, content=content, headers=headers)
+    if found.status_code == 200 and "json" in found.headers["content-type"]:
+        json.loads(found.content, parse_constant=unknown_constant)
+    endings = {200: "answered", 404: "refused", 413: "refused", 422: "refused", 503: "stopped", 504: "stopped"}
+    return endings.get(found.status_code, f"status {found.status_code}, {found.text[:300]}")
+
+
+def unknown_constant(name: str) -> None:
+    raise ValueError(f"{name} in JSON")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", type=Path, help="folder that the workflow filled")
+    parser.add_argument("--part", choices=["python", "routes", "commands"], help="only this part")
+    parser.add_argument("--only", default="", help="part of the name of a function, command or route")
+    parser.add_argument("--verbose", action="store_true", help="print the time of each function, command and route")
+    given = parser.parse_args()
+    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+    signal.signal(signal.SIGALRM, late)
+    warnings.simplefilter("error")
+    warnings.filterwarnings("ignore", category=DeprecationWarning)
+    walk = Walk(given.only)
+    with ExitStack() as stack:
+        for name in ("rocking_api.command.main", "rocking.plot.output.save_figure"):
+            stack.enter_context(patch(name))  # no server, and no files of pictures
+        for name in ("POINTS", "ROWS"):
+            stack.enter_context(patch(f"rocking.cli.plot.{name}", 20))
+        stack.enter_context(patch.dict(rocking.overturning_boundary.__kwdefaults__, nodes=16))
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        OBJECTS["path"] = str(folder / "record.csv")
+        Path(OBJECTS["path"]).write_text(SAMPLES, encoding="utf-8")
+        parts = {
+            "python": partial(walk_python, walk, given.results),
+            "routes": partial(walk_routes, walk, given.results),
+            "commands": partial(walk_commands, walk, folder),
+        }
+        for part in [given.part] if given.part else parts:
+            parts[part]()
+    if given.verbose:
+        slowest = "".join(f"{seconds:8.2f} s {name}\n" for name, seconds in walk.seconds.most_common(40))
+        sys.stdout.write(slowest)
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+    counts = ", ".join(f"{count} {ended}" for ended, count in sorted(walk.results.items()))
+    sys.stdout.write("\n".join([*walk.faults, f"{counts}; peak {memory} MB", ""]))
+    sys.exit(bool(walk.faults))
+
+
+if __name__ == "__main__":
+    main()

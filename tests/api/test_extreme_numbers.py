@@ -1,0 +1,19 @@
+"""Extreme numbers in Python, on the command line and over HTTP, in a process of its own with 2 GB."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="limits the memory of a process as Linux does")
+@pytest.mark.parametrize("part", ["python", "routes", "commands"])
+def test_every_number_is_answered_or_refused(results, part):
+    argv = [sys.executable, "-m", "tests.api.extreme_numbers", str(results), "--part", part]
+    done = subprocess.run(argv, cwd=ROOT, capture_output=True, text=True, check=False, timeout=1200)
+    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
+    assert " answered" in done.stdout
