@@ -19,7 +19,7 @@ print(response)
 
 print(f"starts to rock at {block.uplift_acceleration:.2f} m/s2")
 for threshold in response.thresholds:
-    print(f"{'overturns' if threshold.overturns_above else 'survives'} above {threshold.value:.2f} m/s2")
+    print(f"{threshold} m/s2")
 for warning in response.warnings:
     print("warning:", warning)
 

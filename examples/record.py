@@ -17,7 +17,7 @@ import rocking
 motions = Path(os.environ.get("ROCKING_MOTIONS", "workflow/motions"))
 motion = rocking.read_record(motions / "napa_HNE.csv")
 block = rocking.Block(half_width=0.25, half_height=1.0)  # m
-response = block.response(motion, scale=1.2, thresholds=True)
+response = block.response(motion, scale=1.2)
 print(response)
 for warning in response.warnings:
     print("warning:", warning)
@@ -28,8 +28,8 @@ for warning in response.warnings:
 
 scales = response.thresholds
 print(f"{scales.scale.size} changes of the outcome up to {scales.searched[1]:.2f} times the record, the first of them:")
-for scale, above in zip(scales.scale[:6], scales.overturns_above[:6], strict=True):
-    print(f"{'overturns' if above else 'survives'} above {scale:.3f} times the record")
+for change in scales.changes[:6]:
+    print(f"{change} times the record")
 
 # %%
 # The motion under 1.2 times the record, until the block has overturned.

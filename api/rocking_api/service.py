@@ -28,6 +28,9 @@ from rocking_api.suite_reader import SuiteReader
 
 T = TypeVar("T")
 
+SEARCH_SHARE = 0.2
+"""Share of the time limit for the search along one line [-]."""
+
 
 @dataclass
 class Service:

@@ -15,6 +15,7 @@ from rocking.cli.arguments import Params
 from rocking.cli.options import OutputOptions
 from rocking.cli.progress import progress
 from rocking.datasets.csv_text import csv_text
+from rocking.dimensional.threshold import Threshold, threshold_text
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
 from rocking.model.outcome import Outcome
@@ -58,18 +59,20 @@ def response(params: Params, form: Form) -> None:
     """
     with progress("solving the block"):
         result, sentence = _response(params)
+    print_answer(result, [sentence], form)
+
+
+def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -> None:
+    """Print the response of one block; text begins with these sentences and the warnings."""
     if form.kind == "json":
         print_json(result)
     elif form.kind == "csv":
         print_csv({name: [_csv_cell(value)] for name, value in result.items()}, form)
     else:
-        typer.echo(sentence)
-        warnings = result.pop("warnings", [])
-        first = [name for name in _FIRST_LINES if name in result]
-        ordered = {name: result[name] for name in (*first, *result)}  # what was asked in SI units first
-        print_text({name: _words(value) for name, value in ordered.items()})
-        for text in warnings:
-            typer.echo(f"warning: {text}")
+        for line in (*sentences, *(f"warning: {text}" for text in result.get("warnings", ()))):
+            typer.echo(line)
+        names = dict.fromkeys((*(name for name in _FIRST_LINES if name in result), *result))
+        print_text({name: _words(name, result) for name in names if name not in _NO_LINES})
 
 
 def _response(params: Params) -> tuple[dict[str, Any], str]:
@@ -137,6 +140,7 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
         "thresholds": None
         if thresholds is None
         else [{"peak_acceleration": one.value, "overturns_above": one.overturns_above} for one in thresholds],
+        "margin": assessment.margin,
         "warnings": assessment.warnings,
     }
 
@@ -145,7 +149,10 @@ _FIRST_LINES = (
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
     *("nearest_acceleration", "nearest_period", "pulse_period", "pulse_duration"),
 )
-"""What the text output of a block with units begins with."""
+"""What the values of the text output of a block with units begin with."""
+
+_NO_LINES = ("margin", "warnings", "overturns_above")
+"""What the text output says before the values, or in one line with another value."""
 
 _UNITS = {
     "alpha": "rad",
@@ -164,23 +171,38 @@ _UNITS = {
 """Units that the text output names beside a value or a column; others are dimensionless."""
 
 
-def _words(value: Any) -> Any:
-    """A value of the text output; changes of the outcome in words."""
-    if isinstance(value, list) and value and isinstance(value[0], dict):
-        return ", ".join(
-            f"{'overturns' if one['overturns_above'] else 'survives'} above {one['peak_acceleration']:.6g}"
-            for one in value
-        )
-    return "none" if value == [] else value
+_NEAREST = {"nearest_acceleration": "peak_acceleration", "nearest_period": "pulse_period"}
+"""Values at which the outcome changes, and those that were asked for."""
+
+
+def _words(name: str, result: Mapping[str, Any]) -> Any:
+    """A value of the text output; values at which the outcome changes are rounded to the safe side."""
+    value = result[name]
+    if value is None:
+        return None
+    if name == "thresholds":
+        return _changes([one["peak_acceleration"] for one in value], [one["overturns_above"] for one in value])
+    if name == "threshold_scale":
+        return _changes(value, result["overturns_above"])
+    if name in _NEAREST:
+        overturns_above = (value > result[_NEAREST[name]]) != result["overturned"]
+        return threshold_text(value, 6, overturns_above=overturns_above)
+    if name in ("largest_safe_acceleration", "overturning_scale"):
+        return threshold_text(value, 6)
+    return value
+
+
+def _changes(values: Sequence[float], overturns_above: Sequence[bool]) -> str:
+    return ", ".join(map(str, map(Threshold, values, overturns_above))) or "none"
 
 
 def _csv_cell(value: Any) -> Any:
-    """A value of one cell: numbers of a list separated by spaces, texts by semicolons."""
+    """A value of one cell: texts of a list separated by semicolons, numbers and truth values by spaces."""
     if not isinstance(value, list):
         return value
     if all(isinstance(one, str) for one in value):
         return "; ".join(value)
-    return " ".join(repr(one["peak_acceleration"]) for one in value)
+    return " ".join(json_writer.dumps(one["peak_acceleration"] if isinstance(one, dict) else one) for one in value)
 
 
 def history(params: Params, duration: float | None, samples: int, contact: bool, form: Form) -> None:

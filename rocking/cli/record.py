@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from rocking.model.block import Block
 
 File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
-Thresholds = Annotated[bool, typer.Option("--thresholds", help="Find all scales at which the outcome changes.")]
+Thresholds = Annotated[
+    bool, typer.Option("--thresholds/--no-thresholds", help="Whether to find all scales at which the outcome changes.")
+]
 Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.")]
 
 
@@ -26,7 +28,7 @@ def record(
     file: File,
     block: RecordOptions,
     output: OutputOptions,
-    thresholds: Thresholds = False,
+    thresholds: Thresholds = True,
     fit: Fit = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
@@ -38,16 +40,8 @@ def record(
         form = printing.output_format(output)
         problem = read_problem(file, block)
         with progress("solving the block under the record"):
-            about, sentence = _solved(*problem, block.scale, thresholds, fit)
-    if form.kind == "json":
-        printing.print_json(about)
-    elif form.kind == "csv":
-        printing.print_csv({name: [value] for name, value in about.items() if not isinstance(value, list)}, form)
-    else:
-        typer.echo(sentence)
-        for warning in about.pop("warnings"):
-            typer.echo(f"warning: {warning}")
-        printing.print_text(about)
+            about, sentences = _solved(*problem, block.scale, thresholds, fit)
+    printing.print_answer(about, sentences, form)
 
 
 @contextmanager
@@ -109,14 +103,15 @@ def _solved(
     scale: float,
     thresholds: bool,
     fit: bool,
-) -> tuple[dict[str, Any], str]:
-    """What is printed, by name, and the outcome in words."""
+) -> tuple[dict[str, Any], list[str]]:
+    """What is printed, by name, and the outcome and the margin in words."""
     from rocking.cli.printing import number
     from rocking.dimensional.record_response import respond_to_record
     from rocking.suites.pulse_fit import fit_pulse
 
     found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
-    response, refined = found.dimensionless, found.resampled
+    response, assessment = found.dimensionless, found.assessment
+    refined, changes = assessment.resampled, assessment.thresholds
     about: dict[str, Any] = {
         "record": motion.name,
         "source": motion.source,
@@ -142,15 +137,17 @@ def _solved(
         "exceeded_alpha": bool(response.exceeded_alpha),
         "impacts": int(response.impacts),
         "peak_rotation": number(float(response.peak_rotation)),
+        "amplification": number(assessment.amplification),
         "peak_rotation_deg": number(math.degrees(found.rotation)),
         "top_displacement": number(found.displacement),
         "peak_rotation_resampled": None if refined is None else number(float(refined.peak_rotation)),
         "overturned_resampled": None if refined is None else bool(refined.overturned),
     }
-    if found.thresholds is not None:
+    if changes is not None:
         about |= {
-            "threshold_scale": found.thresholds.scale.tolist(),
-            "overturns_above": found.thresholds.overturns_above.tolist(),
+            "overturning_scale": assessment.overturning_scale,
+            "threshold_scale": changes.scale.tolist(),
+            "overturns_above": changes.overturns_above.tolist(),
         }
     if fit:
         fitted = fit_pulse(motion, blocks=block)
@@ -163,4 +160,5 @@ def _solved(
             "pulse_explained": fitted.explained,
             "pulse_scale_ratio": number(float(fitted.scale_ratio[0])),
         }
-    return about | {"warnings": list(found.warnings)}, found.outcome.sentence
+    sentences = [text for text in (assessment.sentence, assessment.margin) if text]
+    return about | {"margin": assessment.margin, "warnings": assessment.warnings}, sentences

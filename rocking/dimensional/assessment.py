@@ -5,20 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rocking._numba.cancellation import StopFlag, run_with_timeout
-from rocking.dimensional.margins import Margins, Threshold, acceleration_thresholds, margins_of
+from rocking.dimensional.block_warnings import NOT_FOUND, warnings_of_block, warnings_of_changes
+from rocking.dimensional.margins import Margins, acceleration_thresholds, margins_of
 from rocking.dimensional.problem import BlockProblem
+from rocking.dimensional.threshold import Threshold
 from rocking.history.contact import ContactExtremes, contact_extremes
 from rocking.history.motion import build_motion
-from rocking.model.outcome import Outcome
 from rocking.model.parameters import FREQUENCY_RATIO
-
-MARGIN = 0.05
-"""Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
 
 SEARCH_SECONDS = 12.0
 """Time limit of the search along one line [s]."""
-
-NOT_FOUND = "the {} at which the outcome changes were not found in time: such a block has too many impacts"
 
 RELATIVE_OFFSET = 1e-9
 """Relative distance below the lowest change of outcome at which the contact is judged [-]."""
@@ -67,6 +63,17 @@ class Assessment:
         return self.thresholds[0].value if self.thresholds and self._is_safe_below else None
 
     @property
+    def margin(self) -> str:
+        """Below which peak acceleration the block does not overturn, in words; as `largest_safe_acceleration`."""
+        if self.thresholds is None:
+            return "from which peak acceleration it overturns was not found in time"
+        if not self.thresholds:
+            return "no peak acceleration was found that overturns it at this period"
+        if not self._is_safe_below:
+            return "below which peak acceleration it is safe is not known: the rocking model does not apply"
+        return f"it does not overturn below {self.thresholds[0].text()} m/s2 at this period"
+
+    @property
     def largest_safe_friction_demand(self) -> float | None:
         """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
         below = self.contact_below
@@ -98,31 +105,13 @@ class Assessment:
         return []
 
     def _warnings_of_the_problem(self) -> list[str]:
-        texts = []
-        problem, block, margins = self.problem, self.problem.block, self.margins
-        uplifts = self.contact.outcome != Outcome.NO_UPLIFT
-        if problem.restitution == "housner" and block.housner_restitution < 0.0 and uplifts:
-            texts.append(
-                f"the restitution (2.4) of this shape is negative ({block.housner_restitution:.3g}): the block stops "
-                "at an impact, eta = 0; give a number for another restitution"
-            )
-        if not block.contact_is_known:
-            texts.append("the contact forces of this structure are not known: sliding is not assessed")
-        elif block.half_width > block.half_height:
-            texts.append("the block is wider than high: it would rather slide or bounce than rock")
-        thresholds = self.thresholds or ()
-        near = [one.value for one in thresholds if abs(one.value / problem.peak_acceleration - 1.0) < MARGIN]
-        if near:
-            texts.append(
-                f"the outcome changes within {100 * MARGIN:g} % of this peak acceleration: at "
-                + ", ".join(f"{a:.4g}" for a in near)
-                + " m/s2"
-            )
-        if margins is not None and margins.period_factor is not None and abs(margins.period_factor - 1.0) < MARGIN:
-            texts.append(
-                f"the outcome changes within {100 * MARGIN:g} % of this period: at {margins.nearest_period:.4g} s"
-            )
-        return texts
+        problem, margins = self.problem, self.margins
+        periods = [one for one in margins.periods if one.value == margins.nearest_period] if margins else []
+        return [
+            *warnings_of_block(problem.block, problem.restitution, self.contact.outcome),
+            *warnings_of_changes(problem.peak_acceleration, self.thresholds or (), "peak acceleration", " m/s2"),
+            *warnings_of_changes(problem.period, periods, "period", " s"),
+        ]
 
     def _warnings_of_safety(self) -> list[str]:
         below = self.contact_below
@@ -130,7 +119,7 @@ class Assessment:
             return []
         needs = f"it needs a coefficient of friction of {below.largest_friction_demand:.3g}"
         why = "the block lifts off" if below.lifts_off else needs
-        lowest = f"{self.thresholds[0].value:.4g} m/s2, the lowest acceleration at which it overturns"
+        lowest = f"{self.thresholds[0].text()} m/s2, the lowest acceleration at which it overturns"
         return [f"no largest safe acceleration is given: just below {lowest} by the rocking model, {why}"]
 
 

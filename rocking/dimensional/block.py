@@ -55,7 +55,7 @@ class Block(geometry.Block):
 
     @overload
     def response(
-        self, excitation: Record, *, scale: float = 1.0, restitution: Restitution = "housner", thresholds: bool = False
+        self, excitation: Record, *, scale: float = 1.0, restitution: Restitution = "housner", thresholds: bool = True
     ) -> BlockRecordResponse: ...
 
     def response(
@@ -66,7 +66,7 @@ class Block(geometry.Block):
         period: float | None = None,
         scale: float | None = None,
         restitution: Restitution = "housner",
-        thresholds: bool = False,
+        thresholds: bool = True,
     ) -> BlockResponse | BlockRecordResponse:
         """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
 
@@ -83,7 +83,8 @@ class Block(geometry.Block):
         restitution : float or "housner"
             eta [-], [0, 1]; or (2.4) for this geometry, 0 where that is negative.
         thresholds : bool
-            Whether to search all scales of a record at which the outcome changes; of a pulse they are always found.
+            Whether the scales of a record at which the outcome changes are searched, when they, the warnings or the
+            text of the response are first asked for, in tenths of a second; of a pulse they always are.
 
         Raises
         ------

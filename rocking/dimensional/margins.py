@@ -9,6 +9,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.boundary.amplitude import critical_amplitude
 from rocking.boundary.frequency import critical_frequency_ratio
 from rocking.dimensional.problem import BlockProblem
+from rocking.dimensional.threshold import Threshold
 from rocking.model.parameters import FREQUENCY_RATIO
 
 HIGHEST_AMPLITUDE = 100.0
@@ -16,22 +17,6 @@ HIGHEST_AMPLITUDE = 100.0
 
 SEARCH_FACTOR = 10.0
 """Ratio of the largest period searched to that of the pulse, and its inverse [-]; sizes go with its square."""
-
-
-@dataclass(frozen=True)
-class Threshold:
-    """A value at which the outcome changes.
-
-    Attributes
-    ----------
-    value : float
-        Peak acceleration [m/s2], period [s] or half-diagonal [m].
-    overturns_above : bool
-        True: the block overturns just above and survives just below; False: the reverse.
-    """
-
-    value: float
-    overturns_above: bool
 
 
 @dataclass(frozen=True)

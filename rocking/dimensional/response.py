@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rocking.dimensional.assessment import Assessment, assess
-from rocking.dimensional.margins import Margins, Threshold
+from rocking.dimensional.margins import Margins
 from rocking.dimensional.problem import BlockProblem
 from rocking.dimensional.scalar_response import (
     BLOCK_FIELDS,
@@ -18,6 +18,7 @@ from rocking.dimensional.scalar_response import (
     ScalarResponse,
     count_of_impacts,
 )
+from rocking.dimensional.threshold import Threshold
 from rocking.excitation.pulses import as_pulse
 from rocking.model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION, ResponseField
 from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
@@ -116,6 +117,11 @@ class BlockResponse(ScalarResponse):
     def margins(self) -> Margins | None:
         """Distances to another outcome; None if not found in time."""
         return self.assessment.margins
+
+    @property
+    def margin(self) -> str:
+        """Below which peak acceleration the block does not overturn at this period, in words."""
+        return self.assessment.margin
 
     @property
     def warnings(self) -> list[str]:

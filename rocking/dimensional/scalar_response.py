@@ -130,11 +130,20 @@ class ScalarResponse(ABC):
         return html_table(self._summary(), self.FIELDS, self.to_dict())
 
     def _summary(self) -> str:
-        happened = self.outcome.sentence
+        happened = self._describe_outcome()
         if self.outcome == Outcome.SAFE:
-            peak = f"peak rotation {math.degrees(self.rotation):.4g} deg, top displacement {self.displacement:.4g} m"
-            happened = f"{happened}: {peak}, {self._describe_impacts()}"
-        return f"{happened}; {self.block.description} under {self._describe_motion()}"
+            moved = f"top displacement {self.displacement:.4g} m"
+            happened = f"{happened}: {self._describe_peak()}, {moved}, {self._describe_impacts()}"
+        return f"{happened}{self._describe_margin()}; {self.block.description} under {self._describe_motion()}"
+
+    def _describe_outcome(self) -> str:
+        return self.outcome.sentence
+
+    def _describe_peak(self) -> str:
+        return f"peak rotation {math.degrees(self.rotation):.4g} deg"
+
+    def _describe_margin(self) -> str:
+        return ""
 
 
 def count_of_impacts(impacts: int) -> str:

@@ -210,6 +210,7 @@ class BlockResponse(BaseModel):
     largest_safe_friction_demand: float | None = Field(
         description="coefficient of friction that it needs to be safe just below that acceleration [-]; null likewise"
     )
+    margin: str = Field(description="below which peak acceleration it does not overturn at this period, in words")
     margins: Margins | None = Field(description="null if they were not found in time, see `warnings`")
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"

@@ -85,7 +85,9 @@ class RecordParams(RecordFileParams):
 class RecordResponseParams(RecordParams):
     """The same, and whether to search thresholds and to fit a pulse."""
 
-    thresholds: bool = Field(False, description="find all scales at which the outcome changes")
+    thresholds: bool = Field(
+        True, description="find all scales at which the outcome changes, which takes most of the time"
+    )
     fit: bool = Field(False, description="fit a pulse, and compare how both overturn the block")
 
 
@@ -188,8 +190,22 @@ class RecordResponse(BaseModel):
         description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off"
     )
     meaning: str = Field(description="the outcome in words; where the rocking model does not apply, that and why")
+    margin: str | None = Field(
+        description="from which factor of the record it overturns, in words; null if that was not asked for"
+    )
+    overturning_scale: float | None = Field(
+        description="lowest factor of the record found at which it overturns [-]; null: none was found, or it was not "
+        "asked for; narrower ranges than 0.2 % can be missed"
+    )
     impacts: int = Field(description="number of impacts while the ground moves [-]")
     peak_rotation: float | None = Field(description="max |theta|/alpha [-]; null if overturned")
+    amplification: float | None = Field(
+        description="relative change of the peak rotation over that of the amplitude of the record [-]; null: it "
+        "overturns or does not uplift, or the outcome changes within 1e-9 of the amplitude"
+    )
+    peak_is_determined: bool = Field(
+        description="false: the amplification exceeds 1e4, the record does not determine the peak, see `warnings`"
+    )
     peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
     top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
     alpha_deg: float = Field(description="slenderness angle [deg]")
@@ -203,7 +219,9 @@ class RecordResponse(BaseModel):
         "long, or its step too small"
     )
     peak_rotation_resampled: float | None = Field(description="the same [-]; null if overturned, or not computed")
-    thresholds: list[ScaleThreshold] | None = Field(description="ascending; null unless requested")
+    thresholds: list[ScaleThreshold] | None = Field(
+        description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
+    )
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"
     )

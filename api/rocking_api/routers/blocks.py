@@ -34,12 +34,9 @@ from rocking_api.models.blocks import (
 )
 from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
 from rocking_api.models.responses import PointResponse, finite, point_response
-from rocking_api.service import Service, ServiceDep
+from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
-
-SEARCH_SHARE = 0.2
-"""Share of the time limit for the search along one line [-]."""
 
 MAX_BLOCKS = 10_000
 """Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
@@ -197,6 +194,7 @@ def _assessed(found: Assessment) -> dict[str, Any]:
     return {
         "rocking_model_applies": found.rocking_model_applies,
         "meaning": found.sentence,
+        "margin": found.margin,
         "thresholds": None
         if thresholds is None
         else [Threshold(peak_acceleration=one.value, overturns_above=one.overturns_above) for one in thresholds],

@@ -16,9 +16,7 @@ from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, sc
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.records.readers.read_record import parse_record
 from rocking.excitation.records.record import Record
-from rocking.history.contact import contact_extremes
 from rocking.history.record_history import record_history
-from rocking.history.record_motion import build_record_motion
 from rocking.model.block import Block
 from rocking.model.outcome import Outcome
 from rocking.solver.records.record_response import record_response
@@ -43,7 +41,7 @@ from rocking_api.models.records import (
 )
 from rocking_api.models.responses import OUTCOMES, finite
 from rocking_api.routers.history import motion_columns, motion_fields
-from rocking_api.service import Service, ServiceDep
+from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/records", tags=["response"], route_class=ParamsRoute)
 
@@ -71,9 +69,9 @@ _BODY: dict[str, Any] = {
 async def post_response(
     params: Annotated[RecordResponseParams, Query()], request: Request, service: ServiceDep
 ) -> RecordResponse:
-    """Outcome, rotation, displacement, friction, by (2.2); on request the scales at which the outcome changes."""
+    """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2)."""
     record = await _read(params, request, service)
-    return await service.run_heavy(params, lambda stop: _response(params, record, stop), request)
+    return await service.run_heavy(params, lambda stop: _response(service, params, record, stop), request)
 
 
 @router.post(
@@ -139,31 +137,27 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
     return record
 
 
-def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
+def _response(service: Service, params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
     block = Block(params.half_width, params.half_height, params.gravity)
     found = respond_to_record(
         block, record, scale=params.scale, restitution=params.restitution, thresholds=params.thresholds, stop=stop
     )
-    motion = build_record_motion(
-        record,
-        frequency_parameter=block.frequency_parameter,
-        slenderness=found.slenderness,
-        restitution=found.restitution,
-        alpha=block.alpha,
-        stop=stop,
-    )
-    contact = contact_extremes(motion)
-    refined = found.resampled
+    assessment = found.assess(seconds=SEARCH_SHARE * service.settings.max_seconds, stop=stop)
+    refined, changes, contact = assessment.resampled, assessment.thresholds, assessment.contact
     return RecordResponse(
         query=params,
         record=_description(record),
         overturned=found.overturned,
         exceeded_alpha=found.exceeded_alpha,
         outcome=found.outcome.name,
-        rocking_model_applies=contact.rocking_applies,
-        meaning=contact.sentence,
+        rocking_model_applies=assessment.rocking_model_applies,
+        meaning=assessment.sentence,
+        margin=assessment.margin,
+        overturning_scale=assessment.overturning_scale,
         impacts=found.impacts,
         peak_rotation=finite(found.peak_rotation),
+        amplification=finite(assessment.amplification),
+        peak_is_determined=assessment.peak_is_determined,
         peak_rotation_deg=finite(math.degrees(found.rotation)),
         top_displacement=finite(found.displacement),
         alpha_deg=math.degrees(block.alpha),
@@ -174,13 +168,13 @@ def _response(params: RecordResponseParams, record: Record, stop: StopFlag) -> R
         slenderness=found.slenderness,
         overturned_resampled=None if refined is None else bool(refined.overturned),
         peak_rotation_resampled=None if refined is None else finite(float(refined.peak_rotation)),
-        thresholds=None if found.thresholds is None else _thresholds(found.thresholds, record),
+        thresholds=None if changes is None else _thresholds(changes, record),
         friction_at_uplift=block.half_width / block.half_height,
         friction_demand=finite(contact.largest_friction_demand),
         friction_at_impact=contact.impulse_ratio,
         smallest_normal_reaction=contact.smallest_normal_reaction,
         pulse=_fitted(fit_pulse(record, blocks=block, stop=stop)) if params.fit else None,
-        warnings=[*contact.warnings, *found.warnings],
+        warnings=assessment.warnings,
     )
 
 

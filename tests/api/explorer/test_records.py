@@ -44,6 +44,10 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     choose(page, "short.csv", content)
     expected = BLOCK.response(motion)
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    assert page.locator("#answer .margin").inner_text() == f"I{expected.margin[1:]}."
+    assert page.locator("#answer ul li").all_inner_texts()[: len(expected.warnings)] == expected.warnings
+    assert expected.thresholds.scale[0] > 1.0
+    expect(page.locator(".verdict")).to_have_class("verdict safe")
     said = float(re.search(r"at most ([\d.]+)°", page.locator("#answer").inner_text())[1])
     assert said == pytest.approx(math.degrees(expected.rotation), rel=0.006)
 
@@ -68,7 +72,9 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     caption = page.locator("#scales-caption")
     expect(caption).to_contain_text("overturns from")
     first = float(re.search(r"overturns from ([\d.]+)", caption.inner_text())[1])
-    assert first == pytest.approx(float(scale_thresholds(motion, BLOCK).scale[0]), rel=1e-3)
+    exact = float(scale_thresholds(motion, BLOCK).scale[0])
+    assert first == pytest.approx(exact, rel=1e-3)
+    assert first < exact
 
     expect(page.locator("#pulse-caption")).to_contain_text("of the energy of the velocity")
     expect(page.locator("#pulse-caution")).to_contain_text("does not replace it")
@@ -134,3 +140,39 @@ def test_the_report_of_a_block_under_a_pulse_repeats_its_numbers(open_page):
         expect(report).to_contain_text(words)
     assert report.locator("canvas").count() == 2
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_safe(open_page, content, motion):
+    block = rocking.Block(0.1, 0.5)
+    factors = np.arange(0.5, 3.0, 0.01)
+    outcomes = rocking.record_response(
+        motion,
+        frequency_parameter=block.frequency_parameter,
+        slenderness=block.uplift_acceleration / motion.peak_acceleration / factors,
+        restitution=block.inelastic_restitution,
+        alpha=block.alpha,
+    )
+    survived = np.flatnonzero(~outcomes.overturned)
+    factor = float(factors[survived[survived > outcomes.overturned.argmax()][0]])
+    page = open_page("/records")
+    for name, value in (("width", "0.2"), ("height", "1"), ("scale", f"{factor:.2f}")):
+        page.locator(f"#{name}").fill(value)
+    choose(page, "short.csv", content)
+    expect(page.locator(".verdict")).to_have_class("verdict unsafe")
+    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator("#answer .margin")).to_contain_text("It overturns from")
+
+
+def test_values_at_which_the_outcome_changes_are_rounded_to_the_safe_side(open_page):
+    page = open_page("/records")
+    values = [4.700067, 13.1270943, 1.1338454, 0.0099999, 999.99951, 1e-7, 5.0]
+    found = page.evaluate(
+        """values => import("/static/explorer/labels.js").then(({ threshold }) =>
+            values.map(value => [threshold(value, true), threshold(value, false)]))""",
+        values,
+    )
+    for value, texts in zip(values, found, strict=True):
+        down, up = map(float, texts)
+        assert value * 0.98 < down < value < up < value * 1.02
+    assert found[0] == ["4.7", "4.71"]
+    assert found[2] == ["1.13", "1.14"]

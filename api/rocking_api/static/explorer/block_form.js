@@ -3,7 +3,7 @@
 import { assumptions, element, facts } from "./page.js";
 import { showErrors } from "./form_errors.js";
 import { MISSING, split, UNITS } from "./units.js";
-import { distinct, inG, length, number } from "./labels.js";
+import { inG, length, number, threshold, thresholds } from "./labels.js";
 
 const GRAVITY = 9.80665;
 const QUANTITIES = Object.keys(UNITS);
@@ -88,13 +88,13 @@ function sentence(found) {
 function factsOf(found) {
   const pairs = [["Uplifts at", inG(found.uplift_acceleration)]];
   const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
-  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : inG(largest)]);
+  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : inG(largest, threshold)]);
   if (largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
   const margin = applies && marginOf(found);
   if (margin) pairs.push(margin);
-  const thresholds = applies ? (found.thresholds ?? []) : [];
-  const texts = distinct(thresholds.map((one) => one.peak_acceleration / GRAVITY));
-  const changes = thresholds.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} g`);
+  const all = applies ? (found.thresholds ?? []) : [];
+  const texts = thresholds(all.map((one) => [one.peak_acceleration / GRAVITY, one.overturns_above]));
+  const changes = all.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} g`);
   if (changes.length > 1) pairs.push(["At this period it", changes.join(", ")]);
   pairs.push(["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)]);
   return pairs;
@@ -113,7 +113,7 @@ function marginOf(found) {
   const [nearest] = [...(found.thresholds ?? [])].sort((one, other) => apart(one) - apart(other));
   if (!nearest) return null;
   const way = nearest.peak_acceleration > given ? "more" : "less";
-  const share = `${number(100 * apart(nearest), 2)} %`;
+  const share = `${threshold(100 * apart(nearest), !found.overturned, 2)} %`;
   return ["Margin of acceleration", `${found.overturned ? "survives" : "overturns"} with ${share} ${way}`];
 }
 

@@ -1,7 +1,7 @@
 // The calculation report of a block under a pulse.
 
 import { canvasOf } from "./chart.js";
-import { distinct, inG, length, number, PULSES } from "./labels.js";
+import { inG, length, number, PULSES, threshold, thresholds } from "./labels.js";
 import { geometryOf, modelSections, warningSection } from "./report_sections.js";
 
 /** The report of a response of /v1/blocks/response. */
@@ -51,12 +51,15 @@ function resultOf(found) {
   return `${opening} Peak rotation ${number(found.peak_rotation_deg, 4)}° = ${number(peak, 4)} α${bound}; ${top}.`;
 }
 
-function marginsOf({ thresholds, margins, largest_safe_acceleration: safe }) {
+function marginsOf({ query, overturned, thresholds: found, margins, largest_safe_acceleration: safe }) {
   const lines = [];
-  if (safe !== null) lines.push(`At this period the block does not overturn below ${inG(safe)}.`);
-  const texts = distinct((thresholds ?? []).map((one) => one.peak_acceleration), 4);
-  (thresholds ?? []).forEach((one, at) => lines.push(`It ${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} m/s² at this period.`));
-  if (margins?.nearest_period) lines.push(`The nearest period at which the outcome changes: ${number(margins.nearest_period, 4)} s.`);
-  if (margins?.surviving_from_half_diagonal) lines.push(`Blocks of this shape survive from R = ${length(margins.surviving_from_half_diagonal)}.`);
+  if (safe !== null) lines.push(`At this period the block does not overturn below ${inG(safe, threshold)}.`);
+  const all = found ?? [];
+  const texts = thresholds(all.map((one) => [one.peak_acceleration, one.overturns_above]), 4);
+  all.forEach((one, at) => lines.push(`It ${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} m/s² at this period.`));
+  const period = margins?.nearest_period;
+  const survivalFrom = margins?.surviving_from_half_diagonal;
+  if (period) lines.push(`The nearest period at which the outcome changes: ${threshold(period, period > query.pulse_period !== overturned, 4)} s.`);
+  if (survivalFrom) lines.push(`Blocks of this shape survive from R = ${length(survivalFrom, (value, digits) => threshold(value, false, digits))}.`);
   return lines.length ? lines : ["None were found."];
 }

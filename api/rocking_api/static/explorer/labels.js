@@ -27,13 +27,23 @@ export function number(value, digits = 3) {
   return plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain;
 }
 
-/** Ascending numbers as text, with more digits where neighbours would coincide. */
-export function distinct(values, digits = 3) {
+/**
+ * A value > 0 at which the outcome changes, on the safe side of itself and of its error of 1e-6: rounded down if the block
+ * overturns above it, rounded up if it survives there.
+ */
+export function threshold(value, overturnsAbove = true, digits = 3) {
+  const [mantissa, power] = (value * (overturnsAbove ? 1 - 1e-6 : 1 + 1e-6)).toExponential(20).split("e");
+  const figures = Number(mantissa.replace(".", "").slice(0, digits)) + (overturnsAbove ? 0 : 1);
+  return number(figures * 10 ** (Number(power) - digits + 1), digits);
+}
+
+/** Values at which the outcome changes, [value, overturns above] each, with more digits where neighbours would coincide. */
+export function thresholds(changes, digits = 3) {
   for (let more = digits; more < 12; more += 1) {
-    const texts = values.map((value) => number(value, more));
-    if (new Set(texts).size === new Set(values).size) return texts;
+    const texts = changes.map(([value, above]) => threshold(value, above, more));
+    if (new Set(texts).size === changes.length) return texts;
   }
-  return values.map(String);
+  return changes.map(([value]) => String(value));
 }
 
 /** An error bound with one digit: 5e-11 is 5·10⁻¹¹. */
@@ -43,15 +53,20 @@ export function bound(value) {
   return `${digit}·10⁻${[...power].map((figure) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[figure]).join("")}`;
 }
 
-/** A length in mm, cm or m. */
-export function length(metres) {
-  if (Math.abs(metres) < 1e-3) return `${number(metres * 1e3, 2)} mm`;
-  return Math.abs(metres) < 1 ? `${number(metres * 100, 3)} cm` : `${number(metres, 3)} m`;
+/** A length in mm, cm or m; `text` makes a number of digits of a value. */
+export function length(metres, text = number) {
+  if (Math.abs(metres) < 1e-3) return `${text(metres * 1e3, 2)} mm`;
+  return Math.abs(metres) < 1 ? `${text(metres * 100, 3)} cm` : `${text(metres, 3)} m`;
 }
 
-/** An acceleration in g and in m/s2. */
-export function inG(value) {
-  return `${number(value / 9.80665)} g (${number(value)} m/s²)`;
+/** An acceleration in g and in m/s2; `text` makes three digits of a value. */
+export function inG(value, text = number) {
+  return `${text(value / 9.80665)} g (${text(value)} m/s²)`;
+}
+
+/** A sentence of words that begin in lower case. */
+export function sentence(words) {
+  return `${words[0].toUpperCase()}${words.slice(1)}.`;
 }
 
 /** "1 impact", "3 impacts". */

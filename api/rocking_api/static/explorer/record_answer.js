@@ -1,7 +1,7 @@
 // The response to a record in words.
 
 import { assumptions, element, facts } from "./page.js";
-import { inG, length, number } from "./labels.js";
+import { inG, length, number, sentence as asSentence } from "./labels.js";
 
 const answer = document.getElementById("answer");
 
@@ -10,9 +10,9 @@ export function showRecordAnswer(found) {
   answer.replaceChildren();
   answer.hidden = found === null;
   if (found === null) return;
-  const safe = found.rocking_model_applies && !found.overturned;
   answer.append(
-    element("p", verdict(found), { class: `verdict ${safe ? "safe" : "unsafe"}` }),
+    element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
+    element("p", marginOf(found), { class: "margin" }),
     element("p", sentence(found)),
     facts([...ofBlock(found), ...ofRecord(found.record, found.query.scale)]),
   );
@@ -21,6 +21,22 @@ export function showRecordAnswer(found) {
     answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
   }
   answer.append(assumptions(found.metadata));
+}
+
+/** Whether it survives this factor of the record and, as far as it was searched, every smaller one. */
+function safe({ rocking_model_applies: applies, overturned, overturning_scale: from, query }) {
+  return applies && !overturned && (from ?? Infinity) > query.scale;
+}
+
+/** From which factor of the record it overturns, in a sentence. */
+export function marginOf({ margin }) {
+  return margin ? asSentence(margin) : "";
+}
+
+/** That the record does not determine the peak, in a sentence; empty where it does. */
+export function doubtOf({ peak_is_determined: determined, amplification }) {
+  const by = amplification === null ? "" : ` (amplification ${number(amplification, 2)})`;
+  return determined ? "" : ` The peak is not determined by this record${by}.`;
 }
 
 /** The outcome in a few words. */
@@ -34,7 +50,7 @@ function sentence(found) {
   if (!found.rocking_model_applies) return `${found.meaning}.`;
   if (found.overturned || found.outcome === "NO_UPLIFT") return `Under this record it ${found.meaning}.`;
   const beyond = found.exceeded_alpha ? " It exceeds α but recovers." : "";
-  return `It turns at most ${number(found.peak_rotation_deg)}° (${number(found.peak_rotation)} α), and its top moves ${length(found.top_displacement)}.${beyond}`;
+  return `It turns at most ${number(found.peak_rotation_deg)}° (${number(found.peak_rotation)} α), and its top moves ${length(found.top_displacement)}.${doubtOf(found)}${beyond}`;
 }
 
 /** Facts about the block: pairs of term and value. */

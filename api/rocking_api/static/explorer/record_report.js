@@ -2,7 +2,7 @@
 
 import { canvasOf } from "./chart.js";
 import { length, number } from "./labels.js";
-import { ofBlock, ofRecord, verdict } from "./record_answer.js";
+import { doubtOf, marginOf, ofBlock, ofRecord, verdict } from "./record_answer.js";
 import { geometryOf, modelSections, warningSection } from "./report_sections.js";
 
 /** The report of a response of /v1/records/response; `changes` says at which factors the outcome changes. */
@@ -29,7 +29,7 @@ export function recordReport(found, changes) {
         ],
       },
       { heading: "Result", text: `${verdict(found)} ${resultOf(found)}` },
-      { heading: "Margins", text: changes },
+      { heading: "Margins", text: `${marginOf(found)} ${changes}`.trim() },
       warningSection(found.warnings),
       ...modelSections(found),
       { heading: "To repeat it", text: `POST the file to ${location.origin}/v1/records/response?${new URLSearchParams(given(query))}` },
@@ -45,7 +45,7 @@ export function recordReport(found, changes) {
 function resultOf(found) {
   if (found.peak_rotation === null) return `Outcome: ${found.meaning}; ${found.impacts} impacts before.`;
   const top = `displacement of the top ${length(found.top_displacement)}`;
-  return `Outcome: ${found.meaning}. Peak rotation ${number(found.peak_rotation_deg, 4)}° = ${number(found.peak_rotation, 4)} α, ${top}, ${found.impacts} impacts while the ground moves.`;
+  return `Outcome: ${found.meaning}. Peak rotation ${number(found.peak_rotation_deg, 4)}° = ${number(found.peak_rotation, 4)} α, ${top}, ${found.impacts} impacts while the ground moves.${doubtOf(found)}`;
 }
 
 function given(query) {

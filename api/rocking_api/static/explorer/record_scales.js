@@ -2,7 +2,7 @@
 
 import { axis, chart, markValue } from "./chart.js";
 import { hatch, themed } from "./colours.js";
-import { distinct, number } from "./labels.js";
+import { number, threshold, thresholds as rounded } from "./labels.js";
 
 const LISTED = 8; // thresholds named in the caption
 
@@ -46,9 +46,9 @@ function readout(found, answer, at) {
 
 /** Every factor at which the outcome changes, in words. */
 export function changes({ thresholds, scale }) {
-  if (!thresholds.length) return `No factor up to ${number(scale.at(-1))} overturns it.`;
+  if (!thresholds.length) return `No factor up to ${threshold(scale.at(-1))} was found to overturn it.`;
   const first = thresholds.slice(0, LISTED);
-  const texts = distinct(first.map((one) => one.scale), 4);
+  const texts = rounded(first.map((one) => [one.scale, one.overturns_above]), 4);
   const listed = first.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]}`);
   const rest = thresholds.length - listed.length;
   return `It ${listed.join(", ")}${rest ? `, and ${rest} more changes` : ""}.`;

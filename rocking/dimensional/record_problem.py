@@ -1,0 +1,73 @@
+"""A block under a record in SI units, and its groups."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypedDict
+
+from rocking._numba.cancellation import StopFlag
+from rocking.dimensional.problem import restitution_of
+from rocking.dimensional.record_scales import checked_scale
+from rocking.excitation.records.record import Record
+from rocking.model.block import Block
+from rocking.model.response import Response
+from rocking.solver.records.record_response import record_response
+
+
+class RecordGroups(TypedDict):
+    """Keyword arguments of `record_response`."""
+
+    frequency_parameter: float
+    slenderness: float
+    restitution: float
+    alpha: float
+
+
+@dataclass(frozen=True)
+class RecordProblem:
+    """A block under a record times a factor.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    record : Record
+        Ground motion, without the factor.
+    scale : float
+        Factor of the record [-], (0, 1e6].
+    restitution : float or "housner"
+        eta [-], [0, 1]; or that of (2.4), 0 where it is negative.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+
+    block: Block
+    record: Record
+    scale: float = 1.0
+    restitution: float | str = "housner"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "scale", checked_scale(self.scale))
+        restitution_of(self.block, self.restitution)
+
+    @property
+    def groups(self) -> RecordGroups:
+        """The groups under the scaled record."""
+        return self._groups_under(self.record)
+
+    def solve(self, motion: Record | None = None, *, stop: StopFlag | None = None) -> Response:
+        """The response to the scaled record, or to another motion times the same factor."""
+        chosen = self.record if motion is None else motion
+        return record_response(chosen, **self._groups_under(chosen), stop=stop)
+
+    def _groups_under(self, motion: Record) -> RecordGroups:
+        block = self.block
+        return {
+            "frequency_parameter": block.frequency_parameter,
+            "slenderness": block.uplift_acceleration / (self.scale * motion.peak_acceleration),
+            "restitution": restitution_of(block, self.restitution),
+            "alpha": block.equation_alpha,
+        }

@@ -1,0 +1,43 @@
+"""A value at which the outcome changes, and its text.
+
+It is rounded so that no range in which the block overturns is shown as one that it survives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+
+RELATIVE_ERROR = 1e-6
+"""Largest relative error of a threshold [-]: that under records, and that of elastic blocks under pulses."""
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """A value at which the outcome changes.
+
+    Attributes
+    ----------
+    value : float
+        Peak acceleration [m/s2], period [s], half-diagonal [m], or factor of a record [-].
+    overturns_above : bool
+        True: the block overturns just above and survives just below; False: the reverse.
+    """
+
+    value: float
+    overturns_above: bool
+
+    def __str__(self) -> str:
+        """What happens above the value, such as `overturns above 4.70006`."""
+        return f"{'overturns' if self.overturns_above else 'survives'} above {self.text(6)}"
+
+    def text(self, digits: int = 4) -> str:
+        """The value with some significant digits, 1 to 15, on the safe side of itself and of its error."""
+        return threshold_text(self.value, digits, overturns_above=self.overturns_above)
+
+
+def threshold_text(value: float, digits: int = 4, *, overturns_above: bool = True) -> str:
+    """A threshold > 0 as text: rounded down if the block overturns above it, rounded up if it survives there."""
+    error, rounding = (-RELATIVE_ERROR, ROUND_FLOOR) if overturns_above else (RELATIVE_ERROR, ROUND_CEILING)
+    rounded = Context(prec=digits, rounding=rounding).create_decimal_from_float(value * (1.0 + error))
+    return f"{float(rounded):.{digits}g}"

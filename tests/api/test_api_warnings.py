@@ -1,0 +1,131 @@
+"""The same question in Python, over HTTP and on the command line: the same warnings and margin, in the same order.
+
+The pages render the list of the HTTP response (`tests/api/explorer/test_records.py`).
+"""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rocking_api.routers import records
+from typer.testing import CliRunner
+
+import rocking
+from rocking.cli.app import app
+
+NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
+
+
+def command_line(*arguments):
+    """JSON, and the lines of the text."""
+    runner = CliRunner()
+    as_json, as_text = (runner.invoke(app, [*arguments, *form]) for form in (["--json"], []))
+    assert as_json.exit_code == as_text.exit_code == 0, as_json.output
+    return json.loads(as_json.stdout), as_text.stdout.splitlines()
+
+
+def assert_same(python, http, result, lines):
+    """The same warnings and margin; the text begins with the outcome, the margin of a record, and the warnings."""
+    assert http["warnings"] == result["warnings"] == python.warnings
+    assert http["margin"] == result["margin"] == python.margin
+    assert http["meaning"] == lines[0] == python.assessment.sentence
+    sentences = 2 if "record" in result else 1
+    printed = lines[sentences : sentences + len(python.warnings)]
+    assert printed == [f"warning: {text}" for text in python.warnings]
+    assert not any(line.startswith("warning: ") for line in lines[sentences + len(printed) :])
+
+
+PULSES = [
+    # half width [m], half height [m], peak acceleration [m/s2], period [s], texts of warnings in their order
+    (0.2, 0.8, 4.0, 0.5, []),
+    (0.2, 0.8, 4.65, 0.5, ["within 5 % of this peak acceleration", "within 5 % of this period"]),
+    (1.0, 0.5, 2.1 * 9.80665, 0.5, ["the block may slide", "restitution (2.4)", "wider than high"]),
+    (0.5, 0.5, 1.5 * 9.80665, 0.5, ["the block may slide", "no largest safe acceleration"]),
+]
+
+
+@pytest.mark.parametrize(("half_width", "half_height", "acceleration", "period", "texts"), PULSES)
+def test_warnings_under_a_pulse(client, half_width, half_height, acceleration, period, texts):
+    python = rocking.Block(half_width, half_height).response("sine", peak_acceleration=acceleration, period=period)
+    sizes = {"half_width": half_width, "half_height": half_height}
+    motion = {"peak_acceleration": acceleration, "pulse_period": period, "pulse": "sine"}
+    http = client.get("/v1/blocks/response", params=sizes | motion).json()
+    found = command_line(
+        *("response", "--pulse", "sine", "--half-width", f"{half_width}m", "--half-height", f"{half_height}m"),
+        *("--peak-acceleration", f"{acceleration!r} m/s2", "--pulse-period", f"{period}s"),
+    )
+    assert_same(python, http, *found)
+    places = [next(k for k, warning in enumerate(python.warnings) if text in warning) for text in texts]
+    assert places == sorted(places)
+
+
+RECORDS = [
+    # half width [m], half height [m], factor, texts of warnings in their order
+    (0.25, 1.0, 0.5, ["not monotone"]),
+    (
+        *(0.1, 0.5, 0.87),
+        ["accumulate to rest", "sampled", "the peak is not determined by this record", "within 5 %", "not monotone"],
+    ),
+    (1.2, 0.6, 6.0, ["restitution (2.4)", "wider than high"]),
+]
+
+
+@pytest.mark.parametrize(("half_width", "half_height", "scale", "texts"), RECORDS)
+def test_warnings_under_a_record(client, half_width, half_height, scale, texts):
+    python = rocking.Block(half_width, half_height).response(rocking.read_record(NAPA), scale=scale)
+    params = {"half_width": half_width, "half_height": half_height, "scale": scale, "name": NAPA.name}
+    http = client.post("/v1/records/response", params=params, content=NAPA.read_bytes()).json()
+    sizes = ("--half-width", f"{half_width}m", "--half-height", f"{half_height}m", "--scale", repr(scale))
+    result, lines = command_line("record", str(NAPA), *sizes)
+    assert_same(python, http, result, lines)
+    assert lines[1] == python.margin
+    assert python.sentence == f"{lines[0]}; {lines[1]}"
+    assert python.margin in repr(python)
+    places = [next(k for k, warning in enumerate(python.warnings) if text in warning) for text in texts]
+    assert places == sorted(places)
+
+
+def test_a_peak_that_the_record_does_not_determine_says_so_beside_it():
+    block, motion = rocking.Block(0.1, 0.5), rocking.read_record(NAPA)
+    found = block.response(motion, scale=0.87, thresholds=False)
+    assert found.assessment.amplification > 1e8
+    assert not found.assessment.peak_is_determined
+    assert "deg (not determined: amplification 4.2e+08), top displacement" in repr(found)
+    changed = rocking.Record(motion.acceleration * (1.0 + 1e-8), motion.time_step, "m/s2")
+    other = block.response(changed, scale=0.87, thresholds=False)
+    assert abs(other.rotation / found.rotation - 1.0) > 0.1 or other.overturned
+    well = block.response(motion, scale=0.6, thresholds=False)
+    assert well.assessment.peak_is_determined
+    assert "not determined" not in repr(well)
+
+
+def test_a_block_that_overturns_or_stays_has_no_amplification():
+    block, motion = rocking.Block(0.1, 0.5), rocking.read_record(NAPA)
+    for scale in (0.1, 5.0):
+        found = block.response(motion, scale=scale, thresholds=False).assessment
+        assert math.isnan(found.amplification)
+        assert found.peak_is_determined
+
+
+def test_the_search_of_scales_is_bounded_and_can_be_left_out(client, monkeypatch):
+    params = {"half_width": 0.25, "half_height": 1.0}
+    full = client.post("/v1/records/response", params=params, content=NAPA.read_bytes()).json()
+    assert full["overturning_scale"] == full["thresholds"][0]["scale"] == pytest.approx(1.1338, rel=1e-3)
+    left = client.post("/v1/records/response", params=params | {"thresholds": False}, content=NAPA.read_bytes()).json()
+    assert left["thresholds"] is left["overturning_scale"] is left["margin"] is None
+    assert left["warnings"] == [text for text in full["warnings"] if "scale" not in text]
+    monkeypatch.setattr(records, "SEARCH_SHARE", 0.0)
+    late = client.post("/v1/records/response", params=params, content=NAPA.read_bytes()).json()
+    assert late["margin"] == "from which factor of the record it overturns was not found in time"
+    assert late["thresholds"] is None
+    assert "factors of the record at which the outcome changes were not found in time" in late["warnings"][-1]
+
+
+def test_a_block_that_is_not_overturned_says_up_to_which_factor():
+    motion = rocking.Record(np.sin(np.arange(200.0)), 0.01, unit="m/s2")
+    found = rocking.Block(0.4, 0.5).response(motion)
+    assert found.thresholds.scale.size == 0
+    assert found.margin.startswith("no factor of the record up to ")
+    assert found.margin.endswith(" was found to overturn it")

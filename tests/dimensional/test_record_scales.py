@@ -1,0 +1,55 @@
+"""Factors of a record at which the outcome changes: two searches, one result; text on the safe side."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking.dimensional.record_scales import ScaleThresholds, overturning_scale, scale_thresholds
+from rocking.dimensional.threshold import Threshold, threshold_text
+from tests.suites.motions import noise
+
+BLOCKS = [rocking.Block(0.1, 0.5), rocking.Block(0.25, 1.0), rocking.Block(1.0, 5.0)]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_lowest_of_all_changes_is_the_lowest_overturning_scale(seed):
+    record = noise(seed)
+    for block in BLOCKS:
+        every = scale_thresholds(record, block).scale
+        lowest = overturning_scale(record, block)
+        if not every.size:
+            assert math.isnan(lowest)
+            continue
+        assert lowest == every[0]
+        assert scale_thresholds(record, block, highest=1.5 * lowest).scale[0] == lowest
+        assert math.isnan(overturning_scale(record, block, highest=lowest * (1.0 - 1e-5)))
+
+
+def test_text_of_a_threshold_is_on_the_safe_side():
+    rng = np.random.default_rng(1)
+    for value in np.exp(rng.uniform(-20.0, 20.0, 500)).tolist():
+        for digits in (1, 2, 4, 9):
+            down, up = (float(Threshold(value, above).text(digits)) for above in (True, False))
+            assert down < value < up
+            assert up - down <= value * (2.0 * 10.0 ** (1 - digits) + 3e-6)
+    assert str(Threshold(4.700067, True)) == "overturns above 4.70006"
+    assert str(Threshold(13.1270943, False)) == "survives above 13.1272"
+    assert threshold_text(1.1338454) == "1.133"
+    assert threshold_text(5e-7, 2) == "4.9e-07"  # within the error of the search
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_changes_in_words(count):
+    found = ScaleThresholds(np.array([1.13389, 1.2, 1.3])[:count], np.array([True, False, True])[:count], (0.5, 5.0))
+    assert (
+        found.sentence
+        == [
+            "no factor of the record up to 4.999 was found to overturn it",
+            "it overturns from 1.133 times the record",
+            None,
+            "it overturns from 1.133 times the record; above that the outcome changes 2 more times up to 4.999 times",
+        ][count]
+    )
+    assert [one.overturns_above for one in found.changes] == [True, False, True][:count]
