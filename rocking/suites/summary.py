@@ -12,36 +12,36 @@ QUANTILES = (0.16, 0.5, 0.84)
 
 
 def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
-    """The mildest level at which each record overturns each block, and the levels above it that the block survives.
+    """The mildest intensity at which each record overturns each block, and the levels above it that the block survives.
 
     Parameters
     ----------
     outcomes : xarray.Dataset
-        Result of `rocking.suites.outcomes.suite_outcomes`, or the file `outcomes.nc` of the workflow.
+        Result of `rocking.suites.margins.with_margins`, or the file `outcomes.nc` of the workflow.
 
     Returns
     -------
     xarray.Dataset
-        Over (block, record): `overturning_intensity`, in the unit of the measure, nan where the block survives every
-        level; `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-], the number of
-        stronger levels at which the block survives all the same. Thresholds lie between a level and the one before it.
+        Over (block, record): `overturning_intensity`, in the unit of the measure, nan where the block survives all;
+        `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-], the number of stronger
+        levels at which the block survives all the same.
     """
-    overturned = outcomes["overturned"].transpose("block", "intensity", "record").values.astype(bool)
-    scale = outcomes["scale"].transpose("block", "intensity", "record").values
+    order = ("block", "record", "intensity")
+    survived = ~outcomes["overturned"].transpose(*order).values.astype(bool)
     levels = outcomes["intensity"].values
-    if not MEASURES[outcomes.attrs["measure"]].scales_amplitude:  # from the mildest level on, which is the last one
-        overturned, scale, levels = overturned[:, ::-1], scale[:, ::-1], levels[::-1]
-    first = overturned.argmax(axis=1)
-    any_overturns = overturned.any(axis=1)
-    later = np.maximum.accumulate(overturned, axis=1)
-    at_first = np.take_along_axis(scale, first[:, None], axis=1)[:, 0]
+    found = outcomes["overturning_intensity"].transpose("block", "record")
+    if MEASURES[outcomes.attrs["measure"]].scales_amplitude:
+        scale = found.values * outcomes["scale"].transpose(*order).values[..., 0] / levels[0]
+        stronger = levels > found.values[..., None]
+    else:
+        scale = np.where(np.isnan(found), np.nan, 1.0)
+        stronger = levels < found.values[..., None]
     dims = ("block", "record")
-    unit = outcomes["intensity"].attrs.get("units", "1")
     return xr.Dataset(
         {
-            "overturning_intensity": (dims, np.where(any_overturns, levels[first], np.nan), {"units": unit}),
-            "overturning_scale": (dims, np.where(any_overturns, at_first, np.nan), {"units": "1"}),
-            "levels_survived_above": (dims, (later & ~overturned).sum(axis=1), {"units": "1"}),
+            "overturning_intensity": (dims, found.values, {"units": outcomes["intensity"].attrs.get("units", "1")}),
+            "overturning_scale": (dims, scale, {"units": "1"}),
+            "levels_survived_above": (dims, (survived & stronger).sum(axis=2), {"units": "1"}),
         },
         {"record": outcomes["record"].values},
     )

@@ -15,6 +15,7 @@ from rocking.datasets.cube import describe, scalar_coordinates, write_dataset
 from rocking.spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.hazard import annual_rate
+from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.sensitivity import suite_sensitivity
 from tests.suites.motions import noise
@@ -53,7 +54,7 @@ def results(tmp_path_factory):
     write_dataset(describe(curves), folder / "overturning" / "sine" / "eta-0.85.nc")
     motions, blocks = [noise(seed) for seed in range(4)], [rocking.Block(0.25, 1.0), rocking.Block(0.4, 2.0)]
     suite = check_suite(motions, blocks, np.geomspace(1.0, 40.0, 12), "pga", "housner")
-    outcomes = suite_outcomes(suite)
+    outcomes = with_margins(suite_outcomes(suite), suite)
     fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
     rate = annual_rate(fragility, ([1.0, 10.0], [1e-2, 1e-4]))
     fragility = fragility.assign(rate.data_vars).assign_attrs(title="Fragility under noise", confidence=0.95)

@@ -11,6 +11,7 @@ from rocking.datasets.cube import describe, write_dataset
 from rocking.excitation.records.record import Record
 from rocking.model.block import Block
 from rocking.suites.configuration import BlockMap, SuiteConfiguration, suite_configuration
+from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.sensitivity import sensitivity_outcomes
 from workflow.scripts.job import run
@@ -42,7 +43,7 @@ def main(
     chosen = suite_configuration(suite, Path())
     motion = chosen.records.read(file)
     checked = check_suite(motion, chosen.blocks, chosen.intensity, chosen.measure, chosen.restitution)
-    found = suite_outcomes(checked, threads=1)
+    found = with_margins(suite_outcomes(checked, threads=1), checked, threads=1)
     if chosen.map is not None:
         found = found.assign(map_overturned=_map_of(chosen, chosen.map, motion))
     about = {"history": "workflow.scripts.suite_record", "source": motion.source, **provenance}

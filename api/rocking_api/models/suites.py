@@ -85,13 +85,14 @@ class LimitState(BaseModel):
 
 
 class RecordMargin(BaseModel):
-    """How far a record is from overturning the block, to the distance of the levels."""
+    """How far a record is from overturning the block; ranges of intensity narrower than 0.2 % can be missed."""
 
     record: str = Field(description="name of the record")
     overturning_intensity: float | None = Field(
-        description="mildest level at which the block overturns [unit of the measure]; null if it survives all"
+        description="mildest intensity at which the block overturns [unit of the measure], which is the largest one "
+        "for frequency_ratio; null if it survives all"
     )
-    overturning_scale: float | None = Field(description="factor of the record at that level [-]")
+    overturning_scale: float | None = Field(description="factor of the record there [-]")
     levels_survived_above: int = Field(description="number of stronger levels at which the block survives [-]")
 
 

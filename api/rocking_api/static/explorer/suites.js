@@ -2,7 +2,7 @@
 
 import { ask } from "./api.js";
 import { chartsReady } from "./chart.js";
-import { length, number } from "./labels.js";
+import { length, number, threshold } from "./labels.js";
 import { element, setStatus } from "./page.js";
 import { modelSections, section } from "./report_sections.js";
 import { drawFragility } from "./suite_chart.js";
@@ -166,11 +166,13 @@ function levels({ intensity, records: all, quantity }, block, state) {
   return table(heads, rows);
 }
 
-function margins({ quantity }, block) {
+function margins({ quantity, measure }, block) {
+  const falls = measure === "frequency_ratio"; // of which the largest value is the mildest, and records keep their factor
+  const factor = falls ? number : threshold;
   const heads = ["Record", `overturns from, ${quantity}`, "factor of the record", "stronger levels survived"];
   const rows = block.margins.map((one) => {
-    if (one.overturning_intensity === null) return [one.record, "survives every level", "", ""];
-    return [one.record, number(one.overturning_intensity), number(one.overturning_scale), String(one.levels_survived_above)];
+    if (one.overturning_intensity === null) return [one.record, "survives all", "", ""];
+    return [one.record, threshold(one.overturning_intensity, !falls), factor(one.overturning_scale), String(one.levels_survived_above)];
   });
   return table(heads, rows);
 }
