@@ -1,0 +1,43 @@
+"""The assessment of a block under a record: made when it is asked for, and cancelled by its flag."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking._numba.cancellation import StopFlag
+from rocking.dimensional import record_assessment
+from rocking.errors import StoppedError
+from tests.suites.motions import noise
+
+BLOCK = rocking.Block(0.25, 1.0)
+
+
+def test_nothing_is_searched_before_it_is_asked_for(monkeypatch):
+    monkeypatch.setattr(record_assessment, "scale_thresholds", None)  # a search fails
+    found = BLOCK.response(noise(0))
+    assert found.to_dict()["outcome"] == found.outcome.name
+    assert BLOCK.response(noise(0), thresholds=False).margin is None
+    with pytest.raises(TypeError):
+        repr(found)
+
+
+def test_a_set_flag_ends_the_assessment():
+    found, flag = BLOCK.response(noise(0)), StopFlag()
+    flag.set()
+    with pytest.raises(StoppedError):
+        found.assess(stop=flag)
+
+
+def test_a_flag_that_is_set_meanwhile_ends_the_search():
+    long = rocking.Record(np.tile(noise(0).acceleration, 40), 0.01, unit="m/s2")
+    large, flag = rocking.Block(2.0, 8.0), StopFlag()
+    found = large.response(long)
+    timer = threading.Timer(0.2, flag.set)
+    timer.start()
+    began = time.process_time()
+    with pytest.raises(StoppedError):
+        found.assess(seconds=600.0, stop=flag)
+    assert time.process_time() - began < 10.0
