@@ -138,7 +138,7 @@ def test_response_of_a_block_in_si_units():
     text = run("response", *WHOLE)
     assert text.splitlines()[0] == found.sentence
     assert text.splitlines()[1].split() == ["peak_rotation_deg", "[deg]", "7.41882221"]
-    assert "overturns above 4.70007, survives above 13.1271, overturns above 13.9939" in text
+    assert "overturns above 4.70006, survives above 13.1272, overturns above 13.9939" in text
     (row,) = read_csv(run("response", *WHOLE, "--csv"))
     assert [float(a) for a in row["thresholds"].split()] == [one["peak_acceleration"] for one in result["thresholds"]]
     assert result["pulse_duration"] == 0.5
