@@ -52,9 +52,8 @@ def cut_arrays(body: bytes) -> tuple[bytes, dict[str, tuple[int, int]]]:
     rest: list[bytes] = []
     arrays: dict[str, tuple[int, int]] = {}
     position = 0
-    for name, start in _array_starts(body):
-        end = body.find(b"]", start)
-        if end >= 0 and body.find(b"[", start, end) < 0:
+    for name, start, end in _arrays(body):
+        if body.find(b"[", start, end) < 0:
             rest.append(body[position:start])
             arrays[name] = start, end
             position = end
@@ -65,11 +64,14 @@ def cut_arrays(body: bytes) -> tuple[bytes, dict[str, tuple[int, int]]]:
     return b"".join(rest), arrays
 
 
-def _array_starts(body: bytes) -> Iterator[tuple[str, int]]:
-    position = 0
-    while found := _ARRAY.search(body, position):
-        yield found[1].decode(), found.end()
-        position = max(found.end(), body.find(b"]", found.end()))  # the numbers need not be searched
+def _arrays(body: bytes) -> Iterator[tuple[str, int, int]]:
+    """Names of groups, each with where the entries of its array start, and where the next array ends."""
+    end = 0
+    while found := _ARRAY.search(body, end):
+        end = body.find(b"]", found.end())
+        if end < 0:
+            return  # none of the arrays from here on has an end
+        yield found[1].decode(), found.end(), end
 
 
 def parse_array(name: str, body: bytes, span: tuple[int, int], max_points: int, stop: StopFlag) -> NDArray[np.float64]:

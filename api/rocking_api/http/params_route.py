@@ -8,6 +8,7 @@ and the OpenAPI description are those of FastAPI. A parameter that is given twic
 from __future__ import annotations
 
 import inspect
+from collections import Counter
 from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from typing import Any, get_type_hints
 from urllib.parse import parse_qsl
@@ -128,10 +129,10 @@ def query_parameters(request: Request) -> dict[str, str]:
     given = parse_qsl(request.scope["query_string"].decode("latin-1"), keep_blank_values=True)
     parameters = dict(given)
     if len(parameters) < len(given):
-        for name in parameters:
-            values = [value for key, value in given if key == name]
-            if len(values) > 1:
-                raise InvalidArgumentError(name, " and ".join(values), "one value")
+        counts = Counter(name for name, _ in given)
+        twice = next(name for name, count in counts.items() if count > 1)
+        values = [value for name, value in given if name == twice]
+        raise InvalidArgumentError(twice, " and ".join(values), "one value")
     return parameters
 
 
