@@ -25,6 +25,9 @@ Configuration = Annotated[
     str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
 ]
 
+MAX_LINE = 4096
+"""Most characters of a line of TOML: the time of tomllib grows with the square of the parts of a key such as a.b.c."""
+
 TableOption = Annotated[
     Literal["levels", "curves", "sensitivity"],
     typer.Option(
@@ -97,8 +100,12 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
     from rocking.suites.fragility import fragility as fragility_of
 
     with configuration_errors(), file_errors(), progress("solving the blocks under the records"):
+        motions = suite.motions()
+        for motion in motions:
+            for remark in motion.remarks:
+                typer.echo(f"warning: {motion.name}: {remark}", err=True)
         return fragility_of(
-            suite.motions(),
+            motions,
             suite.blocks,
             intensity=suite.intensity,
             measure=suite.measure,
@@ -152,16 +159,22 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         text = path.read_text(encoding="utf-8")
         if path.suffix == ".toml":
-            found: Any = tomllib.loads(text)
+            found: Any = _toml(text)
         elif path.suffix == ".json":
             found = json_format.loads(text)
         else:
             found = _yaml(text)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:  # brackets within brackets
         raise InvalidArgumentError("file", str(path), f"a readable configuration ({error})") from None
     if not isinstance(found, dict):
         raise InvalidArgumentError("file", str(path), "a mapping of keys to values")
     return found
+
+
+def _toml(text: str) -> Any:
+    if max(map(len, text.split("\n"))) > MAX_LINE:
+        raise ValueError(f"lines of TOML have at most {MAX_LINE} characters")
+    return tomllib.loads(text)
 
 
 def _yaml(text: str) -> Any:

@@ -100,6 +100,7 @@ class RecordAssessment:
         return [
             *self.contact.warnings,
             *warnings_of_block(problem.block, problem.restitution, self.contact.outcome),
+            *problem.record.remarks,
             *_of_record(problem.record),
             *self._of_sampling(),
             *self._of_conditioning(),

@@ -87,7 +87,8 @@ class RecordFiles:
         """
         motion = read_record(path, unit=self.unit, time_step=self.time_step, component=self.component)
         corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
-        return Record(corrected.acceleration, corrected.time_step, "m/s2", path.stem, corrected.source)
+        about = path.stem, corrected.source, corrected.remarks
+        return Record(corrected.acceleration, corrected.time_step, "m/s2", *about)
 
 
 @dataclass(frozen=True)

@@ -138,7 +138,8 @@ class RecordDescription(BaseModel):
     """The record, as read; SI units."""
 
     name: str = Field(description="name of the file, without its ending, and the component")
-    source: str = Field(description="file, format, and remarks of the reader")
+    source: str = Field(description="file, format, and what was done to the record")
+    remarks: list[str] = Field(description="what the reader of the file found in doubt")
     samples: int = Field(description="number of samples [-]")
     time_step: float = Field(description="time step [s]")
     peak_acceleration: float = Field(description="PGA [m/s2]")

@@ -126,9 +126,8 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
     body = await service.read_body(request, service.settings.max_record_bytes)
 
     def read(stop: StopFlag) -> Record:
-        del stop  # the largest body takes two seconds
         found = parse_record(
-            body, params.name, unit=params.unit, time_step=params.time_step, component=params.component
+            body, params.name, unit=params.unit, time_step=params.time_step, component=params.component, stop=stop
         )
         return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)
 
@@ -272,6 +271,7 @@ def _description(record: Record) -> RecordDescription:
     return RecordDescription(
         name=record.name,
         source=record.source,
+        remarks=list(record.remarks),
         samples=record.samples,
         time_step=record.time_step,
         peak_acceleration=record.peak_acceleration,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import final
@@ -45,6 +46,8 @@ class Record:
         Name for output, such as station and component.
     source : str
         Where the record comes from, such as file, network or citation.
+    remarks : sequence of str
+        What the reader of the file found in doubt; every response to the record repeats it among its warnings.
 
     Attributes
     ----------
@@ -61,8 +64,17 @@ class Record:
     time_step: float
     name: str
     source: str
+    remarks: tuple[str, ...]
 
-    def __init__(self, acceleration: ArrayLike, time_step: float, unit: str, name: str = "", source: str = "") -> None:
+    def __init__(
+        self,
+        acceleration: ArrayLike,
+        time_step: float,
+        unit: str,
+        name: str = "",
+        source: str = "",
+        remarks: Sequence[str] = (),
+    ) -> None:
         factor = UNITS[one_of("unit", unit, UNITS)]
         limit = MAX_ACCELERATION / factor
         samples = in_range("acceleration", acceleration, -limit, limit, unit=unit)
@@ -76,9 +88,10 @@ class Record:
         if (samples.size - 1) * step > MAX_DURATION:
             allowed = f"a duration of at most {MAX_DURATION:g} s, with {samples.size} samples"
             raise InvalidArgumentError("time_step", float(step), allowed)
-        scaled = np.array(samples * factor)  # a copy, which the caller cannot change
+        scaled = samples * factor  # a new array, which the caller cannot change
         scaled.flags.writeable = False
-        given = {"acceleration": scaled, "time_step": float(step), "name": name, "source": source}
+        about = {"name": name, "source": source, "remarks": tuple(remarks)}
+        given = {"acceleration": scaled, "time_step": float(step), **about}
         for key, value in given.items():
             object.__setattr__(self, key, value)
 
@@ -188,7 +201,7 @@ class Record:
             If `order` is out of range, or the record has too few samples for it.
         """
         kept = baseline(self.acceleration, self.velocity, self.duration, order)
-        return Record(kept, self.time_step, "m/s2", self.name, self._processed(f"baseline of order {order} removed"))
+        return self._processed(kept, self.time_step, f"baseline of order {order} removed")
 
     def resampled(self, time_step: float) -> Record:
         """The record at another step, by band-limited interpolation with anti-aliasing.
@@ -209,9 +222,9 @@ class Record:
         """
         in_range("time_step", time_step, *TIME_STEP, unit="s")
         samples = resample(self.acceleration, self.time_step, time_step)
-        return Record(
-            samples, time_step, "m/s2", self.name, self._processed(f"resampled from {self.time_step:g} s, band-limited")
-        )
+        return self._processed(samples, time_step, f"resampled from {self.time_step:g} s, band-limited")
 
-    def _processed(self, step: str) -> str:
-        return f"{self.source}; {step}" if self.source else step
+    def _processed(self, acceleration: NDArray[np.float64], time_step: float, what: str) -> Record:
+        """The record with other samples [m/s2]; its source says what was done."""
+        source = f"{self.source}; {what}" if self.source else what
+        return Record(acceleration, time_step, "m/s2", self.name, source, self.remarks)

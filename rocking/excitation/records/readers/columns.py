@@ -8,19 +8,25 @@ after a `#`. What it does not state has to be given as an argument.
 from __future__ import annotations
 
 import re
+from array import array
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking.errors import RecordFileError
 from rocking.excitation.records.readers.lines import (
     MAX_SAMPLES,
     NUMBER,
     TextFile,
     agreed_step,
     agreed_unit,
+    decoded,
     parse_unit,
     to_float,
+    to_floats,
 )
 from rocking.excitation.records.record import Record
 
@@ -30,8 +36,8 @@ STEP_TOLERANCE = 0.02
 MAX_TIME = 1e12
 """Largest time in a column of times [s]; times are often counted from an epoch."""
 
-MAX_HEADER = 200
-"""Largest number of lines before the first row of numbers."""
+MAX_UNIT_PARTS = 8
+"""Most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2."""
 
 _COMMENT = "#%!*/\"'"
 
@@ -39,22 +45,12 @@ _COMMENT = "#%!*/\"'"
 def read(file: TextFile, unit: str | None, time_step: float | None, component: str | None) -> Record:
     """Read columns; arguments and errors as for `read_record`."""
     first = _first_row(file)
-    separator = _separator(file.lines[first])
-    decimal_comma = separator == ";" and "," in file.lines[first]
-    table = _table(file, first, separator, decimal_comma)
-    names_line, names = _column_names(file, first, separator, table.shape[1])
+    separator = _separator(file.head[first])
+    width = len(_fields(file.head[first], separator))
+    names_line, names = _column_names(file, first, separator, width)
     settings = _settings(file, first)
-    times = _time_column(file, first, names, table)
-    stated_step, step_line = settings.step, settings.step_line
-    if times is not None:
-        measured = _uniform_step(file, first, table[:, times] * _time_factor(file, names_line, names[times]))
-        if stated_step is not None and abs(measured / stated_step - 1.0) > 1e-3:
-            raise file.error(
-                step_line, f"a time step of {stated_step:g} s", f"{measured:g} s, as the column of times says"
-            )
-        stated_step = measured
-    step = agreed_step(file, step_line if times is None else first, stated_step, time_step)
-    others = [k for k in range(table.shape[1]) if k != times]
+    times, certain = _time_column(file, first, names)
+    others = [k for k in range(width) if k != times or (component is not None and not certain)]
     chosen = _chosen(file, names_line, [names[k] for k in others], others, component)
     if re.match(r"vel|dis", names[chosen], re.I) or re.search(r"[(\[](mm|cm|m)(/s)?[)\]]", names[chosen], re.I):
         raise file.error(names_line, f"the column {names[chosen]}", "a column of accelerations")
@@ -62,13 +58,30 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     if in_name and stated_unit and in_name != stated_unit:
         raise file.error(names_line, f"the unit {in_name} in a column name", f"{stated_unit}, as the header says")
     agreed = agreed_unit(file, names_line if in_name else settings.unit_line, in_name or stated_unit, unit)
-    values = table[:, chosen]
+    measured = None
+    if times is None or times == chosen:
+        (values,) = _table(file, first, separator, width, [chosen])
+    else:
+        found, values = _table(file, first, separator, width, [times, chosen])
+        if certain or _rises(found):
+            measured = _uniform_step(file, first, found * _time_factor(file, names_line, names[times]))
+        elif component is None:
+            raise _several(file, names_line, names)
+    step = _agreed_step(file, first, settings, measured, time_step)
     file.check_values(values)
     stem = file.name.rsplit(".", 1)[0]
-    named = component is not None or len(others) > 1
-    return Record(
-        values, step, agreed, name=f"{stem} {names[chosen]}" if named else stem, source=f"{file.name} (columns)"
-    )
+    name = stem if component is None else f"{stem} {names[chosen]}"
+    return Record(values, step, agreed, name=name, source=f"{file.name} (columns)")
+
+
+def _agreed_step(file: TextFile, first: int, settings: _Settings, measured: float | None, given: float | None) -> float:
+    """The time step [s] that the column of times, the settings of the header and the argument agree in."""
+    if measured is None:
+        return agreed_step(file, settings.step_line, settings.step, given)
+    if settings.step is not None and abs(measured / settings.step - 1.0) > 1e-3:
+        found = f"a time step of {settings.step:g} s"
+        raise file.error(settings.step_line, found, f"{measured:g} s, as the column of times says")
+    return agreed_step(file, first, measured, given)
 
 
 def _fields(line: str, separator: str | None) -> list[str]:
@@ -93,40 +106,55 @@ def _is_row(line: str) -> bool:
 
 def _first_row(file: TextFile) -> int:
     """Index of the first row of numbers."""
-    for k, line in enumerate(file.lines[:MAX_HEADER]):
+    for k, line in enumerate(file.head):
         if _is_row(line):
             return k
-    shown = next((line.strip() for line in file.lines if line.strip()), "an empty file")
+    shown = next((line.strip() for line in file.head if line.strip()), "blank lines")
     raise file.error(None, shown, "the header of a known format (AT2, ESM, K-NET), or rows of numbers")
 
 
-def _table(file: TextFile, first: int, separator: str | None, decimal_comma: bool) -> NDArray[np.float64]:
-    """All rows (rows, columns); each has the columns of the first."""
-    rows: list[list[float]] = []
-    width = len(_fields(file.lines[first], separator))
-    last = max(k for k, line in enumerate(file.lines) if line.strip())
-    if last - first >= MAX_SAMPLES:
-        raise file.error(None, f"{last - first + 1} rows", f"at most {MAX_SAMPLES}")
-    for k in range(first, last + 1):
-        line = file.lines[k]
-        if not line.strip() and width > 1:
-            continue  # the times show whether a row is missing
-        fields = _fields(line, separator)
-        if decimal_comma:
-            fields = [field.replace(",", ".") for field in fields]
-        if len(fields) != width:
-            raise file.error(k, f"{len(fields)} columns", f"{width}, as in line {first + 1}")
-        wrong = next((field for field in fields if not NUMBER.fullmatch(field)), None)
-        if wrong is not None:
-            raise file.error(k, wrong or "an empty field", "a number")
-        rows.append([to_float(field) for field in fields])
-    return np.array(rows)
+def _table(
+    file: TextFile, first: int, separator: str | None, width: int, columns: list[int]
+) -> list[NDArray[np.float64]]:
+    """Some columns of all rows; each row has the columns of the first."""
+    mark = None if separator is None else separator.encode()
+    decimal_comma = separator == ";" and "," in file.head[first]
+    found = [array("d") for _ in columns]
+    for k, raw in file.rows(first):
+        lines = [line.replace(b",", b".") for line in raw] if decimal_comma else raw
+        # blank lines between rows of several columns are left out: the times show whether a row is missing
+        rows = [line.split(mark) for line in lines if line or width == 1]
+        try:
+            if any(len(row) != width for row in rows):
+                raise ValueError("not only whole rows")
+            numbers = to_floats([*chain.from_iterable(rows)])
+        except ValueError:
+            numbers = []
+            for j, line in enumerate(lines, k):
+                if line or width == 1:
+                    numbers += _row(file, j, decoded(line), separator, width, first)
+        for values, column in zip(found, columns, strict=True):
+            values.extend(numbers[column::width])
+        if len(found[0]) > MAX_SAMPLES:
+            raise file.error(k, f"more than {MAX_SAMPLES} rows", f"at most {MAX_SAMPLES}")
+    return [np.frombuffer(values) for values in found]
+
+
+def _row(file: TextFile, index: int, line: str, separator: str | None, width: int, first: int) -> list[float]:
+    """The numbers of a line."""
+    fields = _fields(line, separator)
+    if len(fields) != width:
+        raise file.error(index, f"{len(fields)} columns", f"{width}, as in line {first + 1}")
+    wrong = next((field for field in fields if not NUMBER.fullmatch(field)), None)
+    if wrong is not None:
+        raise file.error(index, wrong or "an empty field", "a number")
+    return [*map(to_float, fields)]
 
 
 def _column_names(file: TextFile, first: int, separator: str | None, width: int) -> tuple[int | None, list[str]]:
     """Line and names of the columns, from the last header line with as many fields; numbered if there is none."""
     for k in range(first - 1, -1, -1):
-        line = file.lines[k].strip().lstrip(_COMMENT).strip()
+        line = file.head[k].strip().lstrip(_COMMENT).strip()
         for mark in (separator, ",", ";", "\t"):
             names = [name for name in _fields(line, mark) if name]
             if len(names) == width and not any(re.search(r"[:=]", name) for name in names):
@@ -147,8 +175,8 @@ class _Settings:
 def _settings(file: TextFile, first: int) -> _Settings:
     """Settings that header lines state as `key: value` or `key = value`."""
     found = _Settings()
-    for k, line in enumerate(file.lines[:first]):
-        for key, text in re.findall(r"([A-Za-z][\w ()/.-]*?)\s*[:=]\s*([^,;:=]+?)\s*(?=[,;]|$|\s\w+\s*[:=])", line):
+    for k, line in enumerate(file.head[:first]):
+        for key, text in _pairs(line):
             name = re.sub(r"[\s_.-]+", " ", key.lower()).strip()
             if re.search(r"\bunits?\b", name):
                 unit = parse_unit(text)
@@ -165,6 +193,22 @@ def _settings(file: TextFile, first: int) -> _Settings:
     return found
 
 
+def _pairs(line: str) -> Iterator[tuple[str, str]]:
+    """Keys and values of a line such as `station: ABC, dt = 0.01 s unit: g`.
+
+    Between two colons or equals signs are a value and the next key: after a comma or a semicolon, or the last word.
+    """
+    key, *rest = re.split(r"[:=]", line)
+    for k, part in enumerate(rest, 1):
+        pieces = re.split(r"[,;]", part)
+        if len(pieces) == 1 and k < len(rest):
+            pieces = ["", *part.rsplit(None, 1)][-2:]
+        name, value = re.split(r"[^\w ()/.-]", key.strip())[-1].lstrip("0123456789 _()/.-"), pieces[0].strip()
+        if name and value:
+            yield name, value
+        key = pieces[-1]
+
+
 def _stated_step(file: TextFile, line: int, text: str, number: re.Match[str] | None, rate: bool) -> float:
     """The time step [s] of a setting, an interval or a rate."""
     units = ("hz", "sps") if rate else ("s", "sec", "seconds", "ms")
@@ -174,26 +218,30 @@ def _stated_step(file: TextFile, line: int, text: str, number: re.Match[str] | N
     return 1.0 / value if rate else value * (1e-3 if (number[2] or "").lower() == "ms" else 1.0)
 
 
-def _time_column(file: TextFile, first: int, names: list[str], table: NDArray[np.float64]) -> int | None:
-    """Index of the column of times: named so, or the first of two and more without names; None for one column."""
+def _time_column(file: TextFile, first: int, names: list[str]) -> tuple[int | None, bool]:
+    """Index of the column of times, None for one column only, and whether that is certain.
+
+    It is named so, or the first of two and more without names. The first of columns with other names holds times if its
+    values increase.
+    """
     named = [k for k, name in enumerate(names) if re.match(r"(time|t|zeit|temps|tempo|tiempo)(\b|_|$)", name, re.I)]
-    if table.shape[1] == 1:
+    if len(names) == 1:
         if named:
             raise file.error(first, "a column of times only", "a column of accelerations")
-        return None
+        return None, True
     if len(named) > 1:
         raise file.error(None, f"columns {', '.join(names[k] for k in named)}", "one column of times")
-    if named:
-        return named[0]
-    if names[0] == "column 1":
-        return 0
-    rises = bool((np.diff(table[:, 0]) > 0.0).all()) if len(table) > 1 else False
-    return 0 if rises else None
+    return named[0] if named else 0, bool(named) or names[0] == "column 1"
+
+
+def _rises(values: NDArray[np.float64]) -> bool:
+    """Whether there are several values, each above the one before."""
+    return values.size > 1 and bool((np.diff(values) > 0.0).all())
 
 
 def _time_factor(file: TextFile, line: int | None, name: str) -> float:
     """Seconds in the unit of the column of times, seconds if its name states none."""
-    unit = re.fullmatch(r"[A-Za-z]+[\s_]*[(\[]?\s*([a-z]*)\.?\s*[)\]]?", name.strip(), re.I)
+    unit = re.fullmatch(r"[A-Za-z]++[\s_]*+[(\[]?\s*+([a-z]*+)\.?\s*+[)\]]?", name.strip(), re.I)
     text = unit[1].lower() if unit else ""
     if text in ("", "s", "sec", "second", "seconds") or name.startswith("column") or parse_unit(text):
         return 1.0
@@ -209,11 +257,11 @@ def _uniform_step(file: TextFile, first: int, times: NDArray[np.float64]) -> flo
     if not np.abs(times).max() <= MAX_TIME:
         raise file.error(None, f"a time of {np.abs(times).max():g} s", f"times up to {MAX_TIME:g} s")
     step = float((times[-1] - times[0]) / (times.size - 1))
-    grid = times[0] + step * np.arange(times.size)
-    middle = float(np.median(np.diff(times)))
+    middle = float(np.median(np.diff(times), overwrite_input=True))
     if not (middle > 0.0 and np.isfinite(middle)):
         raise file.error(first + 1, f"times {times[0]:g} and {times[1]:g}", "times that increase")
-    if step > 0.0 and np.abs(times - grid).max() <= STEP_TOLERANCE * step:
+    off = times[0] + step * np.arange(times.size) - times
+    if step > 0.0 and max(off.max(), -off.min()) <= STEP_TOLERANCE * step:
         return float(f"{step:.12g}")  # removes the rounding of the difference
     wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
     raise file.error(
@@ -221,12 +269,16 @@ def _uniform_step(file: TextFile, first: int, times: NDArray[np.float64]) -> flo
     )
 
 
+def _several(file: TextFile, line: int | None, names: list[str]) -> RecordFileError:
+    return file.error(line, f"components {', '.join(names)}", "the argument `component`: one of them")
+
+
 def _chosen(file: TextFile, line: int | None, names: list[str], columns: list[int], component: str | None) -> int:
     """The column of the component, by name or by the part of the name before the unit."""
     if component is None:
         if len(columns) == 1:
             return columns[0]
-        raise file.error(line, f"components {', '.join(names)}", "the argument `component`: one of them")
+        raise _several(file, line, names)
     plain = component.strip().lower()
     whole = [column for column, name in zip(columns, names, strict=True) if name.lower() == plain]
     parts = [
@@ -240,8 +292,8 @@ def _chosen(file: TextFile, line: int | None, names: list[str], columns: list[in
 
 def _unit_in_name(name: str) -> str | None:
     """The unit in a column name, in brackets or after the last blank or underscore."""
-    bracketed = re.search(r"[(\[]([^)\]]*)[)\]]", name)
+    bracketed = re.search(r"[(\[]([^()\[\]]*)[)\]]", name)
     if bracketed:
         return parse_unit(bracketed[1])
-    parts = re.split(r"[\s_,]+", name.strip())
-    return next((unit for k in range(1, len(parts)) if (unit := parse_unit("".join(parts[k:])))), None)
+    parts = re.split(r"[\s_,]+", name.strip())[1:][-MAX_UNIT_PARTS:]
+    return next((unit for k in range(len(parts)) if (unit := parse_unit("".join(parts[k:])))), None)

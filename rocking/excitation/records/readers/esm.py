@@ -10,7 +10,7 @@ HEADER_LINES = 64
 
 def is_esm(file: TextFile) -> bool:
     """Whether the header has the keys of the format."""
-    keys = {line.split(":", 1)[0].strip().upper() for line in file.lines[:HEADER_LINES] if ":" in line}
+    keys = {line.split(":", 1)[0].strip().upper() for line in file.head[:HEADER_LINES] if ":" in line}
     return {"SAMPLING_INTERVAL_S", "UNITS"} <= keys or {"SAMPLING_INTERVAL_S", "NDATA"} <= keys
 
 
@@ -18,8 +18,8 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     """Read an ESM file; arguments and errors as for `read_record`."""
     header: dict[str, tuple[int, str]] = {}
     first = 0
-    while first < len(file.lines) and ":" in file.lines[first]:
-        key, value = file.lines[first].split(":", 1)
+    while first < len(file.head) and ":" in file.head[first]:
+        key, value = file.head[first].split(":", 1)
         header[key.strip().upper()] = first, value.strip()
         first += 1
 
@@ -41,8 +41,9 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     count_line, count_text = entry("NDATA")
     count = file.count(count_line, count_text, "the number of values NDATA")
     values = file.values(first)
-    remark = file.checked_count(values, count, count_line)
+    remarks = file.checked_count(values, count, count_line)
     codes = [header.get(key, (0, ""))[1] for key in ("NETWORK", "STATION_CODE", "LOCATION", "STREAM")]
     name = ".".join(codes).strip(".") or file.name
     event = header.get("EVENT_NAME", (0, ""))[1] or header.get("EVENT_ID", (0, ""))[1]
-    return Record(values, step, agreed, name=name, source=joined([f"{file.name} (ESM ASCII)", event, remark]))
+    source = joined([f"{file.name} (ESM ASCII)", event])
+    return Record(values, step, agreed, name=name, source=source, remarks=remarks)

@@ -18,17 +18,17 @@ HEADER_LINES = 17
 
 def is_knet(file: TextFile) -> bool:
     """Whether the header has the keys of the format."""
-    header = "\n".join(file.lines[:HEADER_LINES]).lower()
+    header = "\n".join(file.head[:HEADER_LINES]).lower()
     return "scale factor" in header and ("sampling freq" in header or "origin time" in header)
 
 
 def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     """Read a K-NET file; arguments and errors as for `read_record`."""
-    if len(file.lines) <= HEADER_LINES:
-        raise file.error(None, f"{len(file.lines)} lines", f"{HEADER_LINES} header lines and counts")
+    if len(file.head) <= HEADER_LINES:
+        raise file.error(None, f"{len(file.head)} lines", f"{HEADER_LINES} header lines and counts")
 
     def entry(key: str) -> tuple[int, str]:
-        for k, line in enumerate(file.lines[:HEADER_LINES]):
+        for k, line in enumerate(file.head[:HEADER_LINES]):
             if line.lower().startswith(key.lower()):
                 return k, line[len(key) :].strip()
         raise file.error(None, f"no header line {key}", f"one within the first {HEADER_LINES} lines")
@@ -57,8 +57,9 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     samples = duration * frequency
     if not math.isfinite(samples):
         raise file.error(duration_line, duration_text, "a duration [s] that agrees with the number of values")
-    remark = file.checked_count(values, round(samples), duration_line)
+    remarks = file.checked_count(values, round(samples), duration_line)
     station, direction = entry("Station Code")[1], entry("Dir.")[1]
     name = " ".join(part for part in (station, direction) if part) or file.name
     event = entry("Origin Time")[1]
-    return Record(accelerations, step, agreed, name=name, source=joined([f"{file.name} (K-NET)", event, remark]))
+    source = joined([f"{file.name} (K-NET)", event])
+    return Record(accelerations, step, agreed, name=name, source=source, remarks=remarks)

@@ -1,25 +1,46 @@
-"""Lines, numbers and units of a text file; errors with the file, the line, what was found and what was expected."""
+"""Lines, numbers and units of a text file; errors with the file, the line, what was found and what was expected.
+
+Every reader takes time in proportion to the size of the file, whatever it holds: lines are short, and no expression has
+two adjoining repetitions over the same characters.
+"""
 
 from __future__ import annotations
 
+import codecs
 import re
-from collections.abc import Iterable, Sequence
+from array import array
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain, islice
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking.errors import RecordFileError
 
-NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?", re.ASCII)
+if TYPE_CHECKING:  # loads the compiler
+    from rocking._numba.cancellation import StopFlag
+
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][+-]?\d+)?", re.ASCII)
 """A number as Fortran and C write it; not nan, inf or 1_000, which Python reads as well."""
+
+MAX_LINE = 8192
+"""Most bytes of a line: several hundred columns. A longer one is no line of a record."""
+
+HEAD_LINES = 200
+"""Largest number of lines that are searched for a header."""
+
+CHUNK = 65536
+"""Bytes of rows that are read at once: some milliseconds, in which no other thread may run."""
 
 MAX_SAMPLES = 10_000_000
 """Largest number of values that is read from one file [-]."""
 
-LINE_DIFFERENCE, SHARE_DIFFERENCE = 8, 0.01
-"""Largest difference between the number of values and the number that the header states [-], one line of values or a
-share: headers are often off by a few. A larger one is a damaged file."""
+COUNT_DIFFERENCE = 0.01
+"""Largest difference between the number of values and the number that the header states, as a share of it [-]: headers
+are often off by a few. A larger one is a damaged file."""
 
 _UNIT_FORMS = {
     "g": {"g", "gs", "gravity"},
@@ -32,10 +53,64 @@ _UNIT_FORMS = {
 
 @dataclass(frozen=True)
 class TextFile:
-    """Name and lines of a text file, numbered from 1 in messages."""
+    """A text file in UTF-8, with or without a byte order mark, or in Latin-1.
+
+    Lines are numbered from 1 in messages, from 0 in arguments. Rows are read in chunks of `CHUNK` bytes, as the lines
+    of a whole file take twenty times its memory; `stop` is checked before each.
+    """
 
     name: str
-    lines: Sequence[str]
+    content: bytes
+    stop: StopFlag | None = None
+
+    @cached_property
+    def head(self) -> list[str]:
+        """The first lines, at most `HEAD_LINES`."""
+        return [decoded(line).rstrip("\r\n") for line in self._raw_head]
+
+    @cached_property
+    def _raw_head(self) -> list[bytes]:
+        chunks = (lines for _, lines in self._chunks(0, self._begin))
+        return [*islice(chain.from_iterable(chunks), HEAD_LINES)]
+
+    @property
+    def _begin(self) -> int:
+        """Index of the first byte after a byte order mark."""
+        return len(codecs.BOM_UTF8) if self.content.startswith(codecs.BOM_UTF8) else 0
+
+    def rows(self, first: int) -> Iterator[tuple[int, list[bytes]]]:
+        """Lines, stripped, from `first` in the head to the last that is not blank; some at a time, with an index.
+
+        Several blank lines may be passed on as one.
+        """
+        blank = None
+        for k, lines in self._chunks(first, self._begin + sum(map(len, self._raw_head[:first]))):
+            found = [*map(bytes.strip, lines)]
+            while found and not found[-1]:
+                found.pop()
+            if found:
+                if blank is not None:
+                    yield blank, [b""]
+                    blank = None
+                yield k, found
+            if blank is None and len(found) < len(lines):
+                blank = k + len(found)
+
+    def _chunks(self, index: int, start: int) -> Iterator[tuple[int, list[bytes]]]:
+        """Lines with their ends from a byte on, which starts the line of this index."""
+        while start < len(self.content):
+            if self.stop is not None:
+                self.stop.check()
+            part = self.content[start : start + CHUNK]
+            lines = part.splitlines(keepends=True)
+            if start + CHUNK < len(self.content) and len(lines) > 1:
+                part = part.removesuffix(lines.pop())  # it may be incomplete
+            if max(map(len, lines)) > MAX_LINE:
+                place, line = next((k, line) for k, line in enumerate(lines, index) if len(line) > MAX_LINE)
+                raise self.error(place, decoded(line[:100]), f"lines of at most {MAX_LINE} bytes")
+            yield index, lines
+            index += len(lines)
+            start += len(part)
 
     def error(self, line: int | None, found: object, expected: str) -> RecordFileError:
         """The error for a line (index from 0), or for the whole file."""
@@ -64,26 +139,32 @@ class TextFile:
     def values(self, first: int) -> NDArray[np.float64]:
         """All numbers from the line `first` on, any number on each line; blank lines only at the end.
 
-        Columns of fixed width may touch where a minus sign separates the numbers.
+        Columns of fixed width may touch where a sign separates the numbers.
         """
-        found: list[float] = []
-        last = max((k for k, line in enumerate(self.lines) if line.strip()), default=-1)
-        for k in range(first, last + 1):
-            if not self.lines[k].strip():
-                raise self.error(k, "a blank line", "acceleration values up to the end of the file")
-            for field in re.split(r"[ \t]+", self.lines[k].strip(" \t")):
-                if NUMBER.fullmatch(field):
-                    found.append(to_float(field))
-                    continue
-                parts = re.split(r"(?<=[\d.])(?=[+-])", field)  # not after an exponent's letter
-                if not all(NUMBER.fullmatch(part) for part in parts):
-                    raise self.error(k, field, "a number")
-                found += [to_float(part) for part in parts]
+        found = array("d")
+        for k, lines in self.rows(first):
+            if b"" in lines:
+                raise self.error(k + lines.index(b""), "a blank line", "acceleration values up to the end of the file")
+            try:
+                found.extend(to_floats(b" ".join(lines).split()))
+            except ValueError:
+                for j, line in enumerate(lines, k):
+                    found.extend(self._numbers(j, line))
             if len(found) > MAX_SAMPLES:
                 raise self.error(k, f"more than {MAX_SAMPLES} values", "a record of one component")
-        values = np.array(found)
+        values = np.frombuffer(found)
         self.check_values(values)
         return values
+
+    def _numbers(self, index: int, line: bytes) -> list[float]:
+        """The numbers of a line."""
+        found: list[float] = []
+        for field in decoded(line).split():
+            parts = [field] if NUMBER.fullmatch(field) else _TOUCHING.split(field)
+            if not all(NUMBER.fullmatch(part) for part in parts):
+                raise self.error(index, field, "a number")
+            found += map(to_float, parts)
+        return found
 
     def check_values(self, values: NDArray[np.float64]) -> None:
         """Refuse fewer than two values, and values beyond the range of doubles."""
@@ -92,8 +173,8 @@ class TextFile:
         if not np.isfinite(values).all():
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
 
-    def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> str:
-        """A remark if the number of values differs from the stated one; empty if not.
+    def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
+        """The remark on a number of values that differs from the stated one; none if it does not.
 
         Raises
         ------
@@ -101,11 +182,34 @@ class TextFile:
             If the difference is larger than headers are usually off: the file is damaged.
         """
         difference = abs(values.size - stated)
-        if difference == 0:
-            return ""
-        if difference > max(LINE_DIFFERENCE, SHARE_DIFFERENCE * stated):
+        if difference > COUNT_DIFFERENCE * stated:
             raise self.error(line, f"{stated} stated, {values.size} values in the file", "equal numbers")
-        return f"{values.size} samples, {stated} stated in the header"
+        return (f"the file holds {values.size} samples, its header states {stated}",) if difference else ()
+
+
+def to_floats(fields: list[bytes]) -> list[float]:
+    """Numbers that match `NUMBER`, with exponents of E.
+
+    Raises
+    ------
+    ValueError
+        For any other text.
+    """
+    if b" ".join(fields).translate(None, b"0123456789+-.Ee "):
+        raise ValueError("not only numbers")
+    return [*map(float, fields)]
+
+
+def decoded(text: bytes) -> str:
+    """A text in UTF-8 or Latin-1."""
+    try:
+        return text.decode()
+    except UnicodeDecodeError:
+        return text.decode("latin-1")
+
+
+_TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")
+"""Where two numbers touch; not after an exponent's letter."""
 
 
 def to_float(text: str) -> float:
@@ -118,7 +222,7 @@ _EXPONENT = str.maketrans("Dd", "Ee")
 
 def parse_unit(text: str) -> str | None:
     """The unit of acceleration that a text names, a key of `UNITS`; None if it names none."""
-    plain = re.sub(r"[\s_*^()\[\]]|\*\*", "", text.strip().lower().replace("²", "2").replace("sec", "s"))
+    plain = re.sub(r"[\s_*^()\[\]]", "", text.strip().lower().replace("²", "2").replace("sec", "s"))
     return next((unit for unit, forms in _UNIT_FORMS.items() if plain in forms), None)
 
 

@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import re
 
-from rocking.excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, joined, parse_unit
+from rocking.excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
 from rocking.excitation.records.record import Record
 
 HEADER_LINES = 12
 """Largest number of lines before the line with NPTS and DT."""
 
-_NAMED = r"\s*[=:]?\s*([^\s,;=]+)"
+_NAMED = r"\s*+[=:]?\s*+([^\s,;=]+)"
 
 
 def header_line(file: TextFile) -> int | None:
     """Index of the line with NPTS and DT, None if the file is no AT2 file."""
-    for k, line in enumerate(file.lines[:HEADER_LINES]):
+    for k, line in enumerate(file.head[:HEADER_LINES]):
         if re.search(r"\bNPTS\b", line, re.I) and re.search(r"\bDT\b", line, re.I):
             return k
     return None
@@ -35,11 +35,11 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     stated_count = file.count(place, count_text, "the number of points NPTS")
     stated_step = file.positive(place, step_text, "the time step DT [s]")
     title, unit_line, stated_unit = "", None, None
-    for k, line in enumerate(file.lines[:place]):
+    for k, line in enumerate(file.head[:place]):
         if re.search(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", line, re.I):
             raise file.error(k, line.strip(), "an acceleration time history")
         named = re.search(r"UNITS?(?:\s+OF|\s*[:=])?\s+(\S+)", line, re.I) or re.search(
-            r"[(\[]([^)\]]+)[)\]]\s*$", line
+            r"[(\[]([^()\[\]]+)[)\]]$", line.rstrip()
         )
         if named and parse_unit(named[1].rstrip(".,;")):
             unit_line, stated_unit = k, parse_unit(named[1].rstrip(".,;"))
@@ -50,16 +50,17 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     agreed = agreed_unit(file, unit_line if unit_line is not None else place, stated_unit, unit)
     step = agreed_step(file, place, stated_step, time_step)
     values = file.values(place + 1)
-    remark = file.checked_count(values, stated_count, place)
-    return Record(values, step, agreed, name=title or file.name, source=joined([f"{file.name} (PEER AT2)", remark]))
+    remarks = file.checked_count(values, stated_count, place)
+    source = f"{file.name} (PEER AT2)"
+    return Record(values, step, agreed, name=title or file.name, source=source, remarks=remarks)
 
 
 def _count_and_step(file: TextFile, place: int) -> tuple[str, str]:
     """The texts of NPTS and DT on the header line."""
-    line = file.lines[place]
-    leading = re.match(rf"\s*({NUMBER.pattern})\s*,?\s+({NUMBER.pattern})\s*,?\s*NPTS\b", line, re.I)
-    if leading:  # values before their names, in the order of these
-        return leading[1], leading[2]
+    line = file.head[place]
+    leading = re.split(r"[\s,]+", line.strip(), maxsplit=2)
+    if len(leading) > 2 and all(map(NUMBER.fullmatch, leading[:2])) and re.match(r"NPTS\b", leading[2], re.I):
+        return leading[0], leading[1]  # values before their names, in the order of these
     count, step = re.search(r"\bNPTS\b" + _NAMED, line, re.I), re.search(r"\bDT\b" + _NAMED, line, re.I)
     if count is None or step is None:
         raise file.error(place, line.strip(), "a form such as NPTS=  4000, DT= .01000 SEC")

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rocking.errors import InvalidArgumentError, RecordFileError, in_range, one_of
 from rocking.excitation.records.readers import columns, esm, knet, peer_at2, seismic
-from rocking.excitation.records.readers.lines import TextFile
+from rocking.excitation.records.readers.lines import MAX_LINE, TextFile
 from rocking.excitation.records.record import TIME_STEP, UNITS, Record
+
+if TYPE_CHECKING:  # loads the compiler
+    from rocking._numba.cancellation import StopFlag
 
 MAX_BYTES = 200_000_000
 """Largest file that is read [bytes]."""
@@ -62,10 +65,11 @@ def parse_record(
     unit: str | None = None,
     time_step: float | None = None,
     component: str | None = None,
+    stop: StopFlag | None = None,
 ) -> Record:
     """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
 
-    Other parameters and errors as for `read_record`.
+    `stop` cancels the work, which then raises `StoppedError`. Other parameters and errors as for `read_record`.
     """
     if unit is not None:
         one_of("unit", unit, UNITS)
@@ -75,7 +79,8 @@ def parse_record(
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
     if seismic.is_seismic(content):
         return seismic.read(content, name, unit, time_step, component)
-    file = TextFile(name, re.split(r"\r\n|\n|\r", _text(content, name)))
+    _check_text(content, name)
+    file = TextFile(name, content, stop)
     try:
         return _read_text(file, unit, time_step, component)
     except RecordFileError:
@@ -98,16 +103,13 @@ def _read_text(file: TextFile, unit: str | None, time_step: float | None, compon
     return found
 
 
-def _text(content: bytes, name: str) -> str:
-    """The text of a file in UTF-8, with or without a byte order mark, or in Latin-1."""
-    if not content.strip():
+def _check_text(content: bytes, name: str) -> None:
+    """Refuse what is no text of numbers."""
+    if not content or content.isspace():
         raise RecordFileError(name, None, "an empty file", "a recorded ground acceleration")
     if b"\0" in content:
         raise RecordFileError(name, None, "binary content", "text, or a SAC or miniSEED file")
-    if content.lstrip()[:1] in (b"<", b"{"):
-        start = content.lstrip()[:40].decode("latin-1").splitlines()[0]
-        raise RecordFileError(name, 1, start, "numbers or the header of a known format, not a web page or JSON")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
+    start = content[:MAX_LINE].lstrip()[:40].decode("latin-1")
+    if start.startswith(("<", "{")):
+        expected = "numbers or the header of a known format, not a web page or JSON"
+        raise RecordFileError(name, 1, start.splitlines()[0], expected)
