@@ -13,6 +13,7 @@ from rocking.dimensional.record_response import respond_to_record
 from rocking.dimensional.record_scales import scale_thresholds
 from rocking.excitation.records.record import UNITS
 from tests.api.conftest import assert_problem, client_of
+from tests.excitation.record_files import at2, rows
 
 ROOT = Path(__file__).parents[2]
 NAPA = (ROOT / "workflow/motions/napa_HNE.csv").read_bytes()
@@ -54,6 +55,17 @@ def test_a_block_that_overturns_has_no_peak(client):
     assert found["overturned"]
     assert found["exceeded_alpha"]
     assert found["peak_rotation"] is found["top_displacement"] is None
+
+
+def test_remarks_of_the_reader_are_in_the_response(client):
+    body = at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)).encode()
+    remark = "the file holds 100 samples, its header states 101"
+    found = post(client, body, scale=3.0).json()
+    assert remark in found["warnings"]
+    assert found["record"]["remarks"] == [remark]
+    assert post(client, body, route="history", scale=3.0).json()["record"]["remarks"] == [remark]
+    problem = assert_problem(post(client, at2("NPTS= 10, DT= .01", body="0.1 0.2\n").encode()), 422, "record")
+    assert "10 stated, 2 values" in problem["detail"]
 
 
 def test_thresholds_and_a_pulse_on_request(client, motion):

@@ -15,6 +15,7 @@ import rocking
 from rocking.cli.app import app
 from rocking.dimensional.record_response import respond_to_record
 from rocking.suites.configuration import suite_configuration
+from tests.excitation.record_files import at2, rows
 
 ROOT = Path(__file__).parents[2]
 NAPA = str(ROOT / "workflow/motions/napa_HNE.csv")
@@ -42,6 +43,15 @@ def small(tmp_path_factory):
     path = tmp_path_factory.mktemp("suite") / "suite.json"
     path.write_text(json.dumps(given))
     return path
+
+
+def test_remarks_of_the_reader_are_warnings(tmp_path):
+    path = tmp_path / "motion.at2"
+    path.write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
+    remark = "the file holds 100 samples, its header states 101"
+    assert respond_to_record(rocking.Block(0.25, 1.0), rocking.read_record(path)).warnings[0] == remark
+    assert f"\nwarning: {remark}\n" in run("record", str(path), *SIZES)
+    assert json.loads(run("record", str(path), *SIZES, "--json"))["warnings"][0] == remark
 
 
 def test_record_in_three_formats():
@@ -204,3 +214,32 @@ def test_width_and_height_are_twice_the_half_sizes():
     assert whole == json.loads(run("record", NAPA, *SIZES, "--json"))
     assert "one of --width and --half-width" in refused("record", NAPA, *SIZES, "--width", "0.5m")
     assert "--width" in refused("record", NAPA, "--height", "2m")
+
+
+def test_remarks_of_a_suite_are_warnings(small, tmp_path):
+    folder = tmp_path / "motions"
+    folder.mkdir()
+    for name in ("first", "second"):
+        (folder / f"{name}.at2").write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
+    given = json.loads(small.read_text())
+    given["records"] |= {"folder": str(folder), "pattern": "*.at2", "unit": None, "baseline_order": 1}
+    path = tmp_path / "suite.json"
+    path.write_text(json.dumps(given))
+    found = CliRunner().invoke(app, ["fragility", str(path)])
+    assert found.exit_code == 0
+    assert "warning: first: the file holds 100 samples, its header states 101\n" in found.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("a.json", "[" * 10_000), ("a.yaml", "[" * 2000), ("a.toml", "a=" + "[" * 4000)]
+)
+def test_a_configuration_of_nested_brackets_is_refused(name, text, tmp_path):
+    path = tmp_path / name
+    path.write_text(text)
+    assert "a readable configuration" in refused("fragility", str(path))
+
+
+def test_a_long_line_of_toml_is_refused(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text("a" + ".a" * 4000 + " = 1\n")
+    assert "at most 4096 characters" in refused("fragility", str(path))

@@ -121,7 +121,7 @@ ODD = {
     "at2 with SEC attached": File(at2("NPTS=24, DT=.01SEC")),
     "at2 in lower case": File(at2("npts=  24, dt= .01 sec").replace("UNITS OF G", "units of g")),
     "at2 named TIME SERIES": File(at2().replace("HISTORY", "SERIES")),
-    "at2 with one value less": File(at2("NPTS=  25, DT= .01000 SEC")),
+    "at2 with one value less": File(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)), samples=values(100)),
     "at2 with values that touch": File(at2(body=rows(5, "{:13.6E}"))),
     "at2 with D exponents": File(at2(body=rows().replace("E", "D"))),
     "at2 with CRLF": File(at2().replace("\n", "\r\n")),
@@ -160,6 +160,10 @@ DAMAGED = {
     "prose": File("This is no record.\n", error="found This is no record"),
     "zeros in bytes": File(b"1\n2\n\0\0", error="binary content"),
     "at2 cut off": File(at2("NPTS=  4000, DT= .01 SEC"), error="line 4: found 4000 stated, 24 values"),
+    "at2 with two of ten values": File(
+        at2("NPTS= 10, DT= .01 SEC", body="0.1 0.2\n"), error="line 4: found 10 stated, 2 values"
+    ),
+    "at2 with one of 25 values missing": File(at2("NPTS= 25, DT= .01 SEC"), error="line 4: found 25 stated, 24 values"),
     "at2 with header only": File(at2(body=""), error="0 acceleration values"),
     "at2 with a word": File(replaced(at2(), "E-01", "E-0l"), error="expected a number"),
     "at2 with overflowed columns": File(replaced(at2(), rows()[:15], " **************"), error="line 5: found \\*"),
@@ -179,6 +183,7 @@ DAMAGED = {
     "at2 of zeros": File(at2(body="0.0 " * 24), error="all samples 0"),
     "esm without interval": File(esm({"SAMPLING_INTERVAL_S": None, "UNITS": "cm/s^2"}), error="found"),
     "esm with another number of values": File(esm({"NDATA": "12000"}), error="12000 stated, 24 values"),
+    "esm with one of 25 values missing": File(esm({"NDATA": "25"}), error="25 stated, 24 values"),
     "esm of velocity": File(esm({"DATA_TYPE": "VELOCITY", "UNITS": "cm/s"}), error="found VELOCITY"),
     "esm of an unknown unit": File(esm({"UNITS": "cm/s"}), error="found cm/s; expected a unit"),
     "esm without a unit": File(esm({"UNITS": ""}), error="no unit of acceleration"),
@@ -200,6 +205,9 @@ DAMAGED = {
     ),
     "knet that is too short": File(
         KNET_HEADER.replace("0.24", "300") + KNET_ROWS, error="line 12: found 30000 stated, 24 values"
+    ),
+    "knet with one of 25 values missing": File(
+        KNET_HEADER.replace("0.24", "0.25") + KNET_ROWS, error="line 12: found 25 stated, 24 values"
     ),
     "csv without unit": File(pairs(header="time,acceleration\n"), error="no unit of acceleration"),
     "csv of another unit than given": File(pairs(), {"unit": "m/s2"}, error="the unit g; expected m/s2"),
@@ -223,6 +231,8 @@ DAMAGED = {
     "one column with a blank line": File(
         replaced(single("acceleration_g\n"), "0.122560\n", "\n"), {"time_step": 0.01}, error="line 3"
     ),
+    "a header of one long line": File("a" * 9000 + "\n" + pairs(), error="line 1: found aaa.*at most 8192 bytes"),
+    "a row of one long line": File(pairs() + "1," * 9000 + "\n", error="line 26: found 1,1.*at most 8192 bytes"),
     "numbers of another alphabet": File(pairs().replace("0", "٠"), error="found"),
     "a damaged miniSEED": File(b"000001D " + b"\x01" * 600, {"unit": "g"}, error="miniSEED"),
 }

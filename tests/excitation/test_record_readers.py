@@ -2,16 +2,18 @@
 
 import pickle
 import random
+import subprocess
 import sys
 
 import numpy as np
 import pytest
 
 import rocking
-from rocking.errors import InvalidArgumentError, RecordFileError
+from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError, RecordFileError, StoppedError
 from rocking.excitation.records.readers.read_record import parse_record
 from rocking.excitation.records.record import UNITS
-from tests.excitation.record_files import DAMAGED, GOOD, ODD, File, at2
+from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, File, at2, esm, pairs, rows
 from tests.excitation.record_fuzzer import fuzz
 
 
@@ -39,8 +41,49 @@ def test_damaged_files_are_refused_with_place_and_reason(file: File, tmp_path) -
     assert "; expected " in str(caught.value)
 
 
-def test_a_number_of_values_that_the_header_does_not_state_is_reported() -> None:
-    assert "24 samples, 25 stated" in parse_record(at2("NPTS=  25, DT= .01 SEC").encode(), "x.at2").source
+def test_a_number_of_values_that_the_header_does_not_state_is_a_remark_that_remains() -> None:
+    record = parse_record(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)).encode(), "x.at2")
+    assert record.remarks == ("the file holds 100 samples, its header states 101",)
+    assert record.source == "x.at2 (PEER AT2)"
+    assert record.baseline_corrected().remarks == record.resampled(0.005).remarks == record.remarks
+    assert parse_record(at2().encode(), "x.at2").remarks == ()
+
+
+@pytest.mark.parametrize(
+    "file", [at2(), esm(), KNET_HEADER + KNET_ROWS, pairs()], ids=["AT2", "ESM", "K-NET", "columns"]
+)
+def test_reading_can_be_cancelled(file: str) -> None:
+    stop = StopFlag()
+    parse_record(file.encode(), "x", stop=stop)
+    stop.set()
+    with pytest.raises(StoppedError):
+        parse_record(file.encode(), "x", stop=stop)
+
+
+GROWTH = """
+import resource, sys
+from rocking.excitation.records.readers.read_record import read_record
+
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+assert read_record(sys.argv[1]).samples == 400_000
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+"""
+
+
+@pytest.mark.parametrize(
+    ("header", "row"),
+    [
+        ("time_s,acceleration_g\n", "{0:.2f},{1:.9f}\n"),
+        ("unit: g\ndt: 0.01\n", "{1:.17f}\n"),
+        (at2("NPTS= 400000, DT= .01", body=""), "{1:19.10E}\n"),
+    ],
+    ids=["columns", "one column", "AT2"],
+)
+def test_reading_takes_at_most_four_times_the_memory_of_the_file(header: str, row: str, tmp_path) -> None:
+    path = tmp_path / "motion"
+    path.write_text(header + "".join(row.format(0.01 * k, 0.1 + k / 1e9) for k in range(400_000)))
+    grown = subprocess.run([sys.executable, "-c", GROWTH, path], check=True, capture_output=True).stdout
+    assert 1024 * int(grown) < 4 * path.stat().st_size
 
 
 def test_a_missing_file_is_an_invalid_argument(tmp_path) -> None:

@@ -1,0 +1,49 @@
+"""Every reader of text takes time in proportion to the length of the text, whatever it holds.
+
+`python -m tests.repeated_fragments --seconds 600` tries more texts.
+"""
+
+from itertools import islice
+
+import pytest
+
+from tests.repeated_fragments import MATCHED_UNITS, READERS, Fragments, excess, fragments
+
+TEXTS = 100
+"""Texts of each reader."""
+
+ROWS = "\n0,1\n1,2\n2,1\n"
+AT2 = "PEER\nTitle\nACCELERATION TIME HISTORY IN UNITS OF G\n{}\n1 2 3\n"
+
+FOUND = [
+    *(
+        ("columns", f"@{ROWS}", *parts)
+        for parts in (("", "a", ""), ("", "a ", ""), ("a:b", " ", "b,"), ("a", " ", "b"))
+    ),
+    *(("columns", f"time @,a_g{ROWS}", *parts) for parts in (("", " ", "("), ("", "s", ""))),
+    *(("columns", f"time,acc@{ROWS}", *parts) for parts in (("", "(", ""), ("", " g", ""))),
+    *(("AT2", AT2.format("NPTS= 3, DT= .01").replace("Title", "@"), "", fragment, "") for fragment in ("(", "[a")),
+    ("AT2", AT2.format("@ NPTS DT"), "", "1", ""),
+    ("AT2", AT2.format("@ NPTS DT"), "1", " ", ""),
+    ("AT2", AT2.format("NPTS@ DT"), "", " ", ""),
+    ("query string", "@&a=1&a=2", "", "a№=1&", ""),
+    ("points in JSON", "@", "", '"slenderness":[', ""),
+]
+"""Texts whose time grew with the square of their length."""
+
+
+@pytest.mark.parametrize(("name", "given"), [(name, Fragments(*parts)) for name, *parts in FOUND])
+def test_texts_that_took_long(name, given):
+    assert excess(READERS[name], given) is None
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_readers(name):
+    for given in islice(fragments(name, READERS[name], seed=1), TEXTS):
+        assert excess(READERS[name], given) is None
+
+
+@pytest.mark.parametrize("name", MATCHED_UNITS)
+def test_readers_of_units(name):
+    for given in islice(fragments(name, MATCHED_UNITS[name], seed=1), TEXTS):
+        assert excess(MATCHED_UNITS[name], given) is None
