@@ -7,14 +7,19 @@ report the same errors. Physical outcomes such as overturning are results and ra
 from __future__ import annotations
 
 import math
+import operator
+import re
 import sys
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from decimal import Decimal
 from numbers import Real
+from types import NoneType
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from rocking.units import EXAMPLES, UNITS, USUAL, Quantity, split_quantity, unit_name
 
 _MAX_FLOAT = sys.float_info.max
 
@@ -30,15 +35,30 @@ class InvalidArgumentError(ValueError):
         The offending value.
     allowed : str
         Accepted values, in words or as an interval.
+    index : tuple of int
+        Place of the value in an argument with several.
     """
 
-    def __init__(self, parameter: str, value: Any, allowed: str) -> None:
+    def __init__(self, parameter: str, value: Any, allowed: str, index: tuple[int, ...] = ()) -> None:
         self.parameter = parameter
         self.value = value
         self.allowed = allowed
-        super().__init__(f"`{parameter}` = {value!r} is not allowed; allowed: {allowed}")
+        self.index = index
+        place = f" at index {index if len(index) > 1 else index[0]}" if index else ""
+        super().__init__(f"`{parameter}` = {value!r}{place} is not allowed; allowed: {allowed}")
 
-    def __reduce__(self) -> tuple[type[InvalidArgumentError], tuple[str, Any, str]]:
+    def __reduce__(self) -> tuple[type[InvalidArgumentError], tuple[Any, ...]]:
+        return type(self), (self.parameter, self.value, self.allowed, self.index)
+
+
+class MissingUnitError(InvalidArgumentError):
+    """A text with a number and no unit."""
+
+    def __init__(self, parameter: str, value: str, allowed: str) -> None:
+        super().__init__(parameter, value, allowed)
+        self.args = (f"`{parameter}` = {value!r}: {allowed}",)
+
+    def __reduce__(self) -> tuple[type[MissingUnitError], tuple[Any, ...]]:
         return type(self), (self.parameter, self.value, self.allowed)
 
 
@@ -77,7 +97,7 @@ class OutsideCubeError(InvalidArgumentError, LookupError):
 
 
 def in_range(
-    parameter: str, value: ArrayLike, low: float, high: float, *, closed: str = "both", unit: str = "-"
+    parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> NDArray[np.float64]:
     """Return `value` as a float64 array (shape kept) after checking that all of it is finite and in the range.
 
@@ -85,38 +105,156 @@ def in_range(
     ----------
     parameter : str
         Name for the error message.
-    value : array_like of real numbers, any shape
-        Boolean, complex, date and text values, which numpy would convert, are rejected, and so are masked entries.
+    value : array_like of real numbers, any shape; a quantity; or a text with a unit
+        Numbers without a unit are in `unit`. Quantities (pint, astropy), also in lists, and a text such as "40 cm" are
+        converted to it. Boolean, complex, date and other text values, which numpy would convert, are rejected, and so
+        are masked entries.
     low, high : float
         Range; `high` may be infinite.
     closed : {"both", "left", "right", "neither"}
         Which ends belong to the range.
     unit : str
-        Unit for the message.
+        Unit of the result.
 
     Raises
     ------
     InvalidArgumentError
-        With the first offending entry.
+        With the first offending entry and its index.
     """
-    if not _is_real(value):
+    array = float_array(parameter, value, low, high, closed=closed, unit=unit)
+    if array.ndim == 0:
+        if not _within(float(array), low, high, closed):
+            reject_range(parameter, float(array), low, high, closed, unit)
+    # two comparisons instead of arrays of them; min and max are nan if an entry is
+    elif array.size and not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
+        places = np.ndenumerate(array)
+        index, wrong = next((place, entry) for place, entry in places if not _within(float(entry), low, high, closed))
+        reject_range(parameter, float(wrong), low, high, closed, unit, index)
+    return array
+
+
+def number(
+    parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
+) -> float:
+    """Return `value` as a float after checking that it is one finite number in the range; as `in_range`."""
+    if isinstance(value, list | tuple) or (hasattr(value, "ndim") and value.ndim):
+        raise InvalidArgumentError(parameter, value, f"one number in {_interval(low, high, closed, unit)}")
+    return float(in_range(parameter, value, low, high, closed=closed, unit=unit))
+
+
+def positive(parameter: str, value: ArrayLike | Quantity, unit: str) -> float:
+    """Return `value` as a float after checking that it is one finite number > 0; as `in_range`."""
+    return number(parameter, value, 0.0, math.inf, closed="neither", unit=unit)
+
+
+def integer(parameter: str, value: ArrayLike | Quantity, low: float, high: float) -> int:
+    """Return `value` as an int after checking that it is one whole number from `low` to `high`; as `in_range`."""
+    found = number(parameter, value, low, high)
+    if not found.is_integer():
+        raise InvalidArgumentError(parameter, value, f"a whole number in {_interval(low, high, 'both', '-')}")
+    return int(found)
+
+
+def si_value(parameter: str, text: str, unit: str) -> float:
+    """The value of a quantity in an SI unit.
+
+    Parameters
+    ----------
+    parameter : str
+        Name for the error message.
+    text : str
+        A number and a unit, such as "1.2 m", "30cm", "4 m/s^2", "0.4 g", "400 gal", "20 deg", "45 %".
+    unit : str
+        Unit of the result, a key of `rocking.units.UNITS`.
+
+    Raises
+    ------
+    MissingUnitError
+        If there is no unit; the message proposes one.
+    InvalidArgumentError
+        If the unit is unknown or of another quantity, or the value is not finite.
+    """
+    percentage = "a number, or a percentage such as '45 %'"
+    allowed = percentage if unit == "-" else f"a number with its unit, such as {EXAMPLES[unit]}"
+    value, written = split_quantity(text) or (math.nan, "")
+    if not written and math.isfinite(value) and unit in USUAL:
+        proposed = " or ".join(f"{text.strip()}{usual}" for usual in USUAL[unit])
+        raise MissingUnitError(parameter, text, f"missing unit: write {proposed} (such as {EXAMPLES[unit]})")
+    name = unit_name(written, unit)
+    value = value * UNITS[unit][name] if name else math.nan
+    if not math.isfinite(value):
+        raise InvalidArgumentError(parameter, text, allowed)
+    return value
+
+
+def plain_number(parameter: str, text: str) -> float:
+    """The value of a text without a unit, such as "0.45", "1e-3" or "45 %".
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is neither a number nor a percentage.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        return si_value(parameter, text, "-")
+
+
+def float_array(
+    parameter: str,
+    value: Any,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    closed: str = "neither",
+    unit: str = "-",
+) -> NDArray[np.float64]:
+    """Return `value` as a float64 array, as `in_range` but not compared with the range, nan and infinity included."""
+    if isinstance(value, str) and unit in UNITS:
+        return np.asarray(si_value(parameter, value, unit))
+    given = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
+    if not _is_real(given):
         allowed = f"real numbers, none of them masked, in {_interval(low, high, closed, unit)}"
         raise InvalidArgumentError(parameter, value, allowed)
     try:
-        array = np.asarray(value, dtype=np.float64)
+        return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
         reject_range(parameter, value, low, high, closed, unit)
     except OverflowError:  # an integer beyond the range of doubles
-        wrong = next(entry for entry in np.asarray(value, dtype=object).flat if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
+        wrong = next(entry for entry in np.asarray(given, dtype=object).flat if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
-    if array.size == 0:
-        return array
-    # two comparisons instead of arrays of them; min and max are nan if an entry is
-    least, most = (float(array), float(array)) if array.ndim == 0 else (float(array.min()), float(array.max()))
-    if not (_within(least, low, high, closed) and _within(most, low, high, closed)):
-        wrong = next(entry for entry in array.flat if not _within(float(entry), low, high, closed))
-        reject_range(parameter, float(wrong), low, high, closed, unit)
-    return array
+
+
+_PLAIN_TYPES = {float, int, np.float64, str, bytes, bool, NoneType}
+"""Types without a unit."""
+
+
+def _without_unit(parameter: str, value: Any, unit: str) -> Any:
+    """The value of a quantity of any library, or of a list with some, in `unit`; other values as they are."""
+    if isinstance(value, np.ndarray) and value.dtype.kind != "O" and not hasattr(value, "unit"):
+        return value
+    if isinstance(value, list | tuple):
+        if set(map(type, value)) <= _PLAIN_TYPES:
+            return value
+        entries = [_without_unit(parameter, entry, unit) for entry in value]
+        return value if all(map(operator.is_, entries, value)) else entries
+    if type(value) is np.ndarray and any(_has_unit(entry) for entry in value.flat):
+        return _without_unit(parameter, value.tolist(), unit)
+    quantity = value.variable.data if hasattr(value, "variable") else value  # in a labelled array of xarray
+    if not _has_unit(quantity):
+        return value
+    si_unit = next((key for key, names in UNITS.items() if unit in names), unit)  # other libraries' g is a gram
+    try:
+        converted = quantity.to("" if unit == "-" else re.sub(r"(?<=[a-z])2", "**2", si_unit))
+    except Exception:  # noqa: BLE001  (each library has its own errors)
+        raise InvalidArgumentError(parameter, quantity, f"a quantity that can be converted to [{unit}]") from None
+    value = converted.magnitude if hasattr(converted, "magnitude") else converted.value
+    return value if unit == si_unit else value / UNITS[si_unit][unit]
+
+
+def _has_unit(value: Any) -> bool:
+    return hasattr(value, "to") and (hasattr(value, "units") or hasattr(value, "unit"))
 
 
 def _is_real(value: ArrayLike) -> bool:
@@ -140,9 +278,14 @@ def _within(value: float, low: float, high: float, closed: str) -> bool:
     return above and below and math.isfinite(value)
 
 
-def reject_range(parameter: str, value: Any, low: float, high: float, closed: str, unit: str) -> NoReturn:
+def reject_range(
+    parameter: str, value: Any, low: float, high: float, closed: str, unit: str, index: tuple[int, ...] = ()
+) -> NoReturn:
     """Raise `InvalidArgumentError` with the allowed range in words."""
-    raise InvalidArgumentError(parameter, value, _interval(low, high, closed, unit))
+    allowed = _interval(low, high, closed, unit)
+    if unit == "rad" and isinstance(value, float) and value > high and _within(math.radians(value), low, high, closed):
+        allowed += "; numpy.radians converts degrees" if index else f"; write '{value:g} deg' if degrees were meant"
+    raise InvalidArgumentError(parameter, value, allowed, index)
 
 
 def _interval(low: float, high: float, closed: str, unit: str) -> str:
@@ -169,7 +312,8 @@ def broadcast(
         If the shapes do not broadcast; also if labelled arguments (xarray, pandas) differ in their dimensions, in the
         order of these, or in their indexes: numpy would combine entries by position.
     """
-    labelled = {name: _labels(value) for name, value in given.items() if np.ndim(value) > 0}  # type: ignore[arg-type]
+    pairs = zip(given.items(), checked, strict=False)  # an argument that is None may be left out at the end
+    labelled = {name: _labels(value) for (name, value), array in pairs if array.ndim}
     first: list[tuple[Hashable, Any]] = []
     for labels in labelled.values():
         first = first or labels

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import product
 
-from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.errors import InvalidArgumentError, integer, one_of
 
 
 class Orientation(Enum):
@@ -304,10 +304,9 @@ def admissible_exponents(
     The paper prints a_g/a for a_g/g in (4.8); (4.3) and (4.7) have a_g/g.
     """
     oriented = {name: orientation for name, orientation in factors.items() if orientation is not Orientation.L0}
-    most = int(0.5 * (MAX_COMBINATIONS ** (1.0 / max(len(oriented), 1)) - 1.0))
-    if in_range("largest", largest, 0, most) != int(largest):
-        raise InvalidArgumentError("largest", largest, "a whole number")
-    choices = product(range(-int(largest), int(largest) + 1), repeat=len(oriented))
+    highest = int(0.5 * (MAX_COMBINATIONS ** (1.0 / max(len(oriented), 1)) - 1.0))
+    most = integer("largest", largest, 0, highest)
+    choices = product(range(-most, most + 1), repeat=len(oriented))
     candidates = (dict(zip(oriented, choice, strict=True)) for choice in choices)
     return [exponents for exponents in candidates if is_homogeneous(target, oriented, exponents)]  # (4.8), (4.9)
 

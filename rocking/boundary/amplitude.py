@@ -9,15 +9,17 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.search import UNCOUNTED, Floats, classifier, counted_code, outcomes_along
-from rocking.errors import in_range
+from rocking.equality import EqualByValue
+from rocking.errors import number
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.model.checks import check
+from rocking.model.checks import check_number
 from rocking.model.outcome_code import SURVIVES, decode_outcomes
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION
+from rocking.units import Scalar
 
 
-@dataclass(frozen=True)
-class Thresholds:
+@dataclass(frozen=True, eq=False)
+class Thresholds(EqualByValue):
     """Amplitudes at which the outcome for a block changes, ascending; all arrays (thresholds,).
 
     Attributes
@@ -41,10 +43,10 @@ class Thresholds:
 def critical_amplitude(
     pulse: str | AbstractPulse,
     *,
-    frequency_ratio: float,
-    restitution: float,
-    alpha: float | None = None,
-    highest_amplitude: float = 100.0,
+    frequency_ratio: Scalar,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    highest_amplitude: Scalar = 100.0,
     stop: StopFlag | None = None,
 ) -> Thresholds:
     """Every amplitude between 1 and `highest_amplitude` at which the outcome changes.
@@ -73,10 +75,9 @@ def critical_amplitude(
     StoppedError
         If `stop` was set.
     """
-    in_range("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
-    log_omega = float(np.log(check(FREQUENCY_RATIO, frequency_ratio)))
-    eta = float(check(RESTITUTION, restitution))
-    lowest = 1.0 / highest_amplitude
+    lowest = 1.0 / number("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
+    log_omega = float(np.log(check_number(FREQUENCY_RATIO, frequency_ratio)))
+    eta = check_number(RESTITUTION, restitution)
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
     made = as_pulse(pulse)
     classify = classifier(made, alpha, stop, counted_code)

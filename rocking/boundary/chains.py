@@ -13,7 +13,7 @@ from rocking.boundary.matching import Side
 from rocking.boundary.search import Codes, Floats
 
 
-@dataclass
+@dataclass(eq=False)
 class Chains:
     """Points of the outlines of overturning regions, chain after chain; all arrays (points,).
 

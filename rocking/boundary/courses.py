@@ -15,7 +15,7 @@ PROBES = 81
 """Most points by which a region is looked for in one column [-]."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Courses:
     """Where regions of a column lie on another line: one of each array's entries for each region.
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from rocking.model.checks import check_alpha
+from rocking.model.checks import check_one_alpha
 
 ALPHA_TOLERANCE = 1e-12
 """Difference up to which two slenderness angles are the same one, written in degrees and in radians [rad]."""
@@ -44,7 +44,6 @@ def curves_at(curves: xr.Dataset, alpha: float) -> xr.Dataset:
     InvalidArgumentError
         For an angle out of range.
     """
-    check_alpha(alpha)
-    wanted = np.abs(curves["alpha"].values - alpha) <= ALPHA_TOLERANCE
+    wanted = np.abs(curves["alpha"].values - check_one_alpha(alpha)) <= ALPHA_TOLERANCE
     points = np.repeat(wanted, curves["row_size"].values)
     return curves.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points))

@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.search import Floats, classifier, counted_code, outcomes_along
+from rocking.equality import EqualByValue
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.model.checks import check
+from rocking.model.checks import check_number
 from rocking.model.outcome_code import SURVIVES
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking.units import Scalar
 
 NODES_PER_DECADE = 1000
 """Nodes on which outcomes are first computed, before their changes are refined [-]."""
@@ -26,8 +28,8 @@ NODES_PER_DECADE = 1000
 Flags = NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class FrequencyThresholds:
+@dataclass(frozen=True, eq=False)
+class FrequencyThresholds(EqualByValue):
     """Frequency ratios at which the outcome for a block changes, ascending; arrays (thresholds,).
 
     Attributes
@@ -48,10 +50,10 @@ class FrequencyThresholds:
 def critical_frequency_ratio(
     pulse: str | AbstractPulse,
     *,
-    slenderness: float,
-    restitution: float,
+    slenderness: Scalar,
+    restitution: Scalar,
     window: tuple[float, float],
-    alpha: float | None = None,
+    alpha: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> FrequencyThresholds:
     """Every frequency ratio of a window at which the outcome changes, the amplitude being fixed.
@@ -81,12 +83,12 @@ def critical_frequency_ratio(
         If `stop` was set.
     """
     made = as_pulse(pulse)
-    low, high = (float(check(FREQUENCY_RATIO, end, "window")) for end in window)
+    low, high = (check_number(FREQUENCY_RATIO, end, "window") for end in window)
     if not low < high <= 1e4 * low:
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    point = float(check(SLENDERNESS, slenderness)), float(nodes[0]), float(check(RESTITUTION, restitution))
+    point = check_number(SLENDERNESS, slenderness), float(nodes[0]), check_number(RESTITUTION, restitution)
     grid, codes = outcomes_along(1, point, nodes, classifier(made, alpha, stop, counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])

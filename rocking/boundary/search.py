@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
 from rocking.excitation.pulses import AbstractPulse
-from rocking.model.checks import check_alpha
+from rocking.model.checks import check_one_alpha
 from rocking.model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import FREQUENCY_RATIO
 from rocking.solver.peak_response import solve_cells
 from rocking.solver.state import FULL_PRECISION
+from rocking.units import Scalar
 
 RESOLUTION = 1e-12
 """Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
@@ -137,7 +138,7 @@ class Work:
         return float(self._done[np.searchsorted(self._etas, eta)])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Found:
     """What the solver has found for some blocks, see `Outcomes`; arrays of one shape."""
 
@@ -148,7 +149,7 @@ class Found:
 
 def classifier(
     pulse: AbstractPulse,
-    alpha: float | None,
+    alpha: Scalar | None,
     stop: StopFlag | None = None,
     code_of: Callable[[Outcomes], Codes] = outcome_code,
     work: Work | None = None,
@@ -162,7 +163,7 @@ def classifier(
     InvalidArgumentError
         For an angle out of range.
     """
-    angle = float(check_alpha(alpha))
+    angle = check_one_alpha(alpha)
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         omega = np.clip(
@@ -180,7 +181,7 @@ def classifier(
     return classify
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Nodes:
     """Classified points on lines of the control space; arrays (nodes,).
 
@@ -221,7 +222,7 @@ class Nodes:
         return nodes.take(first)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Brackets:
     """Brackets of changes of outcome: the outcome of each bracket holds at the first end only.
 

@@ -19,11 +19,12 @@ from rocking.boundary.chords import refine_chords
 from rocking.boundary.columns import THINNEST
 from rocking.boundary.search import Floats, Work, classifier, layer_code, region_code
 from rocking.boundary.tracer import CHORD, END, Tracer
-from rocking.errors import in_range
+from rocking.errors import integer
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.model.checks import check, check_window
+from rocking.model.checks import check, check_number, check_one_alpha, check_window
 from rocking.model.outcome_code import decode_outcomes
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking.units import Scalar
 
 UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
 """Blocks that the pulse can uplift."""
@@ -32,8 +33,8 @@ UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
 def overturning_boundary(
     pulse: str | AbstractPulse,
     *,
-    restitution: float,
-    alpha: float | None = None,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
     frequency_ratio: tuple[float, float] = (0.2, 15.0),
     slenderness: tuple[float, float] = (0.02, 1.0),
     nodes: int = 401,
@@ -88,7 +89,7 @@ def overturning_boundary(
     """
     return overturning_boundaries(
         pulse,
-        restitution=[restitution],
+        restitution=check_number(RESTITUTION, restitution),
         alpha=alpha,
         frequency_ratio=frequency_ratio,
         slenderness=slenderness,
@@ -101,23 +102,24 @@ def overturning_boundaries(
     pulse: str | AbstractPulse,
     *,
     restitution: ArrayLike,
-    alpha: float | None = None,
+    alpha: Scalar | None = None,
     frequency_ratio: tuple[float, float] = (0.2, 15.0),
     slenderness: tuple[float, float] = (0.02, 1.0),
     nodes: int = 401,
     stop: StopFlag | None = None,
 ) -> list[xr.Dataset]:
     """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit."""
-    in_range("nodes", nodes, 16, 4001)
+    nodes = integer("nodes", nodes, 16, 4001)
     low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
     bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
     etas = np.atleast_1d(check(RESTITUTION, restitution))
+    angle = check_one_alpha(alpha)
     made = as_pulse(pulse)
-    log_omega = np.linspace(np.log(low), np.log(high), int(nodes))
-    rows = _rows(bottom, top, int(nodes), log_omega.size)
+    log_omega = np.linspace(np.log(low), np.log(high), nodes)
+    rows = _rows(bottom, top, nodes, log_omega.size)
     unique, which = np.unique(etas, return_inverse=True)
     work = Work(unique)
-    classify, classify_regions = (classifier(made, alpha, stop, code, work) for code in (layer_code, region_code))
+    classify, classify_regions = (classifier(made, angle, stop, code, work) for code in (layer_code, region_code))
     tracer = Tracer(log_omega, unique, classify, classify_regions, work)
     tracer.trace(rows)
     joins = (join for k in tracer.panels for join in tracer.joins[k])
@@ -126,7 +128,7 @@ def overturning_boundaries(
         _as_dataset(chains).assign_attrs(
             pulse=made.name,
             restitution=float(eta),
-            alpha=float(alpha or 0.0),
+            alpha=angle,
             chord_error=error,
             uncounted_chord_error=uncounted_error,
             thinnest_region=THINNEST,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from rocking.cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
-from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
+from rocking.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
 from rocking.model.block import Block
 from rocking.model.checks import check_window
 from rocking.model.parameters import FREQUENCY_RATIO
@@ -27,7 +27,7 @@ _SI_UNITS = {
     "height": "m",
     "half_width": "m",
     "half_height": "m",
-    "peak_acceleration": "m/s**2",
+    "peak_acceleration": "m/s2",
     "pulse_period": "s",
     "period_min": "s",
     "period_max": "s",
@@ -88,13 +88,6 @@ def _error_text(error: InvalidArgumentError) -> str:
     return f"{place}: {text}" if place else text
 
 
-def si_value(parameter: str, text: str, unit: str) -> float:
-    """As `rocking.dimensional.units.si_value`, whose unit library is not needed for groups."""
-    from rocking.dimensional import units
-
-    return units.si_value(parameter, text, unit)
-
-
 def read_params(options: ProblemOptions) -> Params:
     """A block under a pulse.
 
@@ -112,7 +105,7 @@ def read_params(options: ProblemOptions) -> Params:
         return Params(options.pulse, slenderness, ratio, _eta(options.restitution), angle or None)
     _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
     block = read_block(options)
-    return _of_problem(options, block, _positive(options, "peak_acceleration"), _positive(options, "pulse_period"))
+    return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "pulse_period"))
 
 
 def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
@@ -133,7 +126,7 @@ def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Pa
     _refuse_groups(options, ("slenderness", "alpha"))
     block = read_block(options)
     window = _window(options, block, low, high)
-    return _of_problem(options, block, _positive(options, "peak_acceleration"), _period(block, window[0])), window
+    return _of_problem(options, block, _given(options, "peak_acceleration"), _period(block, window[0])), window
 
 
 def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
@@ -220,12 +213,12 @@ def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
             raise InvalidArgumentError(name, getattr(options, name), "either groups or a block and a pulse with units")
 
 
-def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float, period: float) -> Params:
+def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | str, period: float) -> Params:
     from rocking.dimensional.problem import BlockProblem
 
     given = options.restitution or "housner"
     eta = "housner" if given == "housner" else _eta(given)
-    problem = BlockProblem(block, options.pulse, peak_acceleration, period, eta)  # type: ignore[arg-type]
+    problem = BlockProblem(block, options.pulse, peak_acceleration, period, eta)
     groups: Mapping[str, float] = problem.groups  # type: ignore[assignment]
     return Params(options.pulse, **groups, problem=problem)
 
@@ -235,7 +228,7 @@ def _window(options: WindowOptions, block: Block, low: float, high: float) -> tu
     shortest = None if options.period_min is None else _positive(options, "period_min")
     longest = None if options.period_max is None else _positive(options, "period_max")
     if shortest is not None and longest is not None:
-        in_range("period_max", longest, shortest, math.inf, closed="neither", unit="s")
+        number("period_max", longest, shortest, math.inf, closed="neither", unit="s")
     ends = low if longest is None else _ratio(block, longest), high if shortest is None else _ratio(block, shortest)
     return check_window(FREQUENCY_RATIO, *ends)
 
@@ -248,18 +241,22 @@ def _period(block: Block, ratio: float) -> float:
     return 2.0 * math.pi / (ratio * block.frequency_parameter)
 
 
-def _positive(options: SizeOptions, name: str) -> float:
-    text = getattr(options, name)
+def _given(options: SizeOptions, name: str) -> str:
+    text: str | None = getattr(options, name)
     if text is None:
         raise InvalidArgumentError(name, None, "required with the other options that have units")
-    value = si_value(name, text, _SI_UNITS[name])
-    return float(in_range(name, value, 0.0, math.inf, closed="neither", unit=_SI_UNITS[name].replace("**", "")))
+    return text
+
+
+def _positive(options: SizeOptions, name: str) -> float:
+    return positive(name, _given(options, name), _SI_UNITS[name])
 
 
 def _eta(text: str | None) -> float:
+    allowed = "a number, or housner for a block with units"
     if text is None:
-        raise InvalidArgumentError("restitution", None, "a number, or housner for a block with units")
+        raise InvalidArgumentError("restitution", None, allowed)
     try:
-        return float(text)
-    except ValueError:
-        raise InvalidArgumentError("restitution", text, "a number, or housner for a block with units") from None
+        return plain_number("restitution", text)
+    except InvalidArgumentError:
+        raise InvalidArgumentError("restitution", text, allowed) from None

@@ -95,14 +95,12 @@ def record(
     """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
     from rocking.dimensional.curves import block_record_history
     from rocking.dimensional.record_response import respond_to_record
-    from rocking.dimensional.units import si_value
 
     with _picture(picture) as draw, file_errors():
         motion, shape, restitution = read_problem(file, block)
-        length = None if duration is None else si_value("duration", duration, "s")
 
         def panels(pictures: Any, figure: Any) -> None:
-            data = block_record_history(shape, motion, scale=block.scale, restitution=restitution, duration=length)
+            data = block_record_history(shape, motion, scale=block.scale, restitution=restitution, duration=duration)
             _draw_history(pictures, figure, data)
 
         draw(panels)

@@ -75,24 +75,22 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
         If the file does not hold a record.
     """
     from rocking.cli.arguments import read_block
-    from rocking.dimensional.units import si_value
     from rocking.excitation.records.readers.read_record import read_record
 
-    step = None if options.time_step is None else si_value("time_step", options.time_step, "s")
     block = read_block(options)
     eta: float | Literal["housner"] = "housner" if options.restitution == "housner" else _number_of(options.restitution)
-    motion = read_record(file, unit=options.unit, time_step=step, component=options.component)
+    motion = read_record(file, unit=options.unit, time_step=options.time_step, component=options.component)
     if options.baseline_order is not None:
         motion = motion.baseline_corrected(order=options.baseline_order)
     return motion, block, eta
 
 
 def _number_of(text: str) -> float:
-    from rocking.errors import InvalidArgumentError
+    from rocking.errors import InvalidArgumentError, plain_number
 
     try:
-        return float(text)
-    except ValueError:
+        return plain_number("restitution", text)
+    except InvalidArgumentError:
         raise InvalidArgumentError("restitution", text, "a number, or housner") from None
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import broadcast
+from rocking.errors import broadcast, float_array
 from rocking.model.checks import check
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, Parameter
 
@@ -46,7 +46,6 @@ def checked(**given: ArrayLike) -> list[Array]:
         dimensions or indexes.
     """
     arrays = [
-        check(_RANGES[name], value) if name in _RANGES else np.asarray(value, dtype=np.float64)
-        for name, value in given.items()
+        check(_RANGES[name], value) if name in _RANGES else float_array(name, value) for name, value in given.items()
     ]
     return broadcast(given, arrays)

@@ -17,9 +17,9 @@ from scipy.optimize import brentq, minimize_scalar
 
 from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
 from rocking.closed_form.no_impact import first_uplift_phase, margin_after_impact
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, integer
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking.model.checks import check, check_window
+from rocking.model.checks import check_number, check_window
 from rocking.model.parameters import RESTITUTION
 
 _SAMPLES = 48
@@ -67,7 +67,7 @@ def impacts_in_pulse(
     InvalidArgumentError
         For a pulse that is no sum of sinusoids, and for arguments out of range.
     """
-    return _motion(pulse, amplitude, frequency_ratio, restitution, most)[0]
+    return _motion(pulse, amplitude, frequency_ratio, restitution, integer("most", most, 0, math.inf))[0]
 
 
 def _motion(
@@ -77,10 +77,10 @@ def _motion(
     shape = as_pulse(pulse)
     if not isinstance(shape, SinusoidalPulse):
         raise InvalidArgumentError("pulse", shape.name, "a sum of sinusoids")
-    a = float(check(UPLIFTING_AMPLITUDE, amplitude))
-    omega = float(check(ANY_FREQUENCY_RATIO, frequency_ratio))
-    eta = float(check(RESTITUTION, restitution))
-    in_range("most", most, 1, MAX_IMPACTS)
+    a = check_number(UPLIFTING_AMPLITUDE, amplitude)
+    omega = check_number(ANY_FREQUENCY_RATIO, frequency_ratio)
+    eta = check_number(RESTITUTION, restitution)
+    most = integer("most", most, 1, MAX_IMPACTS)
     phase, y_dot = first_uplift_phase(shape, a), 0.0
     found: list[Impact] = []
     if math.isnan(phase):
@@ -165,18 +165,18 @@ def margin_after_impacts(
         boundary of overturning after these impacts, positive inside it; nan if there are fewer impacts, or one more
         while the pulse acts.
     """
-    in_range("impacts", impacts, 1, MAX_IMPACTS - 1)
-    found, last = _motion(pulse, amplitude, frequency_ratio, restitution, impacts + 1)
-    if len(found) == impacts:
+    count = integer("impacts", impacts, 1, MAX_IMPACTS - 1)
+    found, last = _motion(pulse, amplitude, frequency_ratio, restitution, count + 1)
+    if len(found) == count:
         return margin_after_impact(pulse, amplitude, frequency_ratio, restitution, *found[-1])
-    if len(found) != impacts - 1 or last is None:
+    if len(found) != count - 1 or last is None:
         return math.nan
     # free rocking from the end of the pulse to one more impact, (3.15) from any state
     end = last.shape.end
     rotation, outward = last.side * float(last.rotation(end)), last.side * float(last.velocity(end))
     if rotation + outward >= 1.0:
         return math.nan  # it overturns before that impact
-    return restitution * math.sqrt(1.0 + outward**2 - (rotation - 1.0) ** 2) - 1.0  # (3.17)
+    return float(restitution) * math.sqrt(1.0 + outward**2 - (rotation - 1.0) ** 2) - 1.0  # (3.17)
 
 
 def overturning_interval(

@@ -14,9 +14,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO
-from rocking.errors import in_range
+from rocking.errors import number, positive
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking.model.checks import check
+from rocking.model.checks import check_number
 from rocking.model.parameters import RESTITUTION
 
 _NEGLIGIBLE = 50.0  # time s beyond which e^-s < 2e-22 is neglected
@@ -39,7 +39,7 @@ def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
         phi [rad]; nan if the block never uplifts.
     """
     shape = as_pulse(pulse)
-    a = float(in_range("amplitude", amplitude, 0.0, math.inf, closed="neither"))
+    a = positive("amplitude", amplitude, "-")
     if abs(a * float(shape.shape(shape.start))) >= 1:
         return shape.start
     for low, high in shape.monotone_pieces:
@@ -61,8 +61,8 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
         phi at tau_0 [rad], within the pulse.
     """
     shape = as_pulse(pulse)
-    omega = float(check(ANY_FREQUENCY_RATIO, frequency_ratio))
-    phi0 = float(in_range("start_phase", start_phase, shape.start, shape.end, unit="rad"))
+    omega = check_number(ANY_FREQUENCY_RATIO, frequency_ratio)
+    phi0 = number("start_phase", start_phase, shape.start, shape.end, unit="rad")
     length = (shape.end - phi0) / omega
     if isinstance(shape, SinusoidalPulse):
         total = 0.0
@@ -100,11 +100,12 @@ def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequenc
         uplift. For the sine the margin vanishes on (3.10).
     """
     shape = as_pulse(pulse)
-    phi0 = first_uplift_phase(shape, amplitude)
+    a = positive("amplitude", amplitude, "-")
+    phi0 = first_uplift_phase(shape, a)
     if math.isnan(phi0):
         return -1.0
     side = math.copysign(1.0, float(shape.shape(phi0)))
-    return side * amplitude * discounted_integral(shape, frequency_ratio, phi0) - 1
+    return side * a * discounted_integral(shape, frequency_ratio, phi0) - 1
 
 
 def margin_after_impact(
@@ -139,6 +140,8 @@ def margin_after_impact(
         sine the margin vanishes on (3.18) and on (3.20).
     """
     shape = as_pulse(pulse)
-    eta = float(check(RESTITUTION, restitution))
-    forced = discounted_integral(shape, frequency_ratio, impact_phase) if impact_phase < shape.end else 0.0
-    return eta * abs(impact_velocity) - math.copysign(amplitude, impact_velocity) * forced - 1
+    a, eta = positive("amplitude", amplitude, "-"), check_number(RESTITUTION, restitution)
+    phase = number("impact_phase", impact_phase, shape.start, math.inf, unit="rad")
+    velocity = number("impact_velocity", impact_velocity, -math.inf, math.inf)
+    forced = discounted_integral(shape, frequency_ratio, phase) if phase < shape.end else 0.0
+    return eta * abs(velocity) - math.copysign(a, velocity) * forced - 1

@@ -108,6 +108,7 @@ class Assessment:
         problem, margins = self.problem, self.margins
         periods = [one for one in margins.periods if one.value == margins.nearest_period] if margins else []
         return [
+            *problem.warnings,
             *warnings_of_block(problem.block, problem.restitution, self.contact.outcome),
             *warnings_of_changes(problem.peak_acceleration, self.thresholds or (), "peak acceleration", " m/s2"),
             *warnings_of_changes(problem.period, periods, "period", " s"),

@@ -1,8 +1,8 @@
-"""The block with its responses in SI units: what `rocking.Block` is."""
+"""Blocks with their responses in SI units: what `rocking.Block` and `rocking.EquivalentBlock` have in common."""
 
 from __future__ import annotations
 
-from typing import Literal, overload
+from typing import final, overload
 
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -21,50 +21,36 @@ from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
 from rocking.model import block as geometry
+from rocking.units import Scalar
 
-Restitution = float | Literal["housner"]
+Restitution = Scalar  # or "housner"
 
 
-class Block(geometry.Block):
-    """A free-standing rigid rectangular block of uniform density (figure 1), and what pulses do to it.
-
-    Parameters
-    ----------
-    half_width : float
-        b [m], > 0; the base is 2b wide.
-    half_height : float
-        h [m], > 0; the block is 2h high.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a length or gravity is not finite and positive.
-    """
+class RespondingBlock(geometry.AbstractBlock):
+    """What pulses and records do to anything that rocks like a block."""
 
     @overload
     def response(
         self,
         excitation: str | AbstractPulse,
         *,
-        peak_acceleration: float,
-        period: float,
+        peak_acceleration: Scalar,
+        period: Scalar,
         restitution: Restitution = "housner",
     ) -> BlockResponse: ...
 
     @overload
     def response(
-        self, excitation: Record, *, scale: float = 1.0, restitution: Restitution = "housner", thresholds: bool = True
+        self, excitation: Record, *, scale: Scalar = 1.0, restitution: Restitution = "housner", thresholds: bool = True
     ) -> BlockRecordResponse: ...
 
     def response(
         self,
         excitation: str | AbstractPulse | Record,
         *,
-        peak_acceleration: float | None = None,
-        period: float | None = None,
-        scale: float | None = None,
+        peak_acceleration: Scalar | None = None,
+        period: Scalar | None = None,
+        scale: Scalar | None = None,
         restitution: Restitution = "housner",
         thresholds: bool = True,
     ) -> BlockResponse | BlockRecordResponse:
@@ -95,6 +81,8 @@ class Block(geometry.Block):
         --------
         >>> Block(half_width=0.2, half_height=0.8).response("sine", peak_acceleration=4.0, period=0.5).overturned
         False
+        >>> Block("20 cm", "80 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
+        False
         """
         motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
         if isinstance(motion, BlockProblem):
@@ -107,10 +95,10 @@ class Block(geometry.Block):
         self,
         excitation: str | AbstractPulse,
         *,
-        peak_acceleration: float,
-        period: float,
+        peak_acceleration: Scalar,
+        period: Scalar,
         restitution: Restitution = "housner",
-        duration: float | None = None,
+        duration: Scalar | None = None,
         samples: int | None = None,
         contact: bool = False,
     ) -> xr.Dataset: ...
@@ -120,9 +108,9 @@ class Block(geometry.Block):
         self,
         excitation: Record,
         *,
-        scale: float = 1.0,
+        scale: Scalar = 1.0,
         restitution: Restitution = "housner",
-        duration: float | None = None,
+        duration: Scalar | None = None,
         samples: int | None = None,
         contact: bool = False,
     ) -> xr.Dataset: ...
@@ -131,11 +119,11 @@ class Block(geometry.Block):
         self,
         excitation: str | AbstractPulse | Record,
         *,
-        peak_acceleration: float | None = None,
-        period: float | None = None,
-        scale: float | None = None,
+        peak_acceleration: Scalar | None = None,
+        period: Scalar | None = None,
+        scale: Scalar | None = None,
         restitution: Restitution = "housner",
-        duration: float | None = None,
+        duration: Scalar | None = None,
         samples: int | None = None,
         contact: bool = False,
     ) -> xr.Dataset:
@@ -170,7 +158,7 @@ class Block(geometry.Block):
         self,
         excitation: str | AbstractPulse,
         *,
-        peak_acceleration: float,
+        peak_acceleration: Scalar,
         period: ArrayLike,
         restitution: Restitution = "housner",
     ) -> xr.Dataset:
@@ -220,13 +208,13 @@ class Block(geometry.Block):
     def _motion(
         self,
         excitation: str | AbstractPulse | Record,
-        peak_acceleration: float | None,
-        period: float | None,
-        scale: float | None,
+        peak_acceleration: Scalar | None,
+        period: Scalar | None,
+        scale: Scalar | None,
         restitution: Restitution,
-    ) -> BlockProblem | tuple[Record, float]:
+    ) -> BlockProblem | tuple[Record, Scalar]:
         """The problem under a pulse, or the record and its factor."""
-        of_pulse: dict[str, float | None] = {"peak_acceleration": peak_acceleration, "period": period}
+        of_pulse: dict[str, Scalar | None] = {"peak_acceleration": peak_acceleration, "period": period}
         if isinstance(excitation, Record):
             for name, value in of_pulse.items():
                 if value is not None:
@@ -238,3 +226,24 @@ class Block(geometry.Block):
             missing = next(name for name, value in of_pulse.items() if value is None)
             raise InvalidArgumentError(missing, None, "a number, for a pulse")
         return BlockProblem(self, excitation, peak_acceleration, period, restitution)
+
+
+@final
+class Block(RespondingBlock, geometry.Block):
+    """A free-standing rigid rectangular block of uniform density (figure 1), and what pulses do to it.
+
+    Parameters
+    ----------
+    half_width : float
+        b [m], > 0; the base is 2b wide. Here and wherever a quantity is expected, a number is in the SI unit, and
+        quantities of pint and texts such as "20 cm" are converted to it.
+    half_height : float
+        h [m], > 0; the block is 2h high.
+    gravity : float
+        g [m/s2], > 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a length or gravity is not finite and positive.
+    """

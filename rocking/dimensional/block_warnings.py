@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rocking.dimensional.threshold import Threshold
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.model.outcome import Outcome
 
 MARGIN = 0.05
@@ -14,7 +14,7 @@ MARGIN = 0.05
 NOT_FOUND = "the {} at which the outcome changes were not found in time: such a block has too many impacts"
 
 
-def warnings_of_block(block: Block, restitution: float | str, outcome: Outcome) -> list[str]:
+def warnings_of_block(block: AbstractBlock, restitution: float | str, outcome: Outcome) -> list[str]:
     """Where restitution or shape of a block make its rocking doubtful."""
     texts = []
     if restitution == "housner" and block.housner_restitution < 0.0 and outcome != Outcome.NO_UPLIFT:

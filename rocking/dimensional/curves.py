@@ -12,14 +12,15 @@ from rocking._numba.cancellation import StopFlag
 from rocking.boundary.tracing import overturning_boundary
 from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
 from rocking.dimensional.record_scales import checked_scale
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, in_range, positive
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
 from rocking.history.record_history import record_history
 from rocking.history.time_history import time_history
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.solver.bounded_response import solve_with_bound
+from rocking.units import Scalar
 
 DEFAULT_SAMPLES = 400
 """Uniform samples of a history under a pulse, unless another number is given."""
@@ -28,7 +29,7 @@ DEFAULT_SAMPLES = 400
 def block_history(
     problem: BlockProblem,
     *,
-    duration: float | None = None,
+    duration: Scalar | None = None,
     samples: int = DEFAULT_SAMPLES,
     contact: bool = False,
     stop: StopFlag | None = None,
@@ -59,12 +60,10 @@ def block_history(
     InvalidArgumentError
         If a value is out of range.
     """
-    if duration is not None:
-        in_range("duration", duration, 0.0, math.inf, closed="neither", unit="s")
     found = time_history(
         problem.pulse,
         **problem.groups,
-        duration=None if duration is None else duration * problem.block.frequency_parameter,
+        duration=None if duration is None else positive("duration", duration, "s") * problem.block.frequency_parameter,
         samples=samples,
         contact=contact,
         stop=stop,
@@ -85,12 +84,12 @@ def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
 
 
 def block_record_history(
-    block: Block,
+    block: AbstractBlock,
     record: Record,
     *,
-    scale: float = 1.0,
-    restitution: str | float = "housner",
-    duration: float | None = None,
+    scale: Scalar = 1.0,
+    restitution: Scalar = "housner",
+    duration: Scalar | None = None,
     samples: int | None = None,
     contact: bool = False,
     stop: StopFlag | None = None,
@@ -143,7 +142,7 @@ def block_record_history(
     return _in_radians(found, block).assign_attrs(about | {"scale": factor})
 
 
-def _in_radians(history: xr.Dataset, block: Block) -> xr.Dataset:
+def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
     """A history over time [s] with rotation [rad], velocity [rad/s] and ground acceleration [m/s2] for groups."""
     scales = {
         "rotation": (block.alpha, "rad", "rotation theta"),
@@ -160,12 +159,12 @@ def _in_radians(history: xr.Dataset, block: Block) -> xr.Dataset:
 
 
 def block_spectrum(
-    block: Block,
+    block: AbstractBlock,
     pulse: str | AbstractPulse,
     *,
-    peak_acceleration: float,
+    peak_acceleration: Scalar,
     period: ArrayLike,
-    restitution: float | str = "housner",
+    restitution: Scalar = "housner",
 ) -> xr.Dataset:
     """Peak rotation of a block against the period of the pulse, in SI units.
 
@@ -197,7 +196,7 @@ def block_spectrum(
     if periods.ndim > 1:
         raise InvalidArgumentError("period", periods.shape, "one dimension")
     periods = np.atleast_1d(periods)
-    problem = BlockProblem(block, pulse, peak_acceleration, float(periods[0]) if periods.size else 1.0, restitution)  # type: ignore[arg-type]
+    problem = BlockProblem(block, pulse, peak_acceleration, float(periods[0]) if periods.size else 1.0, restitution)
     ratio = frequency_ratio_of(block, 1.0) / periods
     found = solve_with_bound(problem.pulse, **{**problem.groups, "frequency_ratio": ratio})  # type: ignore[arg-type]
     rotation = found.peak_rotation * block.alpha
@@ -223,10 +222,10 @@ def block_spectrum(
 
 
 def block_boundary(
-    block: Block,
+    block: AbstractBlock,
     pulse: str | AbstractPulse,
     *,
-    restitution: float | str = "housner",
+    restitution: Scalar = "housner",
     period: tuple[float, float] | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
@@ -267,7 +266,7 @@ def block_boundary(
     return add_si_axes(found, block)
 
 
-def add_si_axes(curves: xr.Dataset, block: Block) -> xr.Dataset:
+def add_si_axes(curves: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
     """Boundary curves with peak_acceleration(point) [m/s2] and period(point) [s] of a block of their alpha."""
     return curves.assign(
         peak_acceleration=(
@@ -283,7 +282,7 @@ def add_si_axes(curves: xr.Dataset, block: Block) -> xr.Dataset:
     )
 
 
-def _description(block: Block, peak_acceleration: float, restitution: float) -> dict[str, float]:
+def _description(block: AbstractBlock, peak_acceleration: float, restitution: float) -> dict[str, float]:
     """Attributes that name the problem, in SI units."""
     return {
         "half_width": block.half_width,

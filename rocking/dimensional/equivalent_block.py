@@ -12,20 +12,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Self
+from typing import Self, final
 
 from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.block import Block
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.dimensional.block import RespondingBlock
+from rocking.errors import InvalidArgumentError, number, positive
 from rocking.model import block as geometry
-from rocking.model.checks import check
+from rocking.model.checks import check_number
 from rocking.model.linkage import LinearEquation
 from rocking.model.masonry_arch import MasonryArch
 from rocking.model.parameters import FREQUENCY_PARAMETER, RESTITUTION
+from rocking.units import Scalar
 
 
+@final
 @dataclass(frozen=True, init=False, repr=False)
-class EquivalentBlock(Block):
+class EquivalentBlock(RespondingBlock):
     """The block that rocks like a structure; it is accepted wherever a `Block` is.
 
     `half_width` and `half_height` are those of the rectangular block of this alpha and p. Contact forces and friction
@@ -62,32 +64,33 @@ class EquivalentBlock(Block):
 
     def __init__(
         self,
-        alpha: float,
-        frequency_parameter: float,
+        alpha: Scalar,
+        frequency_parameter: Scalar,
         *,
-        restitution: float,
-        uplift_acceleration: float | None = None,
-        gravity: float = STANDARD_GRAVITY,
-        top_height: float | None = None,
+        restitution: Scalar,
+        uplift_acceleration: Scalar | None = None,
+        gravity: Scalar = STANDARD_GRAVITY,
+        top_height: Scalar | None = None,
     ) -> None:
-        in_range("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
-        check(FREQUENCY_PARAMETER, frequency_parameter)
-        in_range("gravity", gravity, 0.0, math.inf, closed="neither", unit="m/s2")
-        check(RESTITUTION, restitution)
-        for name, value, unit in (
-            ("uplift_acceleration", uplift_acceleration, "m/s2"),
-            ("top_height", top_height, "m"),
-        ):
-            if value is not None:
-                in_range(name, value, 0.0, math.inf, closed="neither", unit=unit)
-        size = 0.75 * gravity / frequency_parameter**2  # p = sqrt(3 g/(4 R)), below (2.2)
-        super().__init__(size * math.sin(alpha), size * math.cos(alpha), gravity)
+        angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
+        p = check_number(FREQUENCY_PARAMETER, frequency_parameter)
+        g = positive("gravity", gravity, "m/s2")
+        uplift, top = (
+            None if value is None else positive(name, value, unit)
+            for name, value, unit in (
+                ("uplift_acceleration", uplift_acceleration, "m/s2"),
+                ("top_height", top_height, "m"),
+            )
+        )
+        eta = check_number(RESTITUTION, restitution)
+        size = 0.75 * g / p**2  # p = sqrt(3 g/(4 R)), below (2.2)
+        super().__init__(size * math.sin(angle), size * math.cos(angle), g)
         own = {
-            "_alpha": float(alpha),
-            "_frequency_parameter": float(frequency_parameter),
-            "_restitution": float(restitution),
-            "_uplift_acceleration": None if uplift_acceleration is None else float(uplift_acceleration),
-            "_top_height": None if top_height is None else float(top_height),
+            "_alpha": angle,
+            "_frequency_parameter": p,
+            "_restitution": eta,
+            "_uplift_acceleration": uplift,
+            "_top_height": top,
         }
         for name, value in own.items():
             object.__setattr__(self, name, value)  # a frozen dataclass
@@ -105,7 +108,9 @@ class EquivalentBlock(Block):
     @property
     def uplift_acceleration(self) -> float:
         """Smallest ground acceleration that starts rocking [m/s2]."""
-        return super().uplift_acceleration if self._uplift_acceleration is None else self._uplift_acceleration
+        if self._uplift_acceleration is None:
+            return self.gravity * self.half_width / self.half_height  # below (2.1)
+        return self._uplift_acceleration
 
     @property
     def equation_alpha(self) -> float:
@@ -149,12 +154,12 @@ class EquivalentBlock(Block):
     def rigid_body(
         cls,
         *,
-        mass: float,
-        inertia: float,
-        base: float,
-        centre_height: float,
-        top_height: float | None = None,
-        gravity: float = STANDARD_GRAVITY,
+        mass: Scalar,
+        inertia: Scalar,
+        base: Scalar,
+        centre_height: Scalar,
+        top_height: Scalar | None = None,
+        gravity: Scalar = STANDARD_GRAVITY,
     ) -> Self:
         """A symmetric rigid body of any shape on two pivots; exact.
 
@@ -176,11 +181,9 @@ class EquivalentBlock(Block):
         InvalidArgumentError
             If a value is out of range, or the body would bounce: a negative coefficient of restitution.
         """
-        in_range("mass", mass, 0.0, math.inf, closed="neither", unit="kg")
-        in_range("inertia", inertia, 0.0, math.inf, closed="neither", unit="kg m2")
-        in_range("base", base, 0.0, math.inf, closed="neither", unit="m")
-        in_range("centre_height", centre_height, 0.0, math.inf, closed="neither", unit="m")
-        in_range("gravity", gravity, 0.0, math.inf, closed="neither", unit="m/s2")
+        mass, inertia = positive("mass", mass, "kg"), positive("inertia", inertia, "kg m2")
+        base, centre_height = positive("base", base, "m"), positive("centre_height", centre_height, "m")
+        gravity = positive("gravity", gravity, "m/s2")
         radius = math.hypot(0.5 * base, centre_height)
         about_pivot = inertia + mass * radius * radius
         # angular momentum about the new pivot, as for (2.4)
@@ -196,7 +199,7 @@ class EquivalentBlock(Block):
         )
 
     @classmethod
-    def rocking_frame(cls, column: geometry.Block, *, mass_ratio: float) -> Self:
+    def rocking_frame(cls, column: geometry.Block, *, mass_ratio: Scalar) -> Self:
         """Equal columns that carry a rigid beam without mortar; exact (Makris & Vassiliou 2013).
 
         Parameters
@@ -211,7 +214,9 @@ class EquivalentBlock(Block):
         InvalidArgumentError
             If `mass_ratio` is out of range, or the frame would bounce at impacts.
         """
-        in_range("mass_ratio", mass_ratio, 0.0, math.inf, closed="left")
+        if not isinstance(column, geometry.Block):
+            raise InvalidArgumentError("column", column, "a rocking.Block")
+        mass_ratio = number("mass_ratio", mass_ratio, 0.0, math.inf, closed="left")
         alpha, inertia = column.alpha, 1.0 + 3.0 * mass_ratio
         # the beam moves as a point mass on the circle of radius 2 R of the tops of the columns
         restitution = (1.0 - 1.5 * math.sin(alpha) ** 2 + 3.0 * mass_ratio * math.cos(2.0 * alpha)) / inertia
@@ -229,13 +234,13 @@ class EquivalentBlock(Block):
     def linear_mechanism(
         cls,
         *,
-        mass: float,
-        stiffness: float,
-        restoring: float,
-        load: float,
-        restitution: float,
-        top_height: float,
-        gravity: float = STANDARD_GRAVITY,
+        mass: Scalar,
+        stiffness: Scalar,
+        restoring: Scalar,
+        load: Scalar,
+        restitution: Scalar,
+        top_height: Scalar,
+        gravity: Scalar = STANDARD_GRAVITY,
     ) -> Self:
         """Any mechanism by its linearised equation M theta'' - K theta + C = -B a.
 
@@ -255,9 +260,8 @@ class EquivalentBlock(Block):
         InvalidArgumentError
             If a value is out of range, or C/K is not below pi/2.
         """
-        given = {"mass": mass, "stiffness": stiffness, "restoring": restoring, "load": load}
-        for name, value in given.items():
-            in_range(name, value, 0.0, math.inf, closed="neither")
+        mass, stiffness = positive("mass", mass, "kg m2"), positive("stiffness", stiffness, "N m")
+        restoring, load = positive("restoring", restoring, "N m"), positive("load", load, "kg m")
         return cls(
             restoring / stiffness,
             math.sqrt(stiffness / mass),
@@ -271,12 +275,12 @@ class EquivalentBlock(Block):
     def masonry_arch(
         cls,
         *,
-        radius: float,
-        thickness: float,
-        embrace: float,
+        radius: Scalar,
+        thickness: Scalar,
+        embrace: Scalar,
         voussoirs: int,
-        restitution: float | None = None,
-        gravity: float = STANDARD_GRAVITY,
+        restitution: Scalar | None = None,
+        gravity: Scalar = STANDARD_GRAVITY,
     ) -> Self:
         """A circular masonry arch, which opens as a four-bar linkage; linearised.
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from numbers import Real
 from typing import Literal, TypedDict
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.constants import STANDARD_GRAVITY
+from rocking.errors import InvalidArgumentError, positive
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.model.block import Block
-from rocking.model.checks import check
+from rocking.model.block import AbstractBlock
+from rocking.model.checks import check_number
 from rocking.model.parameters import RESTITUTION
+from rocking.units import Scalar
 
 
 class BlockGroups(TypedDict):
@@ -22,7 +25,7 @@ class BlockGroups(TypedDict):
     alpha: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class BlockProblem:
     """A block under a pulse.
 
@@ -33,7 +36,7 @@ class BlockProblem:
     pulse : str or AbstractPulse
         The pulse.
     peak_acceleration : float
-        a_g [m/s2], > 0.
+        a_g [m/s2], > 0. A number without unit that is small enough to be one in g gives a warning.
     period : float
         T_p = 2 pi/omega_g [s], > 0; `duration` is how long the pulse lasts.
     restitution : float or "housner"
@@ -45,25 +48,47 @@ class BlockProblem:
         If a value is out of range.
     """
 
-    block: Block
+    block: AbstractBlock
     pulse: str | AbstractPulse
     peak_acceleration: float
     period: float
-    restitution: float | Literal["housner"] = "housner"
+    restitution: float | Literal["housner"]
+    unit_is_stated: bool = field(compare=False, repr=False)
 
-    def __post_init__(self) -> None:
-        as_pulse(self.pulse)
-        for name, unit in (("peak_acceleration", "m/s2"), ("period", "s")):
-            if in_range(name, getattr(self, name), 0.0, math.inf, closed="neither", unit=unit).ndim:
-                several = "; `Block.spectrum` takes several periods" if name == "period" else ""
-                raise InvalidArgumentError(name, getattr(self, name), f"one number [{unit}]{several}")
-        restitution_of(self.block, self.restitution)
+    def __init__(
+        self,
+        block: AbstractBlock,
+        pulse: str | AbstractPulse,
+        peak_acceleration: Scalar,
+        period: Scalar,
+        restitution: Scalar = "housner",
+    ) -> None:
+        as_pulse(pulse)
+        checked = {
+            "block": block,
+            "pulse": pulse,
+            "peak_acceleration": positive("peak_acceleration", peak_acceleration, "m/s2"),
+            "period": positive("period", period, "s"),
+            "restitution": "housner" if is_housner(restitution) else restitution_of(block, restitution),
+            "unit_is_stated": not isinstance(peak_acceleration, Real),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)  # a frozen dataclass
 
     @property
     def duration(self) -> float:
         """Duration of the pulse [s]: half a period for the half sine and the rectangular pulse, one for the sine."""
         pulse = as_pulse(self.pulse)
         return (pulse.end - pulse.start) / (2.0 * math.pi) * self.period
+
+    @property
+    def warnings(self) -> list[str]:
+        """Whether the peak acceleration, a number without unit, was probably meant in g."""
+        a, uplift = self.peak_acceleration, self.block.uplift_acceleration
+        if self.unit_is_stated or not a < uplift < a * STANDARD_GRAVITY:
+            return []
+        text = f"peak_acceleration = {a:.4g} m/s2 is below the uplift acceleration {uplift:.4g} m/s2"
+        return [f"{text}; if it was meant in g, write '{a:.4g} g'"]
 
     @property
     def groups(self) -> BlockGroups:
@@ -77,7 +102,7 @@ class BlockProblem:
         }
 
 
-def restitution_of(block: Block, restitution: float | str) -> float:
+def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
     """The coefficient of restitution [-]: the number, or that of the geometry for "housner".
 
     Raises
@@ -85,20 +110,24 @@ def restitution_of(block: Block, restitution: float | str) -> float:
     InvalidArgumentError
         For any other text, several numbers, and numbers outside [0, 1].
     """
-    if restitution == "housner":
+    if is_housner(restitution):
         return block.inelastic_restitution
-    if isinstance(restitution, str):
-        raise InvalidArgumentError("restitution", restitution, f"housner, or a number in {RESTITUTION.interval}")
-    if check(RESTITUTION, restitution).ndim:
-        raise InvalidArgumentError("restitution", restitution, f"housner, or one number in {RESTITUTION.interval}")
-    return float(restitution)
+    try:
+        return check_number(RESTITUTION, restitution)
+    except InvalidArgumentError as error:
+        raise InvalidArgumentError("restitution", error.value, f"housner, or {error.allowed}") from None
 
 
-def frequency_ratio_of(block: Block, period: float) -> float:
+def is_housner(restitution: Scalar) -> bool:
+    """Whether the coefficient of restitution is that of the geometry, (2.4)."""
+    return isinstance(restitution, str) and restitution == "housner"
+
+
+def frequency_ratio_of(block: AbstractBlock, period: float) -> float:
     """omega = omega_g/p [-] of a period T_p [s]."""
     return 2.0 * math.pi / period / block.frequency_parameter
 
 
-def period_of(block: Block, frequency_ratio: float) -> float:
+def period_of(block: AbstractBlock, frequency_ratio: float) -> float:
     """T_p [s] of a frequency ratio omega [-]."""
     return 2.0 * math.pi / frequency_ratio / block.frequency_parameter

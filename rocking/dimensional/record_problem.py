@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 from rocking._numba.cancellation import StopFlag
-from rocking.dimensional.problem import restitution_of
+from rocking.dimensional.problem import is_housner, restitution_of
 from rocking.dimensional.record_scales import checked_scale
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.model.response import Response
 from rocking.solver.records.record_response import record_response
+from rocking.units import Scalar
 
 
 class RecordGroups(TypedDict):
@@ -23,13 +24,13 @@ class RecordGroups(TypedDict):
     alpha: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class RecordProblem:
     """A block under a record times a factor.
 
     Parameters
     ----------
-    block : Block
+    block : AbstractBlock
         The block.
     record : Record
         Ground motion, without the factor.
@@ -44,14 +45,23 @@ class RecordProblem:
         If a value is out of range.
     """
 
-    block: Block
+    block: AbstractBlock
     record: Record
-    scale: float = 1.0
-    restitution: float | str = "housner"
+    scale: float
+    restitution: float | str
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "scale", checked_scale(self.scale))
-        restitution_of(self.block, self.restitution)
+    def __init__(
+        self, block: AbstractBlock, record: Record, scale: Scalar = 1.0, restitution: Scalar = "housner"
+    ) -> None:
+        eta = restitution_of(block, restitution)
+        checked = {
+            "block": block,
+            "record": record,
+            "scale": checked_scale(scale),
+            "restitution": "housner" if is_housner(restitution) else eta,
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)  # a frozen dataclass
 
     @property
     def groups(self) -> RecordGroups:

@@ -21,9 +21,10 @@ from rocking.dimensional.scalar_response import (
     count_of_impacts,
 )
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION, ResponseField
 from rocking.model.response import Response
+from rocking.units import Scalar
 
 FIELDS = (
     ROTATION,
@@ -42,7 +43,7 @@ FIELDS = (
 """Fields of the response to a record in SI units, in order."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BlockRecordResponse(ScalarResponse):
     """What happens to a block under a record.
 
@@ -157,11 +158,11 @@ class BlockRecordResponse(ScalarResponse):
 
 
 def respond_to_record(
-    block: Block,
+    block: AbstractBlock,
     record: Record,
     *,
-    scale: float = 1.0,
-    restitution: str | float = "housner",
+    scale: Scalar = 1.0,
+    restitution: Scalar = "housner",
     thresholds: bool = True,
     stop: StopFlag | None = None,
 ) -> BlockRecordResponse:

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
 from rocking.dimensional.threshold import RELATIVE_ERROR, Threshold, threshold_text
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.equality import EqualByValue
+from rocking.errors import number
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.solver.records.record_response import record_response
+from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 
@@ -35,8 +37,8 @@ _SCANNED = 200
 """Scales of one call when only the lowest change is sought."""
 
 
-@dataclass(frozen=True)
-class ScaleThresholds:
+@dataclass(frozen=True, eq=False)
+class ScaleThresholds(EqualByValue):
     """Scales at which the outcome changes, ascending; arrays (thresholds,).
 
     Attributes
@@ -69,7 +71,7 @@ class ScaleThresholds:
         return f"it overturns from {first.text()} times the record{more}"
 
 
-def checked_scale(scale: float) -> float:
+def checked_scale(scale: Scalar) -> float:
     """The factor of a record [-].
 
     Raises
@@ -77,18 +79,15 @@ def checked_scale(scale: float) -> float:
     InvalidArgumentError
         If it is not one number in (0, 1e6].
     """
-    factor = in_range("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
-    if factor.ndim:
-        raise InvalidArgumentError("scale", scale, "one number")
-    return float(factor)
+    return number("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
 
 
 def scale_thresholds(
     record: Record,
-    block: Block,
+    block: AbstractBlock,
     *,
-    restitution: str | float = "housner",
-    highest: float | None = None,
+    restitution: Scalar = "housner",
+    highest: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> ScaleThresholds:
     """Every scale of a record at which the outcome for a block changes, by (2.2).
@@ -115,7 +114,7 @@ def scale_thresholds(
         For an argument out of range.
     """
     uplift = block.uplift_acceleration / record.peak_acceleration
-    top = 10.0 * uplift if highest is None else float(in_range("highest", highest, 0.0, HIGHEST_SCALE, closed="right"))
+    top = 10.0 * uplift if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
     if top <= uplift:
         return ScaleThresholds(np.empty(0), np.empty(0, dtype=np.bool_), (uplift, uplift))
     scales = scanned(uplift, top)
@@ -128,10 +127,10 @@ def scale_thresholds(
 
 def overturning_scale(
     record: Record,
-    block: Block,
+    block: AbstractBlock,
     *,
-    restitution: str | float = "housner",
-    highest: float | None = None,
+    restitution: Scalar = "housner",
+    highest: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> float:
     """Lowest scale of a record at which it overturns a block [-]; nan if there is none.
@@ -139,7 +138,7 @@ def overturning_scale(
     The first of `scale_thresholds`, which has the same arguments, in less time.
     """
     uplift = block.uplift_acceleration / record.peak_acceleration
-    top = 10.0 * uplift if highest is None else float(in_range("highest", highest, 0.0, HIGHEST_SCALE, closed="right"))
+    top = 10.0 * uplift if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
     return lowest_overturning(_solver(record, block, restitution_of(block, restitution), stop), scanned(uplift, top))
 
 
@@ -159,7 +158,9 @@ def scanned(lowest: float, highest: float) -> Array:
     return np.minimum(lowest * SCAN_RATIO ** np.arange(count + 1.0), highest)
 
 
-def _solver(record: Record, block: Block, eta: float, stop: StopFlag | None) -> Callable[[Array], NDArray[np.bool_]]:
+def _solver(
+    record: Record, block: AbstractBlock, eta: float, stop: StopFlag | None
+) -> Callable[[Array], NDArray[np.bool_]]:
     """Whether the block overturns, as a function of the scales."""
     uplift = block.uplift_acceleration / record.peak_acceleration
 

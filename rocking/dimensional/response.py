@@ -42,7 +42,7 @@ FIELDS = (
 """Fields of a response in SI units, in order; units as CF writes them."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BlockResponse(ScalarResponse):
     """What happens to a block under a pulse.
 

@@ -12,7 +12,8 @@ from typing import Any, ClassVar
 import pandas as pd
 import xarray as xr
 
-from rocking.model.block import Block
+from rocking.equality import EqualByValue
+from rocking.model.block import AbstractBlock
 from rocking.model.fields import OUTCOME, ResponseField
 from rocking.model.outcome import Outcome
 from rocking.model.response import Response
@@ -37,8 +38,8 @@ SLENDERNESS = ResponseField("slenderness", "f8", "1", "5.3", "dimensionless slen
 RESTITUTION = ResponseField("restitution", "f8", "1", "2.4", "coefficient of restitution eta")
 
 
-@dataclass(frozen=True, repr=False)
-class ScalarResponse(ABC):
+@dataclass(frozen=True, eq=False, repr=False)
+class ScalarResponse(EqualByValue, ABC):
     """The response of one block to one ground motion.
 
     Attributes
@@ -52,7 +53,7 @@ class ScalarResponse(ABC):
     FIELDS: ClassVar[tuple[ResponseField, ...]]
     """Fields of the exports in order; each is an attribute of the response, of its groups or of its block."""
 
-    block: Block
+    block: AbstractBlock
     dimensionless: Response | BoundedResponse
 
     @property

@@ -14,19 +14,20 @@ import numpy as np
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import BlockProblem
-from rocking.dimensional.units import si_factor
-from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
+from rocking.errors import InvalidArgumentError, SeveralArgumentsError, plain_number, positive
 from rocking.model.block import Block
 from rocking.model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.model.outcome import Outcome
 from rocking.solver.bounded_response import solve_with_bound
+from rocking.units import UNITS as FACTORS
+from rocking.units import unit_name
 
 UNITS = {
     "width": "m",
     "height": "m",
     "half_width": "m",
     "half_height": "m",
-    "peak_acceleration": "m/s**2",
+    "peak_acceleration": "m/s2",
     "period": "s",
 }
 """Columns with units, and the SI units of their values."""
@@ -37,9 +38,13 @@ OTHER_NAMES = {"pulse_period": "period"}
 OTHER_COLUMNS = ("name", "restitution")
 """Columns without units: a label, and a number or housner."""
 
-_EXAMPLES = {"m": ("m", "cm"), "m/s**2": ("g", "m/s2", "gal"), "s": ("s", "ms")}
+_EXAMPLES = {"m": ("m", "cm"), "m/s2": ("g", "m/s2", "gal"), "s": ("s", "ms")}
 
-_HEADER = re.compile(r"\s*(\w+)\s*(?:\[(.*)\]|\((.*)\))?\s*")
+_HEADER = re.compile(r"(\w+)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))?")
+
+MAX_NAME = 100
+"""Longest name of a column with its unit [characters]."""
+
 _ALLOWED = "columns " + ", ".join(f"{name} [unit]" for name in UNITS) + f", {', '.join(OTHER_COLUMNS)}"
 
 
@@ -107,20 +112,16 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     return BlockTable(problems, labels)
 
 
-@dataclass(frozen=True)
-class _Unit:
-    """The unit of a column: as written in the header, and its value in SI units."""
-
-    text: str
-    factor: float
-
-
-def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, _Unit]]:
+def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     """Names of the columns, and their units."""
     names: list[str] = []
-    units: dict[str, _Unit] = {}
+    units: dict[str, str] = {}
     for text in header:
-        found = _HEADER.fullmatch(text)
+        if len(text) > MAX_NAME:
+            raise InvalidArgumentError(
+                "blocks, header", f"{text[:MAX_NAME]}...", f"{_ALLOWED}, of at most {MAX_NAME} characters"
+            )
+        found = _HEADER.fullmatch(text.strip())
         name, unit = (OTHER_NAMES.get(found[1], found[1]), found[2] or found[3]) if found else (text, None)
         if name in names or (name not in UNITS and name not in OTHER_COLUMNS):
             raise InvalidArgumentError("blocks, header", text, f"{_ALLOWED}, each at most once")
@@ -130,10 +131,10 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, _Unit]]:
                 raise InvalidArgumentError(
                     "blocks, header", text, f"a column with its unit (missing unit: write {name} [{examples[0]}])"
                 )
-            try:
-                units[name] = _Unit(unit, si_factor(name, unit, UNITS[name]))
-            except InvalidArgumentError:
-                raise InvalidArgumentError("blocks, header", text, f"a unit such as {', '.join(examples)}") from None
+            known = unit_name(unit, UNITS[name])
+            if known is None:
+                raise InvalidArgumentError("blocks, header", text, f"a unit such as {', '.join(examples)}")
+            units[name] = known
         names.append(name)
     for pair in (("width", "half_width"), ("height", "half_height"), ("peak_acceleration",), ("period",)):
         if sum(name in names for name in pair) != 1:
@@ -141,28 +142,23 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, _Unit]]:
     return names, units
 
 
-def _problem(
-    given: Mapping[str, str], units: Mapping[str, _Unit], pulse: str, restitution: float | str
-) -> BlockProblem:
+def _problem(given: Mapping[str, str], units: Mapping[str, str], pulse: str, restitution: float | str) -> BlockProblem:
     values = {name: _positive(name, given[name], unit) for name, unit in units.items()}
     b = values["half_width"] if "half_width" in values else 0.5 * values["width"]
     h = values["half_height"] if "half_height" in values else 0.5 * values["height"]
     eta = given.get("restitution") or restitution
     if isinstance(eta, str) and eta != "housner":
-        eta = _number("restitution", eta)
-    return BlockProblem(Block(b, h), pulse, values["peak_acceleration"], values["period"], eta)  # type: ignore[arg-type]
+        eta = plain_number("restitution", eta)
+    return BlockProblem(Block(b, h), pulse, values["peak_acceleration"], values["period"], eta)
 
 
-def _positive(name: str, text: str, unit: _Unit) -> float:
+def _positive(name: str, text: str, unit: str) -> float:
     """A value in SI units; an error repeats it in the unit of its column."""
-    return float(in_range(name, _number(name, text), 0.0, math.inf, closed="neither", unit=unit.text)) * unit.factor
-
-
-def _number(name: str, text: str) -> float:
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
         raise InvalidArgumentError(name, text, "a number with a decimal point, such as 0.4") from None
+    return positive(name, value, unit) * FACTORS[UNITS[name]][unit]
 
 
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from functools import lru_cache
 
-from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.errors import InvalidArgumentError, number, one_of
 from rocking.excitation.shapes import (
     AbstractPulse,
     SinusoidalPulse,
@@ -114,8 +114,8 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
     -[sin(phi/gamma) cos(phi + nu) + gamma sin(phi + nu) (1 + cos(phi/gamma))] is the sum of three sinusoids
     -[gamma sin B + (gamma + 1)/2 sin(B + A) + (gamma - 1)/2 sin(B - A)], A = phi/gamma, B = phi + nu.
     """
-    in_range("cycles", cycles, 1.0, 20.0, closed="right")
-    in_range("phase", phase, -2 * math.pi, 2 * math.pi, unit="rad")
+    cycles = number("cycles", cycles, 1.0, 20.0, closed="right")
+    phase = number("phase", phase, -2 * math.pi, 2 * math.pi, unit="rad")
     shift = phase + math.pi / 2  # -sin x = cos(x + pi/2)
     raw = (
         (cycles, 1.0, shift),

@@ -16,7 +16,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, float_array, in_range, number
 from rocking.excitation.series import ExcitationSeries, Family, Terms
 from rocking.excitation.stationary import sign_changes
 
@@ -100,7 +100,7 @@ class AbstractPulse(ABC):
 
     def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
         """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
-        phi = np.asarray(phi, dtype=np.float64)
+        phi = float_array("phi", phi, unit="rad")
         return np.where((phi >= self.start) & (phi <= self.end), self.shape(np.clip(phi, self.start, self.end)), 0.0)
 
     @property
@@ -178,7 +178,7 @@ class WaveletPulse(AbstractPulse):
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:
-        phi = np.asarray(phi, dtype=np.float64)
+        phi = float_array("phi", phi, unit="rad")
         return np.asarray(np.polynomial.polynomial.polyval(phi, self.polynomial) * np.exp(-phi * phi / self.spread))
 
     @cached_property
@@ -202,10 +202,7 @@ class WaveletPulse(AbstractPulse):
 
 def checked_number(parameter: str, value: ArrayLike, *, low: float = -MAX_MAGNITUDE, unit: str = "-") -> float:
     """A number from `low` to `MAX_MAGNITUDE`, checked."""
-    array = in_range(parameter, value, low, MAX_MAGNITUDE, unit=unit)
-    if array.ndim:
-        raise InvalidArgumentError(parameter, value, "one number")
-    return float(array)
+    return number(parameter, value, low, MAX_MAGNITUDE, unit=unit)
 
 
 def _checked_window(start: ArrayLike, end: ArrayLike) -> tuple[float, float]:
@@ -230,7 +227,7 @@ def _checked_numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tupl
 
 def sum_of_sinusoids(terms: Terms, phi: ArrayLike) -> Array:
     """The sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
-    phi = np.asarray(phi, dtype=np.float64)
+    phi = float_array("phi", phi, unit="rad")
     return np.asarray(sum(c * np.cos(w * phi + d) for c, w, d in terms))
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import in_range
+from rocking.equality import EqualByValue
+from rocking.errors import in_range, positive
 
 Array = NDArray[np.float64]
 
@@ -36,8 +37,8 @@ class GroupSet(Enum):
         return self in (GroupSet.SLENDER_BY_BLOCK, GroupSet.SLENDER_BY_PULSE)
 
 
-@dataclass(frozen=True)
-class Problem:
+@dataclass(frozen=True, eq=False, init=False)
+class Problem(EqualByValue):
     """A block under a pulse in SI units; arrays broadcast.
 
     Parameters
@@ -54,22 +55,32 @@ class Problem:
         g [m/s2], (0, inf).
     """
 
-    alpha: ArrayLike
-    frequency_parameter: ArrayLike
-    peak_acceleration: ArrayLike
-    pulse_frequency: ArrayLike
-    gravity: float = STANDARD_GRAVITY
+    alpha: Array
+    frequency_parameter: Array
+    peak_acceleration: Array
+    pulse_frequency: Array
+    gravity: float
 
-    def __post_init__(self) -> None:
-        in_range("alpha", self.alpha, 0.0, np.pi / 2, closed="neither", unit="rad")
-        in_range("frequency_parameter", self.frequency_parameter, 0.0, np.inf, closed="neither", unit="rad/s")
-        in_range("peak_acceleration", self.peak_acceleration, 0.0, np.inf, closed="neither", unit="m/s2")
-        in_range("pulse_frequency", self.pulse_frequency, 0.0, np.inf, closed="neither", unit="rad/s")
-        in_range("gravity", self.gravity, 0.0, np.inf, closed="neither", unit="m/s2")
+    def __init__(
+        self,
+        alpha: ArrayLike,
+        frequency_parameter: ArrayLike,
+        peak_acceleration: ArrayLike,
+        pulse_frequency: ArrayLike,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> None:
+        for name, value, high, unit in (
+            ("alpha", alpha, 0.5 * np.pi, "rad"),
+            ("frequency_parameter", frequency_parameter, np.inf, "rad/s"),
+            ("peak_acceleration", peak_acceleration, np.inf, "m/s2"),
+            ("pulse_frequency", pulse_frequency, np.inf, "rad/s"),
+        ):
+            object.__setattr__(self, name, in_range(name, value, 0.0, high, closed="neither", unit=unit))
+        object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
 
 
-@dataclass(frozen=True)
-class Groups:
+@dataclass(frozen=True, eq=False, init=False)
+class Groups(EqualByValue):
     """Control groups of a problem, except restitution eta, which is dimensionless already.
 
     Parameters
@@ -82,20 +93,20 @@ class Groups:
         cos(alpha) [-], (0, 1), a group of its own in (5.3) only.
     """
 
-    frequency_ratio: ArrayLike
-    slenderness: ArrayLike
-    cos_alpha: ArrayLike | None = None
+    frequency_ratio: Array
+    slenderness: Array
+    cos_alpha: Array | None
 
-    def __post_init__(self) -> None:
-        in_range("frequency_ratio", self.frequency_ratio, 0.0, np.inf, closed="neither")
-        in_range("slenderness", self.slenderness, 0.0, np.inf, closed="neither")
-        if self.cos_alpha is not None:
-            in_range("cos_alpha", self.cos_alpha, 0.0, 1.0, closed="neither")
+    def __init__(self, frequency_ratio: ArrayLike, slenderness: ArrayLike, cos_alpha: ArrayLike | None = None) -> None:
+        for name, value in (("frequency_ratio", frequency_ratio), ("slenderness", slenderness)):
+            object.__setattr__(self, name, in_range(name, value, 0.0, np.inf, closed="neither"))
+        cosine = None if cos_alpha is None else in_range("cos_alpha", cos_alpha, 0.0, 1.0, closed="neither")
+        object.__setattr__(self, "cos_alpha", cosine)
 
     @property
     def amplitude(self) -> Array:
         """a = 1/slenderness [-], (3.6)."""
-        return np.asarray(1 / np.asarray(self.slenderness, dtype=np.float64))  # (3.6)
+        return np.asarray(1 / self.slenderness)  # (3.6)
 
 
 def groups_of(problem: Problem, group_set: GroupSet) -> Groups:
@@ -108,10 +119,10 @@ def groups_of(problem: Problem, group_set: GroupSet) -> Groups:
     group_set : GroupSet
         Set of groups.
     """
-    alpha = np.asarray(problem.alpha, dtype=np.float64)
-    omega = np.asarray(problem.pulse_frequency) / np.asarray(problem.frequency_parameter)  # (3.6)
+    alpha = problem.alpha
+    omega = problem.pulse_frequency / problem.frequency_parameter  # (3.6)
     slope = alpha if group_set.is_slender else np.tan(alpha)
-    slenderness = problem.gravity * slope / np.asarray(problem.peak_acceleration)  # (4.11); (5.3), (6.1) with tan
+    slenderness = problem.gravity * slope / problem.peak_acceleration  # (4.11); (5.3), (6.1) with tan
     return Groups(omega, slenderness, np.cos(alpha) if group_set is GroupSet.RIGID else None)
 
 
@@ -147,13 +158,14 @@ def problem_of_block(
     p = in_range("frequency_parameter", frequency_parameter, 0.0, np.inf, closed="neither", unit="rad/s")
     if groups.cos_alpha is not None:
         _check_similar(groups.cos_alpha, alpha)
+    g = positive("gravity", gravity, "m/s2")
     slope = alpha if group_set.is_slender else np.tan(alpha)
     return Problem(
         alpha=alpha,
         frequency_parameter=p,
-        peak_acceleration=gravity * slope / np.asarray(groups.slenderness),
-        pulse_frequency=np.asarray(groups.frequency_ratio) * p,
-        gravity=gravity,
+        peak_acceleration=g * slope / groups.slenderness,
+        pulse_frequency=groups.frequency_ratio * p,
+        gravity=g,
     )
 
 
@@ -193,15 +205,17 @@ def problem_of_pulse(
     InvalidArgumentError
         If no block has these groups: alpha is pi/2 or more, or contradicts `groups.cos_alpha`.
     """
-    in_range("gravity", gravity, 0.0, np.inf, closed="neither", unit="m/s2")
-    slope = np.asarray(groups.slenderness) * np.asarray(peak_acceleration) / gravity
+    a = in_range("peak_acceleration", peak_acceleration, 0.0, np.inf, closed="neither", unit="m/s2")
+    frequency = in_range("pulse_frequency", pulse_frequency, 0.0, np.inf, closed="neither", unit="rad/s")
+    g = positive("gravity", gravity, "m/s2")
+    slope = groups.slenderness * a / g
     alpha = np.asarray(slope if group_set.is_slender else np.arctan(slope))
     if groups.cos_alpha is not None:
         _check_similar(groups.cos_alpha, alpha)
     return Problem(
         alpha=alpha,
-        frequency_parameter=np.asarray(pulse_frequency) / np.asarray(groups.frequency_ratio),
-        peak_acceleration=peak_acceleration,
-        pulse_frequency=pulse_frequency,
-        gravity=gravity,
+        frequency_parameter=frequency / groups.frequency_ratio,
+        peak_acceleration=a,
+        pulse_frequency=frequency,
+        gravity=g,
     )

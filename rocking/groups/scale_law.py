@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError
-from rocking.model.checks import check
+from rocking.errors import InvalidArgumentError, float_array
+from rocking.model.checks import check, check_number
 from rocking.model.parameters import RESTITUTION
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def scale_law_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, ref
         If `reference` is not one of the restitutions or the shapes do not match.
     """
     peak, eta = _aligned(peak_rotation, restitution, axis)
-    at = np.flatnonzero(np.isclose(eta, reference, rtol=0.0, atol=1e-9))
+    at = np.flatnonzero(np.isclose(eta, check_number(RESTITUTION, reference, "reference"), rtol=0.0, atol=1e-9))
     if at.size == 0:
         raise InvalidArgumentError("reference", reference, f"one of the restitutions {eta.tolist()}")
     scaled = peak / eta**2  # f(a, omega)/2 of (4.16) if the law is exact
@@ -102,7 +102,7 @@ def restitution_exponent(peak_rotation: ArrayLike, restitution: ArrayLike, *, ax
 
 def _aligned(peak_rotation: ArrayLike, restitution: ArrayLike, axis: int) -> tuple[Array, Array]:
     """Peaks with restitution as the last axis, and the restitutions."""
-    peak = np.moveaxis(np.asarray(peak_rotation, dtype=np.float64), axis, -1)
+    peak = np.moveaxis(float_array("peak_rotation", peak_rotation), axis, -1)
     eta = check(replace(RESTITUTION, closed="right"), restitution)
     if eta.shape != peak.shape[-1:]:
         raise InvalidArgumentError("restitution", eta.shape, f"one value for each of {peak.shape[-1]} peaks")

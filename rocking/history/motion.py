@@ -10,15 +10,17 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
-from rocking.errors import in_range
+from rocking.errors import positive
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.history.sampling import sample_arcs, sample_free_rocking, solve_and_sample
-from rocking.model.checks import check_groups
+from rocking.model.checks import check_number, check_one_alpha
 from rocking.model.fields import END_ROTATION, END_VELOCITY, EXCEEDED_ALPHA, RESPONSE_FIELDS
+from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking.model.response import Outcome
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
 from rocking.solver.peak_response import peak_response
 from rocking.solver.state import pulse_state, step_state
+from rocking.units import Scalar
 
 Floats = NDArray[np.float64]
 
@@ -199,19 +201,21 @@ class Motion:
 def build_motion(
     pulse: str | AbstractPulse,
     *,
-    slenderness: float,
-    frequency_ratio: float,
-    restitution: float,
-    alpha: float | None = None,
-    duration: float | None = None,
+    slenderness: Scalar,
+    frequency_ratio: Scalar,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    duration: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> Motion:
     """The motion for given groups; arguments and errors as for `rocking.time_history`."""
-    if duration is not None:
-        in_range("duration", duration, 0.0, np.inf, closed="neither")
     made = as_pulse(pulse)
-    s, omega, eta, angle = (float(group) for group in check_groups(slenderness, frequency_ratio, restitution, alpha))
-    horizon = (made.end - made.start) / omega + FREE_DURATION if duration is None else float(duration)
+    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
+    omega, angle = check_number(FREQUENCY_RATIO, frequency_ratio), check_one_alpha(alpha)
+    if duration is None:
+        horizon = (made.end - made.start) / omega + FREE_DURATION
+    else:
+        horizon = positive("duration", duration, "-")
     return Motion(made, s, omega, eta, angle, horizon, stop)
 
 

@@ -6,12 +6,13 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import in_range
+from rocking.errors import integer
 from rocking.excitation.records.record import Record
 from rocking.history.contact import add_contact
 from rocking.history.motion import Floats, overturned
 from rocking.history.record_motion import RecordMotion, build_record_motion
 from rocking.model.response import Outcome
+from rocking.units import Scalar
 
 MAX_SAMPLES = 1_000_000
 """Largest number of uniform samples of a history."""
@@ -23,11 +24,11 @@ MIN_CONTINUED = 10_000
 def record_history(
     motion: Record,
     *,
-    frequency_parameter: float,
-    slenderness: float,
-    restitution: float,
-    alpha: float | None = None,
-    duration: float | None = None,
+    frequency_parameter: Scalar,
+    slenderness: Scalar,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    duration: Scalar | None = None,
     samples: int | None = None,
     contact: bool = False,
     stop: StopFlag | None = None,
@@ -66,7 +67,7 @@ def record_history(
         If `stop` was set.
     """
     if samples is not None:
-        in_range("samples", samples, 2, MAX_SAMPLES)
+        samples = integer("samples", samples, 2, MAX_SAMPLES)
     groups = {
         "frequency_parameter": frequency_parameter,
         "slenderness": slenderness,
@@ -75,7 +76,7 @@ def record_history(
     }
     block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     record, impact_times = block.events()
-    grid = _default_times(block) if samples is None else np.linspace(0.0, block.horizon, int(samples))
+    grid = _default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
     events = [0.0, block.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
     tau = np.concatenate([grid, impact_times, events])
     tau = np.unique(tau[tau <= block.horizon])

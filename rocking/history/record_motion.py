@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record as KernelRecord
-from rocking.errors import in_range
+from rocking.errors import number, positive
 from rocking.excitation.pulses import get_pulse
 from rocking.excitation.records.record import Record
 from rocking.history.motion import (
@@ -21,12 +21,15 @@ from rocking.history.motion import (
 )
 from rocking.history.record_sampling import sample_record
 from rocking.history.sampling import sample_free_rocking
+from rocking.model.checks import check_number, check_one_alpha
+from rocking.model.parameters import RESTITUTION, SLENDERNESS
 from rocking.solver.kernels.event_loop import IMPACT_LIMIT
-from rocking.solver.records.record_response import check_record_groups
+from rocking.solver.records.record_response import frequency_parameter_range
 from rocking.solver.records.samples import motion_samples
 from rocking.solver.records.state import BLOCK_STATE, step_state
 from rocking.solver.state import pulse_state
 from rocking.solver.state import step_state as free_step_state
+from rocking.units import Scalar
 
 
 @dataclass(frozen=True)
@@ -157,17 +160,16 @@ class RecordMotion:
 def build_record_motion(
     motion: Record,
     *,
-    frequency_parameter: float,
-    slenderness: float,
-    restitution: float,
-    alpha: float | None = None,
-    duration: float | None = None,
+    frequency_parameter: Scalar,
+    slenderness: Scalar,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    duration: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> RecordMotion:
     """The motion for given parameters; arguments and errors as for `rocking.record_history`."""
-    checked = check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha)
-    p, s, eta, angle = (float(group) for group in checked)
-    if duration is not None:
-        in_range("duration", duration, 0.0, np.inf, closed="neither", unit="s")
-    horizon = p * motion.duration + FREE_DURATION if duration is None else p * float(duration)
+    p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
+    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
+    angle = check_one_alpha(alpha)
+    horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")
     return RecordMotion(motion, p, s, eta, angle, horizon, stop)

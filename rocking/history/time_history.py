@@ -6,21 +6,22 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import in_range
+from rocking.errors import integer
 from rocking.excitation.pulses import AbstractPulse
 from rocking.history.contact import add_contact
 from rocking.history.motion import build_motion, overturned
 from rocking.model.response import Outcome
+from rocking.units import Scalar
 
 
 def time_history(
     pulse: str | AbstractPulse,
     *,
-    slenderness: float,
-    frequency_ratio: float,
-    restitution: float,
-    alpha: float | None = None,
-    duration: float | None = None,
+    slenderness: Scalar,
+    frequency_ratio: Scalar,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    duration: Scalar | None = None,
     samples: int = 400,
     contact: bool = False,
     stop: StopFlag | None = None,
@@ -56,12 +57,12 @@ def time_history(
     StoppedError
         If `stop` was set.
     """
-    in_range("samples", samples, 2, 1_000_000)
+    samples = integer("samples", samples, 2, 1_000_000)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
     motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
     record, impact_times = motion.events()  # times of the impacts are among the samples
     events = [0.0, motion.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
-    tau = np.concatenate([np.linspace(0.0, motion.horizon, int(samples)), impact_times, events])
+    tau = np.concatenate([np.linspace(0.0, motion.horizon, samples), impact_times, events])
     tau = np.unique(tau[tau <= motion.horizon])
     rotation, velocity = motion.sample(tau)
     last = motion.sample_count(tau, rotation, record)

@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, OutsideCubeError, in_range, one_of
+from rocking.errors import InvalidArgumentError, OutsideCubeError, integer, number, one_of
 from rocking.interpolation.kernel import (
     BLOCK,
     INTERPOLATED,
@@ -51,7 +51,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cube:
     """Spectrum cubes of one pulse and one or several restitutions.
 
@@ -68,6 +68,20 @@ class Cube:
     pulse: str
     restitutions: Array
     slice_at: Callable[[int], CubeSlice | None]
+
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the files of the cubes have the same content."""
+        if not isinstance(other, Cube):
+            return NotImplemented
+        alike = self.pulse == other.pulse and np.array_equal(self.restitutions, other.restitutions)
+        return self is other or (alike and self._digests == other._digests)
+
+    @property
+    def _digests(self) -> list[str | None]:
+        slices = map(self.slice_at, range(self.restitutions.size))
+        return [None if one is None else one.sha256 for one in slices]
 
     def response(
         self,
@@ -122,9 +136,9 @@ class Cube:
     ) -> tuple[BoundedResponse, list[CubeSlice]]:
         """`response`, and the cubes from which points were interpolated, in the order of `used`."""
         one_of("method", method, METHODS)
-        limit = float(in_range("tolerance", tolerance, 0.0, np.inf, closed="left"))
+        limit = number("tolerance", tolerance, 0.0, np.inf, closed="left")
         if threads is not None:
-            in_range("threads", threads, 1, np.inf)
+            threads = integer("threads", threads, 1, np.inf)
         if restitution is None:
             if self.restitutions.size != 1:
                 raise InvalidArgumentError("restitution", None, "a number: there are several cubes")
@@ -250,7 +264,7 @@ def _interpolate(
     stop: StopFlag | None,
 ) -> list[NDArray[np.int64]]:
     """Fill `found` from the slices of the windows, with the axes of `own`; numbers of points given, of each group."""
-    size, cores = groups.size, int(threads) if threads else AVAILABLE_CORES
+    size, cores = groups.size, threads or AVAILABLE_CORES
     counts: list[NDArray[np.int64]] = []
 
     def fill(part: slice, _: NDArray[np.uint8]) -> None:

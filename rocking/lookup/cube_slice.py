@@ -79,6 +79,10 @@ class CubeSlice:
         mesh = Mesh.of(axes["slenderness"], axes["frequency_ratio"])
         return cls(**axes, **fields, mesh=mesh, angles=AngleAxis.of(axes["alpha"]))
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the windows, which hold addresses of this process."""
+        return vars(self) | {"_windows": {}}
+
     @property
     def private_bytes(self) -> int:
         """Memory of the tables that this process does not share with others [bytes]."""

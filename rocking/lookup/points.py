@@ -14,7 +14,7 @@ from rocking.model.checks import broadcast_groups
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Points:
     """Arguments of a response, all float arrays (points,); alpha in rad, 0 for the slender limit."""
 

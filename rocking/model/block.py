@@ -1,16 +1,105 @@
-"""The rigid rectangular block: parameters of the equation of motion from its geometry (section 2 of the paper)."""
+"""The rigid rectangular block: parameters of the equation of motion from its geometry (section 2 of the paper).
+
+`AbstractBlock` is what responses need to know of anything that rocks like a block.
+"""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Self
 
 from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import in_range
+from rocking.errors import number, positive
+from rocking.units import Scalar
 
 
-@dataclass(frozen=True)
-class Block:
+@dataclass(frozen=True, init=False)
+class AbstractBlock(ABC):
+    """What rocks like a block.
+
+    Parameters
+    ----------
+    half_width : float
+        b of the rectangular block of this alpha and p [m], > 0.
+    half_height : float
+        h of the same [m], > 0.
+    gravity : float
+        g [m/s2], > 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a length or gravity is not finite and positive.
+    """
+
+    half_width: float
+    half_height: float
+    gravity: float
+
+    def __init__(self, half_width: Scalar, half_height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
+        object.__setattr__(self, "half_width", positive("half_width", half_width, "m"))  # a frozen dataclass
+        object.__setattr__(self, "half_height", positive("half_height", half_height, "m"))
+        object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
+
+    @property
+    def half_diagonal(self) -> float:
+        """R = sqrt(b^2 + h^2) [m] (figure 1)."""
+        return math.hypot(self.half_width, self.half_height)
+
+    @property
+    @abstractmethod
+    def alpha(self) -> float:
+        """Rotation at which the restoring moment vanishes [rad], (0, pi/2)."""
+
+    @property
+    @abstractmethod
+    def equation_alpha(self) -> float:
+        """Alpha in the equation of motion [rad]; 0 for the linear equation (3.1)."""
+
+    @property
+    @abstractmethod
+    def description(self) -> str:
+        """The block in words."""
+
+    @property
+    @abstractmethod
+    def contact_is_known(self) -> bool:
+        """Whether the contact forces follow from the motion."""
+
+    @property
+    @abstractmethod
+    def frequency_parameter(self) -> float:
+        """p [rad/s]."""
+
+    @property
+    @abstractmethod
+    def uplift_acceleration(self) -> float:
+        """Smallest ground acceleration that starts rocking [m/s2]."""
+
+    @property
+    @abstractmethod
+    def housner_restitution(self) -> float:
+        """Coefficient of restitution by conservation of angular momentum [-]."""
+
+    @property
+    @abstractmethod
+    def inelastic_restitution(self) -> float:
+        """Coefficient of restitution of an impact without bouncing [-], [0, 1]."""
+
+    @property
+    def top_height(self) -> float:
+        """Height of a top corner above the pivot below it [m], 2 h."""
+        return 2.0 * self.half_height
+
+    def top_displacement(self, rotation: float) -> float:
+        """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
+        return self.top_height * math.sin(rotation)
+
+
+@dataclass(frozen=True, init=False)
+class Block(AbstractBlock):
     """A free-standing rigid rectangular block of uniform density (figure 1).
 
     Parameters
@@ -28,26 +117,12 @@ class Block:
         If a length or gravity is not finite and positive.
     """
 
-    half_width: float
-    half_height: float
-    gravity: float = STANDARD_GRAVITY
-
-    def __post_init__(self) -> None:
-        in_range("half_width", self.half_width, 0.0, math.inf, closed="neither", unit="m")
-        in_range("half_height", self.half_height, 0.0, math.inf, closed="neither", unit="m")
-        in_range("gravity", self.gravity, 0.0, math.inf, closed="neither", unit="m/s2")
-
     @classmethod
-    def from_slenderness_angle(cls, alpha: float, half_diagonal: float, gravity: float = STANDARD_GRAVITY) -> Block:
+    def from_slenderness_angle(cls, alpha: Scalar, half_diagonal: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> Self:
         """Build a block from alpha [rad], (0, pi/2), and R [m], > 0."""
-        in_range("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
-        in_range("half_diagonal", half_diagonal, 0.0, math.inf, closed="neither", unit="m")
-        return cls(half_diagonal * math.sin(alpha), half_diagonal * math.cos(alpha), gravity)
-
-    @property
-    def half_diagonal(self) -> float:
-        """R = sqrt(b^2 + h^2) [m] (figure 1)."""
-        return math.hypot(self.half_width, self.half_height)
+        angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
+        radius = positive("half_diagonal", half_diagonal, "m")
+        return cls(radius * math.sin(angle), radius * math.cos(angle), gravity)
 
     @property
     def alpha(self) -> float:
@@ -61,12 +136,10 @@ class Block:
 
     @property
     def description(self) -> str:
-        """The block in words."""
         return f"block of {2 * self.half_width:.4g} m x {2 * self.half_height:.4g} m"
 
     @property
     def contact_is_known(self) -> bool:
-        """Whether the contact forces follow from the motion."""
         return True
 
     @property
@@ -97,12 +170,3 @@ class Block:
         there too, and with impulses at both corners the block stops.
         """
         return max(self.housner_restitution, 0.0)  # departs from (2.4) where that is negative
-
-    @property
-    def top_height(self) -> float:
-        """Height of a top corner above the pivot below it [m], 2 h."""
-        return 2.0 * self.half_height
-
-    def top_displacement(self, rotation: float) -> float:
-        """Horizontal displacement of a top corner [m] at a rotation [rad]: 2 h sin(theta), above the pivot."""
-        return self.top_height * math.sin(rotation) if math.isfinite(rotation) else math.nan

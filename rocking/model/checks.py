@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import broadcast, in_range
+from rocking.errors import broadcast, in_range, number
 from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA, Parameter
+from rocking.units import Quantity, Scalar
 
 Array = NDArray[np.float64]
 
 
-def check(parameter: Parameter, value: ArrayLike, name: str | None = None) -> Array:
+def check(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = None) -> Array:
     """The value as a float64 array, shape kept.
 
     Parameters
@@ -33,8 +34,21 @@ def check(parameter: Parameter, value: ArrayLike, name: str | None = None) -> Ar
     )
 
 
+def check_number(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = None) -> float:
+    """As `check`, for one number.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is not one finite real number in the range.
+    """
+    return number(
+        name or parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit
+    )
+
+
 def check_window(
-    parameter: Parameter, low: float, high: float, names: tuple[str, str] | None = None
+    parameter: Parameter, low: Scalar, high: Scalar, names: tuple[str, str] | None = None
 ) -> tuple[float, float]:
     """The ends of a window of a parameter, low < high.
 
@@ -53,16 +67,25 @@ def check_window(
         If an end is outside the range, or `high` is not above `low`.
     """
     first, last = names or (f"{parameter.name}_min", f"{parameter.name}_max")
-    lower = float(check(parameter, low, first))
+    lower = check_number(parameter, low, first)
     closed = "right" if parameter.closed in ("both", "right") else "neither"
-    return lower, float(in_range(last, high, lower, parameter.upper, closed=closed, unit=parameter.unit))
+    return lower, number(last, high, lower, parameter.upper, closed=closed, unit=parameter.unit)
 
 
-def check_alpha(alpha: ArrayLike | None) -> Array:
+def check_alpha(alpha: ArrayLike | Quantity | None) -> Array:
     """Slenderness angles [rad], 0 for None; the same errors as `check`, also between 0 and `SMALLEST_ALPHA`."""
-    angles = check(ALPHA, 0.0 if alpha is None else alpha)
-    in_range(ALPHA.name, angles[angles > 0.0], SMALLEST_ALPHA, ALPHA.upper, unit=ALPHA.unit)
+    if alpha is None:
+        return np.zeros(())
+    angles = check(ALPHA, alpha)
+    in_range(ALPHA.name, np.where(angles > 0.0, angles, ALPHA.upper), SMALLEST_ALPHA, ALPHA.upper, unit=ALPHA.unit)
     return angles
+
+
+def check_one_alpha(alpha: ArrayLike | Quantity | None) -> float:
+    """As `check_alpha`, for one angle."""
+    if alpha is not None:
+        check_number(ALPHA, alpha)
+    return float(check_alpha(alpha))
 
 
 def check_groups(

@@ -69,7 +69,7 @@ class LinearEquation:
     load: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class VelocityField:
     """A motion of several bodies for a unit rate of its coordinate.
 

@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, integer, number, positive
 from rocking.model.linkage import FourBarLinkage, LinearEquation, Link, VelocityField, restitution_of_impact
+from rocking.units import Scalar
 
 MOST_VOUSSOIRS = 24
 """Largest number of voussoirs: the number of mechanisms grows with its fourth power."""
@@ -52,7 +53,7 @@ class Mechanism(NamedTuple):
         return self.equation.restoring / abs(self.equation.load)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class MasonryArch:
     """A circular arch of equal voussoirs without tension or sliding in the joints.
 
@@ -81,14 +82,18 @@ class MasonryArch:
     voussoirs: int
     gravity: float
 
-    def __post_init__(self) -> None:
-        in_range("radius", self.radius, *RADII, unit="m")
-        thinnest, thickest = THINNEST * self.radius, 2.0 * self.radius
-        in_range("thickness", self.thickness, thinnest, thickest, closed="left", unit="m")
-        in_range("embrace", self.embrace, 0.0, math.pi, closed="right", unit="rad")
-        in_range("gravity", self.gravity, 0.0, math.inf, closed="neither", unit="m/s2")
-        if self.voussoirs not in range(4, MOST_VOUSSOIRS + 1):
-            raise InvalidArgumentError("voussoirs", self.voussoirs, f"a whole number from 4 to {MOST_VOUSSOIRS}")
+    def __init__(self, radius: Scalar, thickness: Scalar, embrace: Scalar, voussoirs: int, gravity: Scalar) -> None:
+        of_centre_line = number("radius", radius, *RADII, unit="m")
+        thinnest, thickest = THINNEST * of_centre_line, 2.0 * of_centre_line
+        checked = {
+            "radius": of_centre_line,
+            "thickness": number("thickness", thickness, thinnest, thickest, closed="left", unit="m"),
+            "embrace": number("embrace", embrace, 0.0, math.pi, closed="right", unit="rad"),
+            "voussoirs": integer("voussoirs", voussoirs, 4, MOST_VOUSSOIRS),
+            "gravity": positive("gravity", gravity, "m/s2"),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)  # a frozen dataclass
 
     def angle(self, joint: float) -> float:
         """Direction from the centre of the circle to a joint, or between two [rad]."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.model.checks import check, check_alpha
+from rocking.model.checks import check_number, check_one_alpha
 from rocking.model.parameters import RESTITUTION
 
 Floats = NDArray[np.float64]
@@ -21,7 +21,7 @@ INERTIA_RATIO = 0.75
 """R p^2/g = 3/4 for a rectangle that rotates about its corner, below (2.2)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reactions:
     """Reaction of the ground at the pivot, on the block; arrays of one shape.
 
@@ -102,8 +102,8 @@ def impulse_ratio(restitution: float, alpha: float) -> float:
     InvalidArgumentError
         For an argument out of range.
     """
-    eta = float(check(RESTITUTION, restitution))
-    slope = math.tan(float(check_alpha(alpha)))
+    eta = check_number(RESTITUTION, restitution)
+    slope = math.tan(check_one_alpha(alpha))
     loss = (1.0 - eta) / (1.0 + eta)
     if loss == 0.0:
         return 0.0

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking.equality import EqualByValue
 from rocking.errors import InvalidArgumentError
 from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS
 from rocking.model.outcome import Outcome
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 __all__ = ["Outcome", "Response", "dimensions_of"]
 
 
-@dataclass(frozen=True, repr=False)
-class Response:
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(EqualByValue):
     """Responses of blocks to a pulse. Every field is an array of the broadcast shape of the arguments.
 
     The fields are declared, with their equations, in `rocking.model.fields`.

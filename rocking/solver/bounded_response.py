@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking.equality import EqualByValue
 from rocking.excitation.pulses import AbstractPulse
 from rocking.model.fields import BOUNDED_FIELDS
 from rocking.model.outcome import Outcome
@@ -21,8 +22,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, repr=False)
-class BoundedResponse:
+@dataclass(frozen=True, eq=False, repr=False)
+class BoundedResponse(EqualByValue):
     """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
 
     The fields are declared, with their equations, in `rocking.model.fields`.

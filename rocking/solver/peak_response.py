@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
-from rocking.errors import broadcast, in_range
+from rocking.errors import broadcast, integer
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.model.checks import check, check_groups
+from rocking.model.checks import check_groups, check_number
 from rocking.model.fields import RESPONSE_FIELDS
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import TOLERANCE
@@ -110,7 +110,7 @@ def peak_response(
         If `stop` was set.
     """
     if threads is not None:
-        in_range("threads", threads, 1, math.inf)
+        threads = integer("threads", threads, 1, math.inf)
     made = as_pulse(pulse)
     given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
     checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
@@ -118,7 +118,7 @@ def peak_response(
     groups = broadcast(given, checked[:3] if alpha is None else checked)
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
-    accepted = 0.0 if tolerance is None else float(check(TOLERANCE, tolerance))
+    accepted = 0.0 if tolerance is None else check_number(TOLERANCE, tolerance)
     by_arcs = made.series.has_exact_arcs and slender  # exact: no terms to truncate
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
@@ -191,7 +191,7 @@ def _solve_alike(
     """Solve cells that are all solved by arcs, or all by Taylor steps."""
     size = cells[0].size
     records = np.empty(size, RESPONSE_RECORD)
-    cores = int(threads) if threads else AVAILABLE_CORES
+    cores = threads or AVAILABLE_CORES
     fewest, most = (MIN_ARC_CHUNK, MAX_ARC_CHUNK) if by_arcs else (MIN_CHUNK, MAX_CHUNK)
     chunk_size = min(max(math.ceil(size / cores), fewest), most)
 

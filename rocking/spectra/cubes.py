@@ -160,7 +160,7 @@ def _interval_starts(slices: Array, spacing: float) -> list[int]:
     return [int(k) for k in np.flatnonzero(np.diff(slices) <= spacing * (1.0 + 1e-9))]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Grid:
     """The pulse, and the plane of slenderness and frequency ratio on which it is solved."""
 

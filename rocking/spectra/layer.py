@@ -40,7 +40,7 @@ FEW_IMPACTS = 1
 """Number of impacts up to which the regions of one way of overturning have boundaries that are traced one by one."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GridLayer:
     """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `rocking.datasets.cube`."""
 

@@ -18,7 +18,7 @@ from rocking.spectra.layer import UNKNOWN, Cells, GridLayer, peak_of
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LevelInterval:
     """An interval between two slices, and the layers from which it is interpolated.
 

@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.equality import EqualByValue
+from rocking.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
 from rocking.excitation.records.readers.read_record import read_record
 from rocking.excitation.records.record import TIME_STEP, UNITS, Record
 from rocking.model.block import Block
-from rocking.model.checks import check
+from rocking.model.checks import check_number
 from rocking.model.parameters import RESTITUTION
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
@@ -91,8 +92,8 @@ class RecordFiles:
         return Record(corrected.acceleration, corrected.time_step, "m/s2", *about)
 
 
-@dataclass(frozen=True)
-class BlockMap:
+@dataclass(frozen=True, eq=False)
+class BlockMap(EqualByValue):
     """Grid of sizes and shapes at one level of intensity.
 
     Attributes
@@ -110,8 +111,8 @@ class BlockMap:
     alpha: Array
 
 
-@dataclass(frozen=True)
-class Sensitivity:
+@dataclass(frozen=True, eq=False)
+class Sensitivity(EqualByValue):
     """What `rocking.suite_sensitivity` is asked for.
 
     Attributes
@@ -126,8 +127,8 @@ class Sensitivity:
     restitution_step: float
 
 
-@dataclass(frozen=True)
-class SuiteConfiguration:
+@dataclass(frozen=True, eq=False)
+class SuiteConfiguration(EqualByValue):
     """A checked configuration, in SI units."""
 
     name: str
@@ -174,11 +175,11 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         name=_name(given["name"]),
         records=_record_files(given["records"], folder),
         blocks=_blocks(given["blocks"]),
-        restitution="housner" if given["restitution"] == "housner" else float(check(RESTITUTION, given["restitution"])),
+        restitution="housner" if given["restitution"] == "housner" else check_number(RESTITUTION, given["restitution"]),
         measure=measure,
         intensity=_levels("intensity", given["intensity"], logarithmic=True),
         demand=tuple(check_demands(given["demand"])),
-        confidence=_number("confidence", given["confidence"], 0.0, 1.0),
+        confidence=number("confidence", given["confidence"], 0.0, 1.0, closed="neither"),
         map=None if given["map"] is None else _map(given["map"]),
         hazard=hazard,
         sensitivity=None if given["sensitivity"] is None else _sensitivity(given["sensitivity"]),
@@ -198,13 +199,6 @@ def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
         wrong = [f"no {key}" for key in expected if key not in given]
         wrong += [f"unknown {key}" for key in given if key not in expected]
         raise InvalidArgumentError(section, ", ".join(wrong), "exactly the keys " + ", ".join(expected))
-
-
-def _number(parameter: str, value: Any, low: float, high: float, closed: str = "neither", unit: str = "-") -> float:
-    number = in_range(parameter, value, low, high, closed=closed, unit=unit)
-    if number.ndim:
-        raise InvalidArgumentError(parameter, value, f"one number [{unit}]")
-    return float(number)
 
 
 def _name(value: Any) -> str:
@@ -230,7 +224,7 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         folder / given["folder"],
         given["pattern"],
         None if given["unit"] is None else one_of("records.unit", given["unit"], UNITS),
-        None if step is None else _number("records.time_step", step, *TIME_STEP, closed="both", unit="s"),
+        None if step is None else number("records.time_step", step, *TIME_STEP, unit="s"),
         None if given["component"] is None else str(given["component"]),
         order,
     )
@@ -247,17 +241,8 @@ def _block(section: str, given: Any) -> Block:
     whole = [name for name in ("width", "height") if isinstance(given, Mapping) and name in given]
     keys = [name if name in whole else f"half_{name}" for name in ("width", "height")]
     _keys(section, given, keys)
-    sizes = {key: _length(f"{section}.{key}", given[key]) for key in keys}
+    sizes = {key: positive(f"{section}.{key}", given[key], "m") for key in keys}
     return Block(*(0.5 * size if key in whole else size for key, size in sizes.items()))
-
-
-def _length(parameter: str, given: Any) -> float:
-    """A number in metres, or a text with a unit."""
-    if isinstance(given, str):
-        from rocking.dimensional.units import si_value  # noqa: PLC0415  # the unit library, only for texts
-
-        given = si_value(parameter, given, "m")
-    return _number(parameter, given, 0.0, math.inf, unit="m")
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:
@@ -268,8 +253,8 @@ def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:
             raise InvalidArgumentError(parameter, given, f"1 to {MAX_POINTS} ascending values")
         return levels
     _keys(parameter, given, ("low", "high", "points"))
-    low = _number(f"{parameter}.low", given["low"], 0.0, math.inf)
-    high = _number(f"{parameter}.high", given["high"], low, math.inf)
+    low = positive(f"{parameter}.low", given["low"], "-")
+    high = number(f"{parameter}.high", given["high"], low, math.inf, closed="neither")
     points = given["points"]
     if type(points) is not int or not 2 <= points <= MAX_POINTS:
         raise InvalidArgumentError(f"{parameter}.points", points, f"an integer from 2 to {MAX_POINTS}")
@@ -285,12 +270,12 @@ def _map(given: Any) -> BlockMap:
     sizes = _levels("map.half_diagonal", given["half_diagonal"], logarithmic=False)
     if sizes.size * angles.size > MAX_CELLS:
         raise InvalidArgumentError("map", f"{sizes.size} times {angles.size} points", f"at most {MAX_CELLS} points")
-    return BlockMap(_number("map.intensity", given["intensity"], 0.0, math.inf), sizes, np.radians(angles))
+    return BlockMap(positive("map.intensity", given["intensity"], "-"), sizes, np.radians(angles))
 
 
 def _sensitivity(given: Any) -> Sensitivity:
     _keys("sensitivity", given, Sensitivity.__annotations__)
     return Sensitivity(
         _levels("sensitivity.intensity", given["intensity"], logarithmic=True),
-        _number("sensitivity.restitution_step", given["restitution_step"], 0.0, 1.0, closed="right"),
+        number("sensitivity.restitution_step", given["restitution_step"], 0.0, 1.0, closed="right"),
     )

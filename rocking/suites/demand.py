@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, number
 
 MAX_THRESHOLD = 1e3
 """Largest threshold of max |theta|/alpha [-]; at 90 degrees a block of alpha = 0.1 degrees is at 900."""
@@ -36,7 +36,7 @@ def check_demands(demand: str | float | Iterable[str | float]) -> list[str | flo
                 raise InvalidArgumentError("demand", limit, "overturning, alpha, or a threshold of max |theta|/alpha")
             found.append(limit)
         else:
-            found.append(float(in_range("demand", limit, 0.0, MAX_THRESHOLD, closed="right")))  # type: ignore[arg-type]
+            found.append(number("demand", limit, 0.0, MAX_THRESHOLD, closed="right"))  # type: ignore[arg-type]
     if not found or len({label(limit) for limit in found}) != len(found):
         raise InvalidArgumentError("demand", demand, "one or more different limit states")
     return found

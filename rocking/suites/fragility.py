@@ -16,14 +16,15 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import in_range
+from rocking.errors import number
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import CurveFit, FitStatus, binomial_interval, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
+from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 
@@ -44,13 +45,13 @@ _MODEL_VARIABLES: dict[str, tuple[str, str]] = {
 
 def fragility(
     records: Sequence[Record] | Record,
-    blocks: Sequence[Block] | Block,
+    blocks: Sequence[AbstractBlock] | AbstractBlock,
     *,
     intensity: ArrayLike,
     measure: str = "pga",
-    restitution: str | float = "housner",
+    restitution: Scalar = "housner",
     demand: str | float | Sequence[str | float] = "overturning",
-    confidence: float = 0.95,
+    confidence: Scalar = 0.95,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
@@ -100,11 +101,11 @@ def fragility(
     """
     suite = check_suite(records, blocks, intensity, measure, restitution)
     limits = check_demands(demand)
-    in_range("confidence", confidence, 0.0, 1.0, closed="neither")
+    confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")
     outcomes = suite_outcomes(suite, threads=threads, stop=stop)
     found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence))
     found.attrs |= {"confidence": confidence}
-    if isinstance(blocks, Block):
+    if isinstance(blocks, AbstractBlock):
         found = found.isel(block=0)
     return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found
 

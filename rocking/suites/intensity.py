@@ -27,7 +27,7 @@ from dataclasses import dataclass
 
 from rocking.errors import one_of
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,19 @@ class Measure:
     name: str
     unit: str
     meaning: str
-    of: Callable[[Record, Block], float]
+    of: Callable[[Record, AbstractBlock], float]
     scales_amplitude: bool = True
 
 
-def _pga_ratio(record: Record, block: Block) -> float:
+def _pga_ratio(record: Record, block: AbstractBlock) -> float:
     return record.peak_acceleration / block.uplift_acceleration
 
 
-def _pgv_ratio(record: Record, block: Block) -> float:
+def _pgv_ratio(record: Record, block: AbstractBlock) -> float:
     return block.frequency_parameter * record.peak_velocity / block.uplift_acceleration
 
 
-def _frequency_ratio(record: Record, block: Block) -> float:
+def _frequency_ratio(record: Record, block: AbstractBlock) -> float:
     return 2.0 * math.pi / (record.mean_period * block.frequency_parameter)
 
 

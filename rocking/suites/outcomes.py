@@ -16,11 +16,12 @@ from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.model.response import Response
 from rocking.solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
+from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 
@@ -49,7 +50,7 @@ RECORD_COORDINATES: dict[str, tuple[str, str]] = {
 """Properties of `Record` that the data sets hold, with unit and meaning."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Suite:
     """Arguments of a fragility analysis, checked.
 
@@ -68,7 +69,7 @@ class Suite:
     """
 
     records: tuple[Record, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[AbstractBlock, ...]
     levels: Array
     measure: Measure
     restitution: Array
@@ -76,10 +77,10 @@ class Suite:
 
 def check_suite(
     records: Sequence[Record] | Record,
-    blocks: Sequence[Block] | Block,
+    blocks: Sequence[AbstractBlock] | AbstractBlock,
     intensity: ArrayLike,
     measure: str,
-    restitution: str | float,
+    restitution: Scalar,
 ) -> Suite:
     """The arguments of `rocking.fragility`, checked.
 
@@ -90,10 +91,10 @@ def check_suite(
     """
     chosen = measure_of(measure)
     motions = (records,) if isinstance(records, Record) else tuple(records)
-    bodies = (blocks,) if isinstance(blocks, Block) else tuple(blocks)
+    bodies = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
     if not motions or not all(isinstance(motion, Record) for motion in motions):
         raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
-    if not bodies or not all(isinstance(body, Block) for body in bodies):
+    if not bodies or not all(isinstance(body, AbstractBlock) for body in bodies):
         raise InvalidArgumentError("blocks", blocks, "one or more objects of rocking.Block")
     levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=chosen.unit))
     if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):

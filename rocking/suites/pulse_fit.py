@@ -18,10 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.amplitude import critical_amplitude
 from rocking.dimensional.record_scales import overturning_scale
-from rocking.errors import InvalidArgumentError, one_of
+from rocking.equality import EqualByValue
+from rocking.errors import InvalidArgumentError, float_array, one_of
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock, Block
 from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
 
 Array = NDArray[np.float64]
@@ -36,8 +37,8 @@ HIGHEST_AMPLITUDE = 1000.0
 """Largest a = a_g/(g tan alpha) searched for overturning [-]."""
 
 
-@dataclass(frozen=True, repr=False)
-class PulseFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class PulseFit(EqualByValue):
     """The pulse that takes most of the energy of the velocity of a record.
 
     Attributes
@@ -67,7 +68,7 @@ class PulseFit:
     peak_acceleration: float
     velocity: VelocityPulse
     explained: float
-    blocks: tuple[Block, ...]
+    blocks: tuple[AbstractBlock, ...]
     record_scale: Array
     pulse_scale: Array
 
@@ -89,7 +90,7 @@ class PulseFit:
 
     def acceleration(self, time: ArrayLike) -> Array:
         """Acceleration of the pulse [m/s2] at times [s] from the first sample of the record."""
-        phase = 2.0 * math.pi / self.period * (np.asarray(time, dtype=np.float64) - self.velocity.centre)
+        phase = 2.0 * math.pi / self.period * (float_array("time", time, unit="s") - self.velocity.centre)
         return np.asarray(self.peak_acceleration * self.pulse.acceleration(phase))
 
 
@@ -97,7 +98,7 @@ def fit_pulse(
     record: Record,
     *,
     family: str | None = None,
-    blocks: Sequence[Block] | Block | None = None,
+    blocks: Sequence[AbstractBlock] | AbstractBlock | None = None,
     stop: StopFlag | None = None,
 ) -> PulseFit:
     """Fit a pulse to the velocity of a record, and compare how both overturn blocks.
@@ -123,10 +124,12 @@ def fit_pulse(
         raise InvalidArgumentError("record", record, "a rocking.Record, such as rocking.read_record returns")
     families = FAMILIES if family is None else (one_of("family", family, FAMILIES),)
     if blocks is None:
-        compared = tuple(Block.from_slenderness_angle(COMPARED_ALPHA, size) for size in COMPARED_HALF_DIAGONALS)
+        compared: tuple[AbstractBlock, ...] = tuple(
+            Block.from_slenderness_angle(COMPARED_ALPHA, size) for size in COMPARED_HALF_DIAGONALS
+        )
     else:
-        compared = (blocks,) if isinstance(blocks, Block) else tuple(blocks)
-        if not all(isinstance(block, Block) for block in compared):
+        compared = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
+        if not all(isinstance(block, AbstractBlock) for block in compared):
             raise InvalidArgumentError("blocks", blocks, "objects of rocking.Block")
     fits = [fit_velocity(record.velocity, record.time_step, name) for name in families]
     best = max(fits, key=lambda fit: fit.explained)
@@ -139,7 +142,9 @@ def fit_pulse(
     return PulseFit(pulse, best.period, peak, best, best.explained, compared, np.array(of_record), np.array(of_pulse))
 
 
-def _overturning_acceleration(pulse: AbstractPulse, period: float, block: Block, stop: StopFlag | None) -> float:
+def _overturning_acceleration(
+    pulse: AbstractPulse, period: float, block: AbstractBlock, stop: StopFlag | None
+) -> float:
     """Lowest peak acceleration [m/s2] at which a pulse overturns a block with the restitution (2.4), by (2.2)."""
     found = critical_amplitude(
         pulse,

@@ -19,11 +19,11 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import in_range
+from rocking.errors import number
 from rocking.excitation.records.record import Record
 from rocking.history.contact import contact_extremes
 from rocking.history.record_motion import build_record_motion
-from rocking.model.block import Block
+from rocking.model.block import AbstractBlock
 from rocking.model.fields import OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.suites.fits import binomial_interval
 from rocking.suites.outcomes import (
@@ -35,6 +35,7 @@ from rocking.suites.outcomes import (
     responses_to,
     slenderness_of,
 )
+from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 
@@ -56,13 +57,13 @@ FRICTION_DEMAND = "largest friction demand |H|/N over the motion, impacts exclud
 
 def suite_sensitivity(
     records: Sequence[Record] | Record,
-    blocks: Sequence[Block] | Block,
+    blocks: Sequence[AbstractBlock] | AbstractBlock,
     *,
     intensity: ArrayLike,
     measure: str = "pga",
-    restitution: str | float = "housner",
-    restitution_step: float = RESTITUTION_STEP,
-    confidence: float = 0.95,
+    restitution: Scalar = "housner",
+    restitution_step: Scalar = RESTITUTION_STEP,
+    confidence: Scalar = 0.95,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
@@ -97,12 +98,12 @@ def suite_sensitivity(
         If `stop` was set.
     """
     suite = check_suite(records, blocks, intensity, measure, restitution)
-    in_range("restitution_step", restitution_step, 0.0, 1.0, closed="right")
-    in_range("confidence", confidence, 0.0, 1.0, closed="neither")
-    outcomes = sensitivity_outcomes(suite, float(restitution_step), threads=threads, stop=stop)
+    restitution_step = number("restitution_step", restitution_step, 0.0, 1.0, closed="right")
+    confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")
+    outcomes = sensitivity_outcomes(suite, restitution_step, threads=threads, stop=stop)
     found = outcomes.merge(sensitivity_of_outcomes(outcomes, confidence))
     found.attrs |= {"confidence": confidence}
-    return found.isel(block=0) if isinstance(blocks, Block) else found
+    return found.isel(block=0) if isinstance(blocks, AbstractBlock) else found
 
 
 def sensitivity_outcomes(

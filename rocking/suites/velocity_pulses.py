@@ -32,7 +32,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.optimize import least_squares
 
-from rocking.errors import InvalidArgumentError
+from rocking.equality import EqualByValue
+from rocking.errors import InvalidArgumentError, float_array
 from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, get_pulse
 
 Array = NDArray[np.float64]
@@ -109,8 +110,8 @@ FAMILIES = {
 """The families by name."""
 
 
-@dataclass(frozen=True)
-class VelocityPulse:
+@dataclass(frozen=True, eq=False)
+class VelocityPulse(EqualByValue):
     """A fitted pulse.
 
     Attributes
@@ -140,7 +141,7 @@ class VelocityPulse:
 
     def velocity(self, time: Array) -> Array:
         """Velocity [m/s] at times [s] from the first sample."""
-        phi = 2.0 * math.pi / self.period * (np.asarray(time, dtype=np.float64) - self.centre)
+        phi = 2.0 * math.pi / self.period * (float_array("time", time, unit="s") - self.centre)
         basis = FAMILIES[self.family].basis(phi, self.cycles)
         if basis.shape[0] == 1:
             return np.asarray(self.amplitude * basis[0])

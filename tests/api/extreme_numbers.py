@@ -267,8 +267,6 @@ def walk_python(walk: Walk, results: Path) -> None:
     objects = {"Block": BLOCK, "EquivalentBlock": equivalent, "Record": RECORD, "Cube": cube, "PulseFit": fit}
     for name, thing in objects.items():
         members = {key: getattr(thing, key) for key in dir(thing) if key not in UNUSED}
-        if name == "EquivalentBlock":
-            del members["from_slenderness_angle"]  # of `Block`
         functions |= {f"rocking.{name}.{key}": value for key, value in members.items() if inspect.ismethod(value)}
     for name, function in functions.items():
         parameters = inspect.signature(function).parameters

@@ -15,8 +15,7 @@ from typer.testing import CliRunner
 import rocking
 from rocking.boundary.tracing import overturning_boundary
 from rocking.cli.app import app
-from rocking.dimensional.units import si_value
-from rocking.errors import InvalidArgumentError
+from rocking.errors import InvalidArgumentError, si_value
 from rocking.history.time_history import time_history
 from rocking.model.block import Block
 from rocking.model.response import Outcome
@@ -355,13 +354,13 @@ def test_errors_name_the_option_and_the_allowed_values(arguments, option, allowe
         ("0.3m", "m", 0.3),
         ("30 cm", "m", 0.3),
         ("12 inch", "m", 0.3048),
-        ("0.4g", "m/s**2", 0.4 * 9.80665),
-        ("0.4 g", "m/s**2", 0.4 * 9.80665),
-        ("4 m/s2", "m/s**2", 4.0),
-        ("4 m/s^2", "m/s**2", 4.0),
-        ("400 cm/s**2", "m/s**2", 4.0),
-        ("400 gal", "m/s**2", 4.0),
-        ("400Gal", "m/s**2", 4.0),
+        ("0.4g", "m/s2", 0.4 * 9.80665),
+        ("0.4 g", "m/s2", 0.4 * 9.80665),
+        ("4 m/s2", "m/s2", 4.0),
+        ("4 m/s^2", "m/s2", 4.0),
+        ("400 cm/s**2", "m/s2", 4.0),
+        ("400 gal", "m/s2", 4.0),
+        ("400Gal", "m/s2", 4.0),
         ("500 ms", "s", 0.5),
         ("20 deg", "rad", math.radians(20)),
         ("0.2 rad", "rad", 0.2),
@@ -374,7 +373,7 @@ def test_units(text, unit, value):
 @pytest.mark.parametrize(
     ("text", "unit"),
     [("0.3", "m"), ("0.3 s", "m"), ("0.3 furlongs per", "m"), ("", "m"), ("m", "s"), ("nan m", "m"), ("0.3", "rad"),
-     ("1 kg", "m/s**2"), ("__import__('os')", "m"), ("1e999 m", "m")],
+     ("1 kg", "m/s2"), ("__import__('os')", "m"), ("1e999 m", "m")],
 )  # fmt: skip
 def test_invalid_quantities_are_refused(text, unit):
     with pytest.raises(InvalidArgumentError) as caught:

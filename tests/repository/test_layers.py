@@ -27,7 +27,9 @@ LAYERS = (
     ("rocking/solver", "rocking/closed_form", "rocking/groups"),
     ("rocking/model", "rocking/excitation", "rocking/orientation"),
     ("rocking/_numba",),
-    ("rocking/errors", "rocking/constants", "rocking/version"),
+    ("rocking/errors", "rocking/equality"),
+    ("rocking/units",),
+    ("rocking/constants", "rocking/version"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as in pyproject.toml

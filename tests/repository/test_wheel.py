@@ -22,7 +22,6 @@ REQUIRED = {
     "numba",
     "numpy",
     "pandas",
-    "pint",
     "rich",
     "scipy",
     "typer",

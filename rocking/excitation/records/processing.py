@@ -8,7 +8,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking.errors import InvalidArgumentError, integer, positive
+from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 
@@ -39,17 +40,17 @@ def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
     InvalidArgumentError
         If `order` is out of range, or there are fewer than `order` + 2 samples.
     """
-    in_range("order", order, 0, MAX_BASELINE_ORDER)
-    if order != int(order) or a.size < order + 2:
+    order = integer("order", order, 0, MAX_BASELINE_ORDER)
+    if a.size < order + 2:
         raise InvalidArgumentError("order", order, f"an integer, at least 2 smaller than the {a.size} samples")
     time = np.linspace(0.0, 1.0, a.size)
-    powers = np.arange(1, int(order) + 2)
+    powers = np.arange(1, order + 2)
     coefficients = np.linalg.lstsq(time[:, None] ** powers, v, rcond=None)[0]
     slope = time[:, None] ** (powers - 1) @ (powers * coefficients)
     return np.asarray(a - slope / duration)
 
 
-def resample(a: Array, dt: float, time_step: float) -> Array:
+def resample(a: Array, dt: float, time_step: Scalar) -> Array:
     """The samples of the band-limited signal at the step `time_step`, zero outside of the record.
 
     Raises
@@ -60,7 +61,7 @@ def resample(a: Array, dt: float, time_step: float) -> Array:
     """
     from scipy.signal import resample_poly  # noqa: PLC0415  # takes longer to load than the package
 
-    step = float(in_range("time_step", time_step, 0.0, math.inf, closed="neither", unit="s"))
+    step = positive("time_step", time_step, "s")
     ratio = Fraction(dt / step).limit_denominator(MAX_RATIO)
     if not 1 <= ratio.numerator <= MAX_RATIO or abs(float(ratio) * step / dt - 1.0) > RATIO_TOLERANCE:
         raise InvalidArgumentError(

@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import InvalidArgumentError, in_range, one_of
+from rocking.errors import InvalidArgumentError, in_range, number, one_of
 from rocking.excitation.records import measures
 from rocking.excitation.records.processing import baseline, resample
+from rocking.units import UNITS as QUANTITIES
+from rocking.units import Scalar
 
-UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01, "mm/s2": 0.001, "g": STANDARD_GRAVITY}
+UNITS = QUANTITIES["m/s2"]
 """Units of acceleration, each with its value in m/s2."""
 
 MAX_ACCELERATION = 1e6
@@ -39,9 +41,10 @@ class Record:
     acceleration : array_like (samples,)
         At least two samples, finite, not all of them zero.
     time_step : float
-        Time between the samples [s], [1e-6, 10]; the duration is at most 1e5 s.
+        Time between the samples [s], [1e-6, 10]; the duration is at most 1e5 s. A text such as "10 ms" or a quantity is
+        converted.
     unit : str
-        Unit of the samples, a key of `UNITS`: "m/s2", "cm/s2", "gal", "mm/s2" or "g". It has to be stated.
+        Unit of the samples, a key of `UNITS`, such as "m/s2", "gal" or "g". It has to be stated.
     name : str
         Name for output, such as station and component.
     source : str
@@ -69,7 +72,7 @@ class Record:
     def __init__(
         self,
         acceleration: ArrayLike,
-        time_step: float,
+        time_step: Scalar,
         unit: str,
         name: str = "",
         source: str = "",
@@ -82,16 +85,14 @@ class Record:
             raise InvalidArgumentError("acceleration", f"shape {samples.shape}", "one dimension, at least 2 samples")
         if not samples.any():
             raise InvalidArgumentError("acceleration", "all samples 0", "a motion that is not zero")
-        step = in_range("time_step", time_step, *TIME_STEP, unit="s")
-        if step.ndim:
-            raise InvalidArgumentError("time_step", time_step, "one number")
+        step = number("time_step", time_step, *TIME_STEP, unit="s")
         if (samples.size - 1) * step > MAX_DURATION:
             allowed = f"a duration of at most {MAX_DURATION:g} s, with {samples.size} samples"
-            raise InvalidArgumentError("time_step", float(step), allowed)
+            raise InvalidArgumentError("time_step", step, allowed)
         scaled = samples * factor  # a new array, which the caller cannot change
         scaled.flags.writeable = False
         about = {"name": name, "source": source, "remarks": tuple(remarks)}
-        given = {"acceleration": scaled, "time_step": float(step), **about}
+        given = {"acceleration": scaled, "time_step": step, **about}
         for key, value in given.items():
             object.__setattr__(self, key, value)
 
@@ -203,7 +204,7 @@ class Record:
         kept = baseline(self.acceleration, self.velocity, self.duration, order)
         return self._processed(kept, self.time_step, f"baseline of order {order} removed")
 
-    def resampled(self, time_step: float) -> Record:
+    def resampled(self, time_step: Scalar) -> Record:
         """The record at another step, by band-limited interpolation with anti-aliasing.
 
         The answers of the solver belong to a motion that is linear between the samples; comparing them with those of a
@@ -220,9 +221,9 @@ class Record:
         InvalidArgumentError
             If the step is not such a fraction, or the samples would be fewer than 2 or too many.
         """
-        in_range("time_step", time_step, *TIME_STEP, unit="s")
-        samples = resample(self.acceleration, self.time_step, time_step)
-        return self._processed(samples, time_step, f"resampled from {self.time_step:g} s, band-limited")
+        step = number("time_step", time_step, *TIME_STEP, unit="s")
+        samples = resample(self.acceleration, self.time_step, step)
+        return self._processed(samples, step, f"resampled from {self.time_step:g} s, band-limited")
 
     def _processed(self, acceleration: NDArray[np.float64], time_step: float, what: str) -> Record:
         """The record with other samples [m/s2]; its source says what was done."""

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
 from rocking._numba.simd import LANES
-from rocking.errors import InvalidArgumentError, broadcast, in_range
+from rocking.errors import InvalidArgumentError, broadcast, in_range, integer
 from rocking.excitation.records.record import Record
 from rocking.model.checks import check, check_alpha
 from rocking.model.fields import RESPONSE_FIELDS
@@ -78,8 +78,7 @@ def record_response(
     StoppedError
         If `stop` was set.
     """
-    if threads is not None:
-        in_range("threads", threads, 1, math.inf)
+    cores = AVAILABLE_CORES if threads is None else integer("threads", threads, 1, math.inf)
     given = {
         "frequency_parameter": frequency_parameter,
         "slenderness": slenderness,
@@ -91,7 +90,7 @@ def record_response(
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in groups]
     cells[0] = cells[0] * motion.time_step
-    records = _solve_cells(motion, cells, int(threads or AVAILABLE_CORES), stop)
+    records = _solve_cells(motion, cells, cores, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
     return Response(
         **found,
@@ -115,20 +114,25 @@ def check_record_groups(
     InvalidArgumentError
         If `motion` is not a record, or a value is out of range.
     """
-    if not isinstance(motion, Record):
-        raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     return (
-        in_range(
-            "frequency_parameter",
-            frequency_parameter,
-            FREQUENCY_PARAMETER.lower,
-            min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step),
-            unit="rad/s",
-        ),
+        in_range("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s"),
         check(SLENDERNESS, slenderness),
         check(RESTITUTION, restitution),
         check_alpha(alpha),
     )
+
+
+def frequency_parameter_range(motion: Record) -> tuple[float, float]:
+    """Smallest and largest frequency parameter p of a block under this record [rad/s].
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `motion` is not a record.
+    """
+    if not isinstance(motion, Record):
+        raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
+    return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
 
 
 def _solve_cells(

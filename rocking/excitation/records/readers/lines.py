@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking.errors import RecordFileError
+from rocking.units import unit_name
 
 if TYPE_CHECKING:  # loads the compiler
     from rocking._numba.cancellation import StopFlag
@@ -41,14 +42,6 @@ MAX_SAMPLES = 10_000_000
 COUNT_DIFFERENCE = 0.01
 """Largest difference between the number of values and the number that the header states, as a share of it [-]: headers
 are often off by a few. A larger one is a damaged file."""
-
-_UNIT_FORMS = {
-    "g": {"g", "gs", "gravity"},
-    "gal": {"gal", "gals"},
-    "m/s2": {"m/s2", "m/s/s", "ms-2", "m/s-2", "ms2"},
-    "cm/s2": {"cm/s2", "cm/s/s", "cms-2", "cm/s-2", "cms2"},
-    "mm/s2": {"mm/s2", "mm/s/s", "mms-2", "mm/s-2", "mms2"},
-}
 
 
 @dataclass(frozen=True)
@@ -222,8 +215,7 @@ _EXPONENT = str.maketrans("Dd", "Ee")
 
 def parse_unit(text: str) -> str | None:
     """The unit of acceleration that a text names, a key of `UNITS`; None if it names none."""
-    plain = re.sub(r"[\s_*^()\[\]]", "", text.strip().lower().replace("²", "2").replace("sec", "s"))
-    return next((unit for unit, forms in _UNIT_FORMS.items() if plain in forms), None)
+    return unit_name(text, "m/s2")
 
 
 def agreed_unit(file: TextFile, line: int | None, stated: str | None, given: str | None) -> str:

@@ -6,10 +6,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rocking.errors import InvalidArgumentError, RecordFileError, in_range, one_of
+from rocking.errors import InvalidArgumentError, RecordFileError, number, one_of
 from rocking.excitation.records.readers import columns, esm, knet, peer_at2, seismic
 from rocking.excitation.records.readers.lines import MAX_LINE, TextFile
 from rocking.excitation.records.record import TIME_STEP, UNITS, Record
+from rocking.units import Scalar
 
 if TYPE_CHECKING:  # loads the compiler
     from rocking._numba.cancellation import StopFlag
@@ -22,7 +23,7 @@ def read_record(
     path: str | PathLike[str],
     *,
     unit: str | None = None,
-    time_step: float | None = None,
+    time_step: Scalar | None = None,
     component: str | None = None,
 ) -> Record:
     """Read a recorded ground acceleration from a file.
@@ -63,7 +64,7 @@ def parse_record(
     name: str,
     *,
     unit: str | None = None,
-    time_step: float | None = None,
+    time_step: Scalar | None = None,
     component: str | None = None,
     stop: StopFlag | None = None,
 ) -> Record:
@@ -73,16 +74,15 @@ def parse_record(
     """
     if unit is not None:
         one_of("unit", unit, UNITS)
-    if time_step is not None:
-        in_range("time_step", time_step, *TIME_STEP, unit="s")
+    step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
     if len(content) > MAX_BYTES:
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
     if seismic.is_seismic(content):
-        return seismic.read(content, name, unit, time_step, component)
+        return seismic.read(content, name, unit, step, component)
     _check_text(content, name)
     file = TextFile(name, content, stop)
     try:
-        return _read_text(file, unit, time_step, component)
+        return _read_text(file, unit, step, component)
     except RecordFileError:
         raise
     except InvalidArgumentError as error:  # samples that make no record, such as zeros only

@@ -1,0 +1,158 @@
+"""Results are equal if all their fields are, survive pickling, and have no hash if they hold arrays."""
+
+import dataclasses
+import importlib
+import pickle
+import pkgutil
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking import groups
+from rocking.boundary.frequency import critical_frequency_ratio
+from rocking.datasets.cube import write_dataset
+from rocking.dimensional.record_scales import scale_thresholds
+from rocking.equality import EqualByValue, equal_values
+from rocking.lookup.cube import Cube
+from rocking.solver.bounded_response import solve_with_bound
+from rocking.spectra.cubes import spectrum
+from rocking.suites.configuration import suite_configuration
+from tests.lookup_grid import GRID
+
+BLOCK = rocking.Block(0.2, 0.8)
+ARRAYS = {"slenderness": [0.1, 0.4, 2.0], "frequency_ratio": 5.0, "restitution": 0.85}  # overturns: peaks of nan
+
+
+def record():
+    time = np.arange(0.0, 3.0, 0.01)
+    return rocking.Record(3.0 * np.sin(6.0 * time) * np.exp(-time), 0.01, "m/s2", "example")
+
+
+def configuration():
+    given = {
+        "name": "example", "records": {"folder": "motions", "pattern": "*.csv"}, "intensity": [1.0, 2.0],
+        "blocks": [{"half_width": 0.2, "half_height": 0.8}], "measure": "pga",
+        "sensitivity": {"intensity": [1.0], "restitution_step": 0.1},
+        "map": {"intensity": 1.0, "half_diagonal": [1.0, 2.0], "alpha_deg": [5.0, 10.0]},
+    }  # fmt: skip
+    return suite_configuration(given, Path())
+
+
+EXAMPLES = {
+    "Response": lambda: rocking.peak_response("sine", **ARRAYS),
+    "BoundedResponse": lambda: solve_with_bound("sine", **ARRAYS, alpha=None),
+    "Thresholds": lambda: rocking.critical_amplitude("sine", frequency_ratio=5.0, restitution=0.85),
+    "FrequencyThresholds": lambda: critical_frequency_ratio(
+        "sine", slenderness=0.3, restitution=0.85, window=(1.0, 10.0)
+    ),
+    "ScaleThresholds": lambda: scale_thresholds(record(), BLOCK),
+    "PulseFit": lambda: rocking.fit_pulse(record(), family="ricker", blocks=BLOCK),
+    "VelocityPulse": lambda: rocking.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
+    "BlockResponse": lambda: BLOCK.response("sine", peak_acceleration=40.0, period=1.0),
+    "BlockRecordResponse": lambda: BLOCK.response(record(), scale=50.0),
+    "Problem": lambda: groups.Problem(0.2, [2.0, 3.0], 4.0, 8.0),
+    "Groups": lambda: groups.Groups([2.0, 3.0], 0.5),
+    "SuiteConfiguration": configuration,
+    "BlockMap": lambda: configuration().map,
+    "Sensitivity": lambda: configuration().sensitivity,
+}
+
+
+def dataclasses_of_the_package():
+    for module in pkgutil.walk_packages(rocking.__path__, "rocking."):
+        if module.name.split(".")[1] not in ("__main__", "cli", "plot", "precompile"):
+            for value in vars(importlib.import_module(module.name)).values():
+                if (
+                    isinstance(value, type)
+                    and dataclasses.is_dataclass(value)
+                    and getattr(value, "__module__", "") == module.name
+                ):
+                    yield value
+
+
+def test_no_dataclass_compares_arrays_as_truth_values():
+    found = [*dataclasses_of_the_package()]
+    arrays = re.compile(r"(NDArray\b.*|\w*Arrays?|Floats|Flags)( \| None)?")
+    holding = [one for one in found if any(arrays.match(str(field.type)) for field in dataclasses.fields(one))]
+    assert len(holding) > 15
+    for one in holding:
+        assert not one.__dataclass_params__.eq or one.__eq__ is EqualByValue.__eq__, one
+
+
+def test_every_kind_of_result_has_an_example():
+    kinds = {one.__name__ for one in dataclasses_of_the_package() if issubclass(one, EqualByValue)}
+    assert kinds - {"ScalarResponse"} == EXAMPLES.keys()
+
+
+@pytest.mark.parametrize("make", EXAMPLES.values(), ids=EXAMPLES)
+def test_equal_results_are_equal(make):
+    one, other = make(), make()
+    copy = pickle.loads(pickle.dumps(one))
+    assert one is not other
+    assert one == other == copy
+    assert copy is not one
+    assert (one != other) is False
+    assert one != "something else"
+    assert other not in [None]
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(one)
+
+
+@pytest.mark.parametrize("make", EXAMPLES.values(), ids=EXAMPLES)
+def test_results_that_differ_in_one_field_differ(make):
+    one = make()
+    for field in dataclasses.fields(one):
+        if field.compare:
+            changed = pickle.loads(pickle.dumps(one))
+            value = getattr(one, field.name)
+            object.__setattr__(changed, field.name, value + 1 if isinstance(value, np.ndarray | float) else "changed")
+            same = isinstance(value, np.ndarray | float) and bool(np.all(np.isnan(value)))
+            assert (one == changed) == same, field.name
+
+
+def test_responses_that_differ_in_one_number_differ():
+    one, other = (rocking.peak_response("sine", **ARRAYS | {"frequency_ratio": omega}) for omega in (5.0, 5.0 + 1e-12))
+    assert one != other
+    assert one != rocking.peak_response("sine", **ARRAYS | {"slenderness": [0.1, 0.4]})
+    assert one != rocking.peak_response("cosine", **ARRAYS)
+
+
+def test_values_that_numpy_does_not_compare():
+    assert equal_values(np.array(["a", "b"]), np.array(["a", "b"]))
+    assert equal_values({"a": [np.nan, np.array([1, np.nan])]}, {"a": [np.float64("nan"), np.array([1, np.nan])]})
+    assert not equal_values({"a": 1}, {"b": 1})
+    assert not equal_values((1, 2), (1, 2, 3))
+    assert not equal_values(np.array([1.0]), None)
+
+
+def test_cubes_are_equal_if_their_files_are(tmp_path):
+    for eta in (0.85, 0.9):
+        write_dataset(spectrum("sine", restitution=eta, **GRID), tmp_path / f"eta-{eta:.2f}.nc")
+    one, other = (rocking.open_cube(tmp_path / "eta-0.85.nc") for _ in range(2))
+    points = {"slenderness": [0.3, 0.5], "frequency_ratio": 5.0, "tolerance": 1.0}
+    expected = one.response(**points)  # fills the tables that hold addresses
+    copy = pickle.loads(pickle.dumps(one))
+    assert isinstance(copy, Cube)
+    assert one == other == copy
+    assert copy.response(**points) == expected
+    assert one != rocking.open_cube(tmp_path / "eta-0.90.nc")
+    assert one != rocking.open_cube(tmp_path)
+    assert rocking.open_cube(tmp_path) == rocking.open_cube(tmp_path)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(one)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [lambda: BLOCK, lambda: rocking.EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5), record,
+     lambda: rocking.get_pulse("-c1"), lambda: BLOCK.response("sine", peak_acceleration=4.0, period=0.5).problem],
+    ids=["Block", "EquivalentBlock", "Record", "pulse", "BlockProblem"],
+)  # fmt: skip
+def test_what_holds_no_writable_array_has_a_hash(make):
+    one, copy = make(), pickle.loads(pickle.dumps(make()))
+    assert one == copy
+    assert hash(one) == hash(copy)
+    assert one != "something else"

@@ -1,0 +1,270 @@
+"""Every argument that is one number: of each public function, what is no number is refused by its name."""
+
+import inspect
+import re
+from collections.abc import Callable, Iterator
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking import EquivalentBlock, InvalidArgumentError, closed_form, groups, orientation
+from rocking.datasets.cube import write_dataset
+from rocking.orientation import Orientation
+from rocking.spectra.cubes import spectrum
+from tests.lookup_grid import GRID
+
+BLOCK = rocking.Block(0.2, 0.8)
+FRAME = EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5)
+TIME = np.arange(0.0, 3.0, 0.01)
+RECORD = rocking.Record(3.0 * np.sin(6.0 * TIME), 0.01, "m/s2")
+PROBLEM = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
+OF_RECORD = {"frequency_parameter": 3.0, "slenderness": 0.4, "restitution": 0.85, "alpha": 0.2}
+PULSE = {"excitation": "sine", "peak_acceleration": 4.0, "period": 0.5, "restitution": 0.9}
+SUITE = {"records": RECORD, "blocks": BLOCK, "intensity": [3.0], "restitution": 0.9, "confidence": 0.9, "threads": 1}
+SIZE = {"gravity": 9.81}
+GROUPS = groups.Groups(5.0, 0.4)
+RIGID = groups.GroupSet.RIGID_SMALL_ROTATION
+SCALED = {"excitation": RECORD, "scale": 1.0, "restitution": 0.9}
+
+CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
+    "Block": (rocking.Block, [{"half_width": 0.2, "half_height": 0.8} | SIZE]),
+    "Block.from_slenderness_angle": (
+        rocking.Block.from_slenderness_angle,
+        [{"alpha": 0.2, "half_diagonal": 1.0} | SIZE],
+    ),
+    "EquivalentBlock": (
+        EquivalentBlock,
+        [{"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9, "uplift_acceleration": 1.0, "top_height": 1.0}
+         | SIZE],
+    ),
+    "EquivalentBlock.linear_mechanism": (
+        EquivalentBlock.linear_mechanism,
+        [{"mass": 5.0, "stiffness": 20.0, "restoring": 4.0, "load": 2.0, "restitution": 0.9, "top_height": 1.0} | SIZE],
+    ),
+    "EquivalentBlock.masonry_arch": (
+        EquivalentBlock.masonry_arch,
+        [{"radius": 10.0, "thickness": 1.5, "embrace": 2.7, "voussoirs": 7, "restitution": 0.9} | SIZE],
+    ),
+    "EquivalentBlock.rigid_body": (
+        EquivalentBlock.rigid_body,
+        [{"mass": 700.0, "inertia": 900.0, "base": 0.6, "centre_height": 2.0, "top_height": 4.0} | SIZE],
+    ),
+    "EquivalentBlock.rocking_frame": (EquivalentBlock.rocking_frame, [{"column": BLOCK, "mass_ratio": 0.5}]),
+    "Record": (rocking.Record, [{"acceleration": [1.0, 2.0], "time_step": 0.01, "unit": "g"}]),
+    "Record.baseline_corrected": (RECORD.baseline_corrected, [{"order": 1}]),
+    "Record.resampled": (RECORD.resampled, [{"time_step": 0.005}]),
+    "closed_form.discounted_integral": (
+        closed_form.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
+    ),
+    "closed_form.first_uplift_phase": (closed_form.first_uplift_phase, [{"pulse": "sine", "amplitude": 2.0}]),
+    "closed_form.impacts_in_pulse": (
+        closed_form.impacts_in_pulse,
+        [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0, "restitution": 0.9, "most": 2}],
+    ),
+    "closed_form.margin_after_impacts": (
+        closed_form.margin_after_impacts,
+        [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0, "restitution": 0.9, "impacts": 1}],
+    ),
+    "closed_form.overturning_interval": (
+        closed_form.overturning_interval,
+        [{"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "impacts": 1, "amplitude": (2.0, 20.0)}],
+    ),
+    "closed_form.island_tip": (
+        closed_form.island_tip,
+        [{"pulse": "sine", "restitution": 0.9, "impacts": 1, "frequency_ratio": (4.0, 8.0), "amplitude": (2.0, 20.0)}],
+    ),
+    "closed_form.margin_after_impact": (
+        closed_form.margin_after_impact,
+        [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0, "restitution": 0.9, "impact_phase": 4.0,
+          "impact_velocity": 1.0}],
+    ),
+    "closed_form.margin_without_impact": (
+        closed_form.margin_without_impact, [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0}],
+    ),
+    "critical_amplitude": (
+        rocking.critical_amplitude,
+        [{"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "alpha": 0.2, "highest_amplitude": 20.0}],
+    ),
+    "fragility": (rocking.fragility, [SUITE]),
+    "get_pulse": (
+        lambda **given: rocking.get_pulse("mavroeidis_papageorgiou", **given), [{"cycles": 2.0}, {"phase": 0.5}],
+    ),
+    "groups.Problem": (
+        groups.Problem,
+        [{"alpha": 0.2, "frequency_parameter": 2.0, "peak_acceleration": 4.0, "pulse_frequency": 8.0} | SIZE],
+    ),
+    "groups.problem_of_block": (
+        groups.problem_of_block,
+        [{"groups": GROUPS, "group_set": RIGID, "alpha": 0.2, "frequency_parameter": 2.0} | SIZE],
+    ),
+    "groups.problem_of_pulse": (
+        groups.problem_of_pulse,
+        [{"groups": GROUPS, "group_set": RIGID, "peak_acceleration": 4.0, "pulse_frequency": 8.0} | SIZE],
+    ),
+    "orientation.admissible_exponents": (
+        orientation.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
+    ),
+    "overturning_boundary": (
+        rocking.overturning_boundary, [{"pulse": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32}],
+    ),
+    "peak_response": (rocking.peak_response, [{"pulse": "sine", "tolerance": 1e-6, "threads": 1} | PROBLEM]),
+    "read_record": (rocking.read_record, [{"path": __file__, "time_step": 0.01}]),
+    "record_amplification": (rocking.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
+    "record_history": (rocking.record_history, [{"motion": RECORD, "duration": 5.0, "samples": 10} | OF_RECORD]),
+    "record_response": (rocking.record_response, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
+    "suite_sensitivity": (rocking.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
+    "time_history": (rocking.time_history, [{"pulse": "sine", "duration": 5.0, "samples": 10} | PROBLEM]),
+}  # fmt: skip
+"""Public functions with arguments that they accept."""
+
+for kind, body in (("Block", BLOCK), ("EquivalentBlock", FRAME)):
+    CALLS |= {
+        f"{kind}.boundary": (body.boundary, [{"pulse": "sine", "restitution": 0.9}]),
+        f"{kind}.history": (body.history, [{"duration": 1.0, "samples": 10} | more for more in (PULSE, SCALED)]),
+        f"{kind}.response": (body.response, [PULSE, SCALED]),
+        f"{kind}.spectrum": (body.spectrum, [PULSE]),
+    }
+
+RESULTS = {"PulseFit", "orientation.Quantity", "Block.top_displacement", "EquivalentBlock.top_displacement"}
+"""What the package makes itself, and functions of its results, which may be nan."""
+
+OPTIONAL = {
+    "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
+    "restitution", "scale",
+}  # fmt: skip
+"""Arguments that may be None somewhere."""
+
+EXCEPTIONS = {rocking.RecordFileError}
+
+SCALAR = re.compile(r"(units\.)?(float|int|Scalar|Restitution)( \| None)?")
+
+
+def scalars(function: Callable[..., Any]) -> list[str]:
+    """Return the names of the arguments that are annotated as one number."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except ValueError:  # an enumeration
+        return []
+    return [one.name for one in parameters if SCALAR.fullmatch(str(one.annotation))]
+
+
+def public_functions(module: ModuleType, prefix: str = "") -> Iterator[tuple[str, list[str]]]:
+    """Yield public functions, classes and methods with arguments that are numbers."""
+    for name in getattr(module, "__all__", [key for key in vars(module) if not key.startswith("_")]):
+        value = getattr(module, name)
+        if value in (closed_form, groups, orientation):
+            yield from public_functions(value, f"{name}.")
+        if not (getattr(value, "__module__", None) or "").startswith(module.__name__) or value in EXCEPTIONS:
+            continue
+        found = {prefix + name: value} if callable(value) else {}
+        if inspect.isclass(value):
+            members = {key: inspect.getattr_static(value, key) for key in dir(value) if not key.startswith("_")}
+            found |= {f"{prefix}{name}.{key}": getattr(one, "__func__", one) for key, one in members.items()}
+        yield from ((key, scalars(one)) for key, one in found.items() if callable(one) and scalars(one))
+
+
+CUBE = {"Cube.response", "Cube.evaluate", "Cube.interpolate"}
+
+
+def test_every_public_function_with_a_number_is_asked():
+    found = dict(public_functions(rocking))
+    assert found.keys() - RESULTS - CUBE == CALLS.keys()
+    for name in found.keys() - RESULTS - CUBE - {"get_pulse"}:
+        assert set(found[name]) <= {key for given in CALLS[name][1] for key in given}, name
+
+
+ASKED = [
+    (name, number, argument)
+    for name, (function, calls) in CALLS.items()
+    for number, given in enumerate(calls)
+    for argument in ([*given] if name == "get_pulse" else [key for key in scalars(function) if key in given])
+]
+WRONG = {
+    "list": lambda value: [value],
+    "pair": lambda value: (value, value),
+    "array": lambda value: np.array([value]),
+    "text": lambda _: "wide",
+    "boolean": lambda _: True,
+    "none": lambda _: None,
+    "object": lambda _: object(),
+    "complex": lambda value: value + 0.1j,
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG.values(), ids=WRONG)
+@pytest.mark.parametrize(("name", "number", "argument"), ASKED)
+def test_what_is_no_number_is_refused_by_its_name(name, number, argument, wrong):
+    function, calls = CALLS[name]
+    given = calls[number]
+    value = wrong(given[argument])
+    if value is None and argument in OPTIONAL:
+        return
+    with pytest.raises(InvalidArgumentError, match=rf"^`{argument}` = ") as caught:
+        function(**given | {argument: value})
+    assert caught.value.parameter == argument
+    if isinstance(value, list | tuple | np.ndarray):
+        assert "one number in " in caught.value.allowed
+
+
+@pytest.mark.parametrize(
+    "argument", ["threads", "samples", "nodes", "order", "voussoirs", "impacts", "most", "largest"]
+)
+def test_whole_numbers_are_whole(argument):
+    for name, number, own in ASKED:
+        if own == argument:
+            function, calls = CALLS[name]
+            with pytest.raises(InvalidArgumentError, match=rf"^`{argument}` = .*whole number") as caught:
+                function(**calls[number] | {argument: calls[number][argument] + 0.5})
+            assert caught.value.parameter == argument
+
+
+@pytest.mark.parametrize("argument", ["tolerance", "threads"])
+@pytest.mark.parametrize("wrong", WRONG.values(), ids=WRONG)
+def test_of_cubes_too(argument, wrong, cube):
+    given = {"slenderness": 0.4, "frequency_ratio": 5.0, "tolerance": 1.0, "threads": 1}
+    value = wrong(given[argument])
+    if value is not None or argument == "tolerance":
+        with pytest.raises(InvalidArgumentError, match=rf"^`{argument}` = "):
+            cube.response(**given | {argument: value})
+
+
+@pytest.fixture(scope="module")
+def cube(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cube") / "eta-0.85.nc"
+    write_dataset(spectrum("sine", restitution=0.85, **GRID), path)
+    return rocking.open_cube(path)
+
+
+def test_the_place_of_a_wrong_number_is_named():
+    with pytest.raises(InvalidArgumentError, match=r"`slenderness` = -1.0 at index 2 is not allowed") as caught:
+        rocking.peak_response("sine", **PROBLEM | {"slenderness": [0.4, 0.5, -1.0, -2.0]})
+    assert (caught.value.parameter, caught.value.value, caught.value.index) == ("slenderness", -1.0, (2,))
+    with pytest.raises(InvalidArgumentError, match=r"`restitution` = nan at index \(1, 0\) is"):
+        rocking.peak_response("sine", **PROBLEM | {"restitution": np.array([[0.1, 0.2], [np.nan, 2.0]])})
+    with pytest.raises(InvalidArgumentError, match=r"`alpha` = 1e-13 at index 1 is"):
+        rocking.peak_response("sine", **PROBLEM | {"alpha": [0.0, 1e-13]})
+
+
+def test_angles_in_degrees_are_asked_about():
+    with pytest.raises(InvalidArgumentError, match=r"\[rad\]; write '20 deg' if degrees were meant$"):
+        rocking.peak_response("sine", **PROBLEM | {"alpha": 20})
+    with pytest.raises(InvalidArgumentError, match=r"at index 1 .*; numpy.radians converts degrees$"):
+        rocking.peak_response("sine", **PROBLEM | {"alpha": [0.1, 20.0]})
+    with pytest.raises(InvalidArgumentError, match=r"\[rad\]; write '45 deg' if degrees were meant$"):
+        rocking.Block.from_slenderness_angle(45, 1.0)
+    for wrong in (1000.0, -20.0, np.inf):
+        with pytest.raises(InvalidArgumentError, match=r"\[rad\]$"):
+            rocking.peak_response("sine", **PROBLEM | {"alpha": wrong})
+
+
+@pytest.mark.parametrize(
+    ("argument", "text", "allowed"),
+    [("alpha", "45%", "a number with its unit, such as 20 deg, 0.35 rad"),
+     ("restitution", "145%", r"\[0, 1\] \[-\]"), ("restitution", "0.45", None), ("slenderness", "45 deg", None)],
+)  # fmt: skip
+def test_percentages_say_what_is_allowed(argument, text, allowed):
+    with pytest.raises(InvalidArgumentError, match=allowed or "a percentage such as '45 %'"):
+        rocking.peak_response("sine", **PROBLEM | {argument: text})

@@ -1,0 +1,215 @@
+"""Units: one table, matched by name and never evaluated; quantities and texts are converted where they enter."""
+
+import math
+import time
+
+import numpy as np
+import pint
+import pytest
+import xarray as xr
+
+import rocking
+from rocking.dimensional.table import read_table
+from rocking.errors import InvalidArgumentError, MissingUnitError, in_range, si_value
+from rocking.excitation.records.readers.lines import parse_unit
+from rocking.units import UNITS, unit_name
+
+REGISTRY = pint.UnitRegistry()
+QUANTITY = REGISTRY.Quantity
+GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
+PINT_NAMES = {"m/s2": "m/s**2", "cm/s2": "cm/s**2", "mm/s2": "mm/s**2", "in/s2": "in/s**2", "ft/s2": "ft/s**2",
+              "g": "standard_gravity", "gal": "cm/s**2", "%": "percent"}  # fmt: skip
+
+HOSTILE = [
+    "9**16000000/9**16000000 m", "9**9**9 m", "2**3 m", "1+1 m", "m*m/m", "1e999 m", "nan m", "inf m", "1_0 m", "m",
+    "__import__('os') m", "(" * 30 + "1 m", "0x10 m", "1 m" + " " * 100_000 + "x", "9" * 100_000 + " m",
+    " " * 100_000 + "1", "1" + "e1" * 50_000, "1 " + "s" * 100_000, "١ m",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("unit", "name"), [(unit, name) for unit, names in UNITS.items() for name in names])
+def test_values_of_units_are_those_of_another_library(unit, name):
+    reference = QUANTITY(1.0, PINT_NAMES.get(name, name)).to("" if unit == "-" else PINT_NAMES.get(unit, unit))
+    for text in (f"3 {name}", f"3{name.upper()}", f"  +3.0e0 {name} "):
+        assert si_value("any", text, unit) == pytest.approx(3.0 * reference.magnitude, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [("M/S^2", "m/s2"),
+     ("m/s**2", "m/s2"), ("m s-2", "m/s2"), ("m s^-2", "m/s2"), ("(m/s²)", "m/s2"),
+     ("m/s/s", "m/s2"), ("cm/sec2", "cm/s2"), ("CM/SEC/SEC", "cm/s2"),
+     ("cm/sec^2", "cm/s2"), ("Gal", "gal"), ("gals", "gal"), ("G", "g"),
+     ("m * s-2", "m/s2"), ("mgal", None), ("m*s2", None), ("kg", None), ("m", None), ("", None)],
+)  # fmt: skip
+def test_readers_of_records_and_people_write_the_same_units(text, name):
+    assert unit_name(text, "m/s2") == parse_unit(text) == name
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("text", HOSTILE, ids=lambda text: text[:20])
+def test_units_are_never_evaluated(text, unit):
+    started = time.process_time()
+    with pytest.raises(InvalidArgumentError):
+        si_value("any", text, unit)
+    assert time.process_time() - started < 0.5
+
+
+@pytest.mark.parametrize(
+    "column",
+    ["width [9**16000000/9**16000000 m]", "width [9**9**9 m]", "width" + " " * 100_000 + "x", "w" * 100_000 + "[",
+     "width [" + "[" * 100_000, "width (" + "(" * 100_000, "width [m]" + "]" * 100_000, "width" + " [m" * 40_000],
+    ids=lambda text: text[:12],
+)  # fmt: skip
+def test_headers_of_tables_cost_no_more_than_their_length(column):
+    started = time.process_time()
+    with pytest.raises(InvalidArgumentError, match="blocks, header") as caught:
+        read_table(f"{column},height [m],peak_acceleration [g],period [s]\n1,2,0.4,0.5\n", "sine")
+    assert time.process_time() - started < 0.5
+    assert len(str(caught.value)) < 600
+
+
+def test_a_long_name_of_a_column_is_refused_with_the_limit():
+    with pytest.raises(InvalidArgumentError, match="at most 100 characters"):
+        read_table("w" * 101 + ",height [m]\n", "sine")
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [("slenderness", QUANTITY(40.0, "percent")), ("restitution", QUANTITY(85.0, "percent")),
+     ("alpha", QUANTITY(math.degrees(0.2), "degree")), ("alpha", QUANTITY(200.0, "milliradian")),
+     ("frequency_ratio", QUANTITY(5.0, "m/m")), ("alpha", "200 mrad"), ("slenderness", "40 %"), ("restitution", "85%")],
+    ids=str,
+)  # fmt: skip
+def test_quantities_in_groups_are_converted(name, quantity):
+    expected = rocking.peak_response("sine", **GROUPS).peak_rotation
+    found = rocking.peak_response("sine", **GROUPS | {name: quantity}).peak_rotation
+    assert 0.0 < expected == pytest.approx(found, rel=1e-12)
+
+
+def test_the_percentage_of_the_report():
+    arguments = {"frequency_ratio": 5.0, "restitution": 0.9}
+    found = rocking.peak_response("sine", slenderness=QUANTITY(40.0, "percent"), **arguments)
+    assert found.peak_rotation == rocking.peak_response("sine", slenderness=0.4, **arguments).peak_rotation > 0.5
+
+
+@pytest.mark.parametrize(
+    "angles",
+    [QUANTITY([10.0, 20.0], "degree"), [QUANTITY(10.0, "degree"), math.radians(20.0)],
+     np.array([QUANTITY(10.0, "degree"), QUANTITY(20.0, "degree")], dtype=object),
+     xr.DataArray(QUANTITY([10.0, 20.0], "degree"), dims="block")],
+    ids=["array", "list", "objects", "labelled"],
+)  # fmt: skip
+def test_arrays_of_quantities_are_converted(angles):
+    expected = rocking.peak_response("sine", **GROUPS | {"alpha": np.radians([10.0, 20.0])})
+    np.testing.assert_allclose(rocking.peak_response("sine", **GROUPS | {"alpha": angles}).peak_rotation,
+                               expected.peak_rotation, rtol=1e-12)  # fmt: skip
+
+
+class OtherQuantity(np.ndarray):
+    """An array with a unit as astropy has it: a subclass, `unit` and `value`."""
+
+    def __new__(cls, values, unit):
+        made = np.asarray(values, dtype=float).view(cls)
+        made.unit = unit
+        return made
+
+    def to(self, unit):
+        if (self.unit, unit) != ("deg", "rad"):
+            raise ValueError("no such conversion")
+        return OtherQuantity(np.radians(np.asarray(self)), "rad")
+
+    @property
+    def value(self):
+        return np.asarray(self)
+
+
+def test_quantities_of_other_libraries_are_converted_or_refused():
+    assert in_range("alpha", OtherQuantity([10.0, 20.0], "deg"), 0.0, 1.57, unit="rad").tolist() == [
+        math.radians(10.0), math.radians(20.0)
+    ]  # fmt: skip
+    with pytest.raises(InvalidArgumentError, match=r"converted to \[m\]"):
+        in_range("width", OtherQuantity([10.0], "deg"), 0.0, 1.0, unit="m")
+
+
+@pytest.mark.parametrize("unit", ["m", "m/s", "m/s2", "s", "rad/s", "kg", "kg m2", "N m", "1/year"])
+def test_a_quantity_of_another_dimension_is_refused(unit):
+    with pytest.raises(InvalidArgumentError, match="can be converted to") as caught:
+        in_range("any", QUANTITY(1.0, "kelvin"), 0.0, 2.0, unit=unit)
+    assert caught.value.parameter == "any"
+
+
+def test_quantities_of_several_base_units_are_converted():
+    assert in_range("inertia", QUANTITY(2.0, "tonne * m**2"), 0.0, math.inf, unit="kg m2") == pytest.approx(2000.0)
+    assert in_range("stiffness", QUANTITY(2.0, "kN * m"), 0.0, math.inf, unit="N m") == pytest.approx(2000.0)
+
+
+def test_records_of_quantities():
+    plain = rocking.Record([0.1, 0.2, -0.1], 0.01, "g")
+    for step in (QUANTITY(10.0, "ms"), "10 ms", "0.01 s"):
+        assert rocking.Record([0.1, 0.2, -0.1], step, "g").time_step == pytest.approx(0.01, rel=1e-15)
+    samples = QUANTITY([0.1, 0.2, -0.1], "standard_gravity")
+    for unit in ("g", "m/s2", "gal"):
+        np.testing.assert_allclose(rocking.Record(samples, 0.01, unit).acceleration, plain.acceleration, rtol=1e-12)
+    assert plain.resampled("5 ms").time_step == 0.005
+
+
+BLOCK = rocking.Block(0.2, 0.8)
+
+
+@pytest.mark.parametrize("sizes", [("20 cm", "800 mm"), (QUANTITY(20, "cm"), QUANTITY(0.8, "m")), (0.2, "0.8m")])
+def test_blocks_of_quantities_hold_floats(sizes):
+    block = rocking.Block(*sizes, gravity="1 g")
+    assert type(block.half_width) is type(block.half_height) is type(block.gravity) is float
+    assert (block.half_width, block.half_height) == pytest.approx((0.2, 0.8), rel=1e-15)
+    assert block.gravity == BLOCK.gravity
+    angle = rocking.Block.from_slenderness_angle("20 deg", QUANTITY(100, "cm"))
+    assert (angle.alpha, angle.half_diagonal) == pytest.approx((math.radians(20.0), 1.0), rel=1e-15)
+
+
+@pytest.mark.parametrize("peak", ["0.4 g", QUANTITY(0.4, "standard_gravity"), 0.4 * 9.80665])
+@pytest.mark.parametrize("period", ["500 ms", QUANTITY(500, "ms"), 0.5])
+def test_ground_motions_of_quantities(peak, period):
+    expected = BLOCK.response("sine", peak_acceleration=0.4 * 9.80665, period=0.5)
+    found = BLOCK.response("sine", peak_acceleration=peak, period=period, restitution="housner")
+    assert found.rotation == pytest.approx(expected.rotation, rel=1e-12)
+    assert type(found.peak_acceleration) is type(found.period) is float
+    history = BLOCK.history("sine", peak_acceleration=peak, period=period, duration="900 ms", samples=10)
+    assert float(history["time"][-1]) == pytest.approx(0.9)
+    spectrum = BLOCK.spectrum("sine", peak_acceleration=peak, period=QUANTITY([400, 500], "ms"))
+    assert float(spectrum["rotation"][1]) == pytest.approx(expected.rotation, rel=1e-12)
+
+
+def test_equivalent_blocks_of_quantities():
+    found = rocking.EquivalentBlock("10 deg", QUANTITY(2.0, "rad/s"), restitution="90 %", uplift_acceleration="0.1 g")
+    assert (found.alpha, found.frequency_parameter, found.housner_restitution) == (math.radians(10.0), 2.0, 0.9)
+    assert found.uplift_acceleration == pytest.approx(0.980665, rel=1e-15)
+    arch = rocking.EquivalentBlock.masonry_arch(radius="1000 cm", thickness="1.5 m", embrace="157.5 deg", voussoirs=7)
+    plain = rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=math.radians(157.5), voussoirs=7)
+    assert arch.alpha == pytest.approx(plain.alpha, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "message"),
+    [("0.4", MissingUnitError, "missing unit: write 0.4m/s2 or 0.4g"),
+     ("40 cm", InvalidArgumentError, "a number with its unit, such as 4 m/s"),
+     ("-1 g", InvalidArgumentError, r"\(0, inf\) \[m/s2\]")],
+)  # fmt: skip
+def test_texts_that_are_no_acceleration_say_what_is_allowed(text, error, message):
+    with pytest.raises(error, match=f"^`peak_acceleration` = .*{message}"):
+        BLOCK.response("sine", peak_acceleration=text, period=0.5)
+
+
+@pytest.mark.parametrize(
+    ("peak", "warned"),
+    [(0.6, True), (np.float64(0.6), True), (1, True), ("0.6 m/s2", False), (QUANTITY(0.6, "m/s**2"), False),
+     (0.2, False), (2.46, False), ("0.6 g", False)],
+    ids=str,
+)  # fmt: skip
+def test_a_bare_acceleration_that_looks_like_g_gives_a_warning(peak, warned):
+    found = BLOCK.response("sine", peak_acceleration=peak, period=0.5)
+    texts = [text for text in found.warnings if "if it was meant in g" in text]
+    assert bool(texts) == warned
+    if warned:
+        assert texts[0].startswith(f"peak_acceleration = {float(peak):.4g} m/s2 is below the uplift acceleration 2.452")
+        assert texts[0].endswith(f"write '{float(peak):.4g} g'")
