@@ -1,10 +1,11 @@
-"""Sixty-four uploads of 5 MB at once: /health answers meanwhile, and little memory is added to that of the service."""
+"""Large and hostile uploads: /health answers meanwhile, and little memory is added to that of the service."""
 
 import http.client
 import json
 import os
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -57,29 +58,60 @@ def kept_waiting(*processes):
     return 1e-9 * sum(int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[1]) for pid in processes)
 
 
+HOSTILE = {
+    "4 million rows of one digit": b"unit: g\ndt: 0.01\n" + b"1\n0\n" * 2_000_000,
+    "a name of 8 MB": b"a" * 8_000_000 + b"\n0,1\n1,2\n",
+    "long lines": (b"a " * 4000 + b"\n") * 190 + b"1\n2\n",
+    "openings of brackets": b"time," + b"(" * 8000 + b"\n" + b"0,1\n1,2\n2,1\n" * 600_000,
+    "fields that are no numbers": b"time_s,a_g\n" + b"0.01,1\n" * 1_000_000 + b"x" * 8000,
+}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
+@pytest.mark.parametrize("body", HOSTILE.values(), ids=[*HOSTILE])
+def test_hostile_bodies_do_not_delay_health(body, tmp_path):
+    delays, statuses = [], []
+    with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
+        assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200  # the kernels are loaded
+        upload = threading.Thread(target=lambda: statuses.append(status_of(server, "POST", ROUTE, body)))
+        upload.start()
+        while upload.is_alive():
+            delays.append(delay_of_health(server))
+            time.sleep(0.005)
+    assert statuses[0] in (200, 422, 504)
+    assert max(delays) < 0.2, sorted(delays)[-10:]
+
+
+def status_of(server, method, path, content=None):
+    """Status of the response to a request."""
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=120)
+    connection.request(method, path, body=content)
+    status = connection.getresponse().status
+    connection.close()
+    return status
+
+
+def delay_of_health(server):
+    """Time of a request for /health [s], without that which other processes took."""
+    waited, began = kept_waiting(os.getpid(), server.process.pid), time.perf_counter()
+    assert status_of(server, "GET", "/health") == 200
+    took = time.perf_counter() - began
+    return took - (kept_waiting(os.getpid(), server.process.pid) - waited)
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path):
     body, delays = column_file(5_000_000), []
     (tmp_path / "record.csv").write_bytes(body)
     with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
-
-        def status_of(method, path, content=None):
-            connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=120)
-            connection.request(method, path, body=content)
-            status = connection.getresponse().status
-            connection.close()
-            return status
-
-        assert status_of("POST", ROUTE, body[:20_000]) == 200  # the kernels are loaded
+        assert status_of(server, "POST", ROUTE, body[:20_000]) == 200  # the kernels are loaded
         before = megabytes(server.process, "VmRSS")
         arguments = [sys.executable, "-c", CLIENTS, str(server.port), str(tmp_path / "record.csv")]
         with subprocess.Popen(arguments, stdout=subprocess.PIPE) as clients:
             while clients.poll() is None:
-                waited, began = kept_waiting(os.getpid(), server.process.pid), time.perf_counter()
-                assert status_of("GET", "/health") == 200
-                took = time.perf_counter() - began
-                delays.append(took - (kept_waiting(os.getpid(), server.process.pid) - waited))
+                delays.append(delay_of_health(server))
                 time.sleep(0.02)
             statuses = json.loads(clients.stdout.read())
         added = megabytes(server.process, "VmHWM") - before
