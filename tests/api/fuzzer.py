@@ -24,12 +24,22 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 from rocking.excitation.pulses import PULSE_NAMES
+from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0
 """Time limit of a request of heavy work [s]."""
 
 SLOW = 5.0
 """Largest time of a response other than 503 and 504 [s]."""
+
+SLOW_HEALTH, BATCH = 1.0, 25
+"""Largest time of /health [s], asked after so many requests. Alone it takes milliseconds; machines are shared."""
+
+KINDS = {"curve": 55, "overturning": 1, "post": 16, "dataset": 20, "page": 6, "nowhere": 2, "record": 12, "long": 8}
+"""Kinds of requests, and how often they are sent."""
+
+EXTREME_KINDS = {"table": 1, "step": 1}
+"""Tables of blocks with long headers and arithmetic in units, and records with extreme steps."""
 
 NUMBERS = {
     "slenderness": (1e-9, 3.0),
@@ -82,6 +92,43 @@ HOSTILE = [
     *("\x00", "%00", "../../etc/passwd", "a" * 256, "a" * 5000),
     *( "\ud7ff", "\U0001f600", "' OR 1=1 --", "<script>", "\r\nX: y"),
 ]  # fmt: skip
+RECORDS = [file.data for file in (*GOOD.values(), *ODD.values(), *DAMAGED.values())]
+BLOCK = {"half_width": "0.25", "half_height": "1.0"}
+STEPS = [
+    "0",
+    "5e-324",
+    "1e-300",
+    "1e-12",
+    "2e-8",
+    "1e-4",
+    "1e4",
+    "1e12",
+    "1e300",
+    "1.7976931348623157e308",
+    "1e400",
+    "nan",
+]
+UNITS = ["9**9**9 m", "9**16000000/9**16000000 m", "2 m", "m*m/m", "m^1", "(m)", "1e400 m", "m+m", "cm", "g", "m" * 900]
+UNITS += ["*".join(["m"] * 4000), "9" * 8000, "m/" * 4000, "(" * 8000]
+FRAGMENTS = [
+    "a",
+    "a ",
+    " ",
+    "(",
+    "[a",
+    "a:b ",
+    "1",
+    "1,",
+    " g",
+    "unit:",
+    '"',
+    "=",
+    ";",
+    "\t",
+    "1e",
+    "NPTS ",
+    "width [m],",
+]
 METHODS = ["HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "get", "X" * 50]
 HEADERS = {
     "accept": ["text/csv", "application/x-netcdf", "application/json;q=0", "*/*", ",".join(["text/csv"] * 500), ""],
@@ -122,10 +169,10 @@ class Received(NamedTuple):
     seconds: float
 
 
-def request(seed: int, k: int, names: list[str]) -> Sent:
+def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
     """Request k of a seed; `names` are those of the data sets."""
     draw = random.Random(f"{seed} {k}")
-    kind = draw.choices(["curve", "overturning", "post", "dataset", "page", "nowhere"], [55, 1, 16, 20, 6, 2])[0]
+    kind = draw.choices([*kinds], [*kinds.values()])[0]
     method, query, body, headers = "GET", "", b"", []
     if kind in ("curve", "overturning"):
         routes = [route for route in ROUTES if (route == "/v1/overturning") == (kind == "overturning")]
@@ -135,6 +182,9 @@ def request(seed: int, k: int, names: list[str]) -> Sent:
         method, path = "POST", "/v1/response"
         body, media_type, query = _body(draw)
         headers.append(("content-type", media_type))
+    elif kind in ("record", "long", "table", "step"):
+        method, (path, query, body) = "POST", _file(draw, kind)
+        headers.append(("content-type", "text/csv"))
     elif kind == "dataset":
         path = "/v1/datasets/" + _name(draw, names)
         if draw.random() < 0.2:
@@ -221,6 +271,27 @@ def _body(draw: random.Random) -> tuple[bytes, str, str]:
     return body, media_type, query
 
 
+def _file(draw: random.Random, kind: str) -> tuple[str, str, bytes]:
+    """Path, query and body of a record or of a table of blocks."""
+    if kind == "table":
+        body = f"name,width [{draw.choice(UNITS)}],height [m],peak_acceleration [g],period [s]\na,1,4,0.4,1\n"
+        path, given = "/v1/blocks/response", {"pulse": "sine"}
+    else:
+        body = draw.choice(RECORDS).decode("latin-1")
+        path = "/v1/records/" + draw.choice(["response", "response", "history", "scales", "pulse"])
+        given = BLOCK | ({"unit": "g"} if draw.random() < 0.5 else {})
+    if kind == "step":
+        given = BLOCK | {"unit": "g", "time_step": draw.choice(STEPS)}
+        body = "0.1\n0.5\n-0.3\n"
+        if draw.random() < 0.5:
+            body = f"dt: {given.pop('time_step')}\n{body}"
+    if kind == "long" or (kind == "table" and draw.random() < 0.5):
+        place = draw.randrange(len(body) + 1)
+        fragment = "".join(draw.choices(FRAGMENTS, k=draw.randint(1, 3)))
+        body = body[:place] + fragment * (draw.choice([2_000, 8_000, 60_000]) // len(fragment)) + body[place:]
+    return path, urlencode(given), body.encode("latin-1")
+
+
 async def exchange(app, sent: Sent) -> Received:
     """Send a request to the application as uvicorn would."""
     scope = {
@@ -289,7 +360,9 @@ def fault(sent: Sent, got: Received) -> str | None:
     return None
 
 
-async def ask_all(results: Path, seed: int, first: int, count: int, together: int = 4) -> tuple[Counter, list[str]]:
+async def ask_all(
+    results: Path, seed: int, first: int, count: int, kinds: dict[str, int] = KINDS, together: int = 4
+) -> tuple[Counter, list[str]]:
     """Statuses and faults of the responses, and errors that the service logged."""
     app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
     names = app.state.service.cubes.catalogue.names()
@@ -303,7 +376,7 @@ async def ask_all(results: Path, seed: int, first: int, count: int, together: in
 
     async def client():
         for k in left:
-            sent = request(seed, k, names)
+            sent = request(seed, k, names, kinds)
             try:
                 got = await exchange(app, sent)
                 wrong = fault(sent, got)
@@ -312,6 +385,10 @@ async def ask_all(results: Path, seed: int, first: int, count: int, together: in
             statuses["left" if sent.leaves else str(int(got.status))] += 1
             if wrong is not None:
                 faults.append(f"{seed} {k}: {wrong}; {got.status} {got.body[:200]!r} for {sent}")
+            if k % BATCH == 0:
+                health = await exchange(app, Sent("GET", "/health", "", [], b"", leaves=False))
+                if health.status != 200 or health.seconds > SLOW_HEALTH:
+                    faults.append(f"{seed} {k}: /health {health.status} after {health.seconds:.1f} s, at {sent}")
 
     logged = Errors(logging.ERROR)
     logging.getLogger("rocking.service").addHandler(logged)
@@ -330,7 +407,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=20_000)
     given = parser.parse_args()
-    statuses, faults = asyncio.run(ask_all(given.results, given.seed, given.first, given.count))
+    statuses, faults = asyncio.run(ask_all(given.results, given.seed, given.first, given.count, KINDS | EXTREME_KINDS))
     sys.stdout.write("\n".join([*faults[:100], f"{dict(sorted(statuses.items()))}, {len(faults)} faults", ""]))
     sys.exit(bool(faults))
 

@@ -42,8 +42,12 @@ OPERATIONS = [
 ]
 
 
+# Bodies of text, which the schema does not describe further; `tests.api.fuzzer` sends better ones.
+BODIES = [("/v1/blocks/response", "POST"), *((f"/v1/records/{name}", "POST") for name in ("response", "history"))]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("path", "method"), OPERATIONS)
+@pytest.mark.parametrize(("path", "method"), [*OPERATIONS, *BODIES])
 def test_generated_requests(results, path, method):
     schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(Settings(results=results, max_samples=2000)))
 

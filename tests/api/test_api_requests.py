@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from tests.api.fuzzer import ask_all
+from tests.api.fuzzer import EXTREME_KINDS, ask_all
 
 
 @pytest.mark.slow
@@ -12,3 +12,10 @@ def test_random_requests(results):
     statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=600))
     assert not faults
     assert {"200", "304", "404", "405", "413", "415", "422"} <= set(statuses)
+
+
+@pytest.mark.slow
+def test_long_tables_arithmetic_in_units_and_extreme_steps(results):
+    statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=150, kinds=EXTREME_KINDS))
+    assert not faults
+    assert {"200", "422"} <= set(statuses)

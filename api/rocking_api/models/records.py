@@ -34,7 +34,9 @@ _SCALE: dict[str, Any] = {"minimum": SMALLEST_SCALE, "maximum": HIGHEST_SCALE}
 
 Unit = Annotated[
     str | None,
-    Field(description="unit of the samples, required if the file states none", json_schema_extra={"enum": [*UNITS]}),
+    Field(
+        description="unit of the samples, required if the file states none", json_schema_extra={"enum": [*UNITS, None]}
+    ),
 ]
 
 
