@@ -25,7 +25,7 @@ FOUND = [
     *(("AT2", AT2.format("NPTS= 3, DT= .01").replace("Title", "@"), "", fragment, "") for fragment in ("(", "[a")),
     ("AT2", AT2.format("@ NPTS DT"), "", "1", ""),
     ("AT2", AT2.format("@ NPTS DT"), "1", " ", ""),
-    ("AT2", AT2.format("NPTS@ DT"), "", " ", ""),
+    ("AT2", AT2.format("DT= .01 NPTS@;"), "", " ", ""),
     ("query string", "@&a=1&a=2", "", "a№=1&", ""),
     ("points in JSON", "@", "", '"slenderness":[', ""),
 ]
