@@ -178,7 +178,8 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
         if getattr(options, name) is not None:
             raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the file --blocks")
     try:
-        text = sys.stdin.read() if path == "-" else Path(path).read_text(encoding="utf-8-sig")
+        data = sys.stdin.buffer.read() if path == "-" else Path(path).read_bytes()  # line breaks in names are kept
+        text = data.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidArgumentError("blocks", path, f"a CSV file that can be read: {error}") from None
     given = options.restitution or "housner"

@@ -1,10 +1,15 @@
-"""Columns as CSV text, for the command line and the service."""
+"""Columns as CSV text (RFC 4180), for the command line, the service and the workflow."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import csv
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
+from types import SimpleNamespace
 from typing import Any
+
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+"""Text that begins so is a formula for a spreadsheet."""
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
@@ -13,25 +18,38 @@ def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
     Parameters
     ----------
     columns : mapping of str to sequence
-        Plain Python values, equally many in each column. Names and strings contain no comma, quote or line break.
+        Plain Python values, equally many in each column.
 
     Returns
     -------
     str
-        Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false.
+        Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
+        comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading
+        apostrophe.
     """
-    return ",".join(columns) + "\n" + csv_rows(columns)
+    return csv_header(columns) + csv_rows(columns)
+
+
+def csv_header(names: Iterable[str]) -> str:
+    """The header line alone, for a table that is written in parts."""
+    return _lines([map(_cell, names)])
 
 
 def csv_rows(columns: Mapping[str, Sequence[Any]]) -> str:
-    """The rows alone, for a table that is written in parts."""
-    lines = zip(*(map(_cell, column) for column in columns.values()), strict=True)
-    return "".join(f"{','.join(line)}\n" for line in lines)
+    """The rows alone."""
+    return _lines(zip(*(map(_cell, column) for column in columns.values()), strict=True))
 
 
-def _cell(value: Any) -> str:
+def _lines(rows: Iterable[Iterable[Any]]) -> str:
+    lines: list[str] = []
+    # with this end of a line, which is replaced below, the writer quotes a lone carriage return as well
+    csv.writer(SimpleNamespace(write=lines.append), lineterminator="\r\n").writerows(rows)
+    return "".join(f"{line[:-2]}\n" for line in lines)
+
+
+def _cell(value: Any) -> Any:
     if isinstance(value, float):
-        return repr(value) if isfinite(value) else ""
+        return value if isfinite(value) else None
     if isinstance(value, bool):
         return "true" if value else "false"
-    return "" if value is None else str(value)
+    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA_STARTS) else value

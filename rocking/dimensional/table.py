@@ -6,7 +6,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,7 +72,7 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     text : str
         CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
         may be `half_width` and `half_height`, the period `pulse_period`. Columns may be separated by semicolons;
-        numbers have decimal points.
+        numbers have decimal points. Names are kept with their blanks.
     pulse : str
         The pulse.
     restitution : float or "housner"
@@ -81,21 +81,18 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
     Raises
     ------
     InvalidArgumentError
-        If a column is missing, unknown or without a unit, or a value is not allowed; the line is named.
+        If a column is missing, unknown or without a unit, a value is not allowed, or it is no CSV; the line is named.
     SeveralArgumentsError
         If the values of several lines are not allowed, with the first of each line.
     """
-    text = text.removeprefix("\ufeff")
-    header = text.partition("\n")[0]
-    rows = csv.reader(io.StringIO(text), delimiter=";" if ";" in header and "," not in header else ",")
-    names, units = _read_header(next(rows, []))
+    rows = _rows(text.removeprefix("\ufeff"))
+    names, units = _read_header(next(rows, (1, []))[1])
     labels: list[str] = []
     problems: list[BlockProblem] = []
     errors: list[InvalidArgumentError] = []
-    for row in rows:
+    for line, row in rows:
         if not row:
             continue
-        line = rows.line_num
         if len(row) != len(names):
             wrong = f"{len(row)} values"
             errors.append(InvalidArgumentError(f"blocks, line {line}", wrong, f"{len(names)}, as in the header"))
@@ -106,10 +103,27 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
         except InvalidArgumentError as error:
             errors.append(InvalidArgumentError(f"blocks, line {line}, {error.parameter}", error.value, error.allowed))
         if "name" in given:
-            labels.append(given["name"])
+            labels.append(row[names.index("name")])
     if errors:
         raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
     return BlockTable(problems, labels)
+
+
+def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """The rows of CSV with commas, or semicolons if its header has no comma, and the line where each begins."""
+    header = next(iter(io.StringIO(text, newline="")), "")
+    delimiter = ";" if ";" in header and "," not in header else ","
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    while True:
+        line = rows.line_num + 1
+        try:
+            row = next(rows)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            allowed = f"values of at most {csv.field_size_limit()} characters; in quotes, with each inner quote doubled"
+            raise InvalidArgumentError(f"blocks, line {line}", str(error), allowed) from None
+        yield line, row
 
 
 def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, str]]:

@@ -1,5 +1,7 @@
 """GET /v1/blocks/response: SI units in, degrees and metres out."""
 
+import csv
+import io
 import math
 
 import pytest
@@ -337,6 +339,35 @@ def test_every_line_of_a_table_with_an_error_is_named(client):
         ("blocks, line 3, height", "tall"),
         ("blocks, line 4, width", -20.0),
     ]
+
+
+@pytest.mark.parametrize(
+    ("body", "line", "reason"),
+    [
+        (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
+        (TABLE.replace("vase", "v" * 131_073), 2, "field larger than field limit"),
+        (TABLE.replace("vase", "va\rse"), 2, "1 values"),
+        (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
+        (TABLE.replace("name", '"name'), 1, "unexpected end of data"),
+    ],
+)
+def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client, body, line, reason):
+    response = client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": "text/csv"})
+    problem = assert_problem(response, 422, f"blocks, line {line}")
+    assert reason in problem["value"]
+
+
+def test_names_come_out_as_they_went_in_but_for_formulas(client):
+    names = ["vase, blue", 'say "no"', "two\nlines", "a\rb", "=1+1", "+1", "@SUM(A1)", "-2+3"]
+    sent = io.StringIO(newline="")
+    csv.writer(sent).writerows([TABLE.splitlines()[0].split(","), *([name, 0.2, 80, 4, 500, 0.9] for name in names)])
+    url, headers = "/v1/blocks/response?pulse=sine", {"content-type": "text/csv"}
+    response = client.post(url, content=sent.getvalue(), headers=headers)
+    assert response.status_code == 200
+    rows = list(csv.DictReader(io.StringIO(response.text, newline=""), strict=True))
+    assert [row["name"] for row in rows] == [*names[:4], *(f"'{name}" for name in names[4:])]
+    assert {row["restitution"] for row in rows} == {"0.9"}
+    assert client.post(url + "&format=json", content=sent.getvalue(), headers=headers).json()["name"] == names
 
 
 def test_types_of_a_body_and_of_the_response_are_those_that_are_offered(client):

@@ -209,9 +209,26 @@ def test_table_of_blocks(tmp_path):
     assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []
 
 
+def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path):
+    names = ["vase, blue", 'say "no"', "two\nlines", "a\r\nb", "=1+1", "-2+3"]
+    path = tmp_path / "blocks.csv"
+    with path.open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerows([TABLE.splitlines()[0].split(","), *([name, 40, 0.8, 400, 500, 0.9] for name in names)])
+    table = ("response", "--pulse", "sine", "--blocks")
+    piped = CliRunner().invoke(app, [*table, "-"], input=path.read_bytes())
+    assert piped.exit_code == 0
+    printed = piped.stdout_bytes.decode()
+    assert CliRunner().invoke(app, [*table, str(path)]).stdout_bytes.decode() == printed
+    rows = list(csv.DictReader(io.StringIO(printed, newline=""), strict=True))
+    assert [row["name"] for row in rows] == [*names[:4], *(f"'{name}" for name in names[4:])]
+    assert {row["restitution"] for row in rows} == {"0.9"}
+
+
 @pytest.mark.parametrize(
     ("table", "words"),
     [
+        (TABLE.replace("statue", '"statue'), "line 2: 'unexpected end of data'"),
         (TABLE.replace("width [cm]", "width"), "missing unit: write width [m]"),
         (TABLE.replace("[cm]", "[kg]"), "a unit such as m, cm"),
         (TABLE.replace("name", "colour"), "name, restitution"),

@@ -4,6 +4,8 @@ import csv
 import io
 import math
 
+import pytest
+
 from rocking.datasets.csv_text import csv_rows, csv_text
 
 
@@ -19,3 +21,25 @@ def test_parts_make_the_same_text():
     columns = {"a": [1, 2, 3], "b": ["x", "y", "z"]}
     parts = [csv_rows({name: column[k : k + 1] for name, column in columns.items()}) for k in range(3)]
     assert "a,b\n" + "".join(parts) == csv_text(columns)
+
+
+NAMES = ("vase, blue", 'say "no"', "two\nlines", "a\rb", "a\r\nb", " vase ", "", "vase; red", "6'", "Säule", '"')
+
+
+def test_names_are_read_back_as_they_were_written():
+    text = csv_text({"name": NAMES, "name, too": NAMES})
+    rows = list(csv.reader(io.StringIO(text, newline=""), strict=True))
+    assert rows[0] == ["name", "name, too"]
+    assert [tuple(row) for row in rows[1:]] == [(name, name) for name in NAMES]
+
+
+@pytest.mark.parametrize("name", ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("x", "y")', "-sine"])
+def test_text_that_starts_a_formula_has_an_apostrophe(name):
+    rows = list(csv.reader(io.StringIO(csv_text({name: [name]}), newline=""), strict=True))
+    assert rows == [[f"'{name}"], [f"'{name}"]]
+
+
+def test_numbers_are_not_taken_for_formulas():
+    assert csv_text({"a": [-1.5, -3, -0.0, 1e-300], "b": ["1", "x", "y", "z"]}) == (
+        "a,b\n-1.5,1\n-3,x\n-0.0,y\n1e-300,z\n"
+    )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel
 from pydantic_core import to_json
 
-from rocking.datasets.csv_text import csv_rows, csv_text
+from rocking.datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking.datasets.cube import MODEL_RESULT, VARIABLES
 from rocking.model.fields import ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
@@ -72,7 +72,7 @@ def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) ->
 
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
-    """Columns as CSV: numbers with all digits, empty for missing numbers, true and false."""
+    """Columns as CSV, see `csv_text`."""
     return Response(csv_text(columns), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
 
@@ -80,7 +80,7 @@ def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
     """Arrays (points,) as CSV, written while it is sent: the text of a million points takes 100 MB."""
 
     def parts() -> Iterator[bytes]:
-        yield (",".join(columns) + "\n").encode()
+        yield csv_header(columns).encode()
         for start in range(0, _points(columns), ROWS):
             rows = {key: column[start : start + ROWS].tolist() for key, column in columns.items()}
             yield csv_rows(rows).encode()
