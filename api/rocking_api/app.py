@@ -17,6 +17,7 @@ from starlette.types import ASGIApp
 
 from rocking.lookup.collection import CubeCollection
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
+from rocking_api.http.host import HostCheck
 from rocking_api.http.memory_budget import MemoryBudgetMiddleware
 from rocking_api.http.params_route import FastPath, ParamsRoute
 from rocking_api.http.request_log import RequestLog
@@ -113,6 +114,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
+    app.add_outer_layer(HostCheck)
     app.add_outer_layer(RequestLog, metrics=service.metrics, access_log=settings.access_log)
     app.state.when_ready = when_ready
     add_handlers(app)

@@ -189,3 +189,35 @@ def test_each_line_of_the_log_is_json(server):
     (ours,) = [line for line in lines if line.get("request_id") == "this-one"]
     assert ours["status"] == 200
     assert {"time", "level", "milliseconds", "path", "query"} <= ours.keys()
+
+
+@pytest.mark.parametrize("path", ["/health", POINT, "/nowhere", "/static/"])
+@pytest.mark.parametrize("hosts", ["", "Host: a\r\nHost: b\r\n", "Host: a\r\nHost: a\r\n"])
+def test_a_request_with_no_host_or_several_is_refused(connection, path, hosts):
+    connection.sendall(f"GET {path} HTTP/1.1\r\n{hosts}Connection: close\r\n\r\n".encode())
+    status, body = answer_of(connection)
+    assert status == 400
+    assert (json.loads(body)["parameter"], json.loads(body)["allowed"]) == ("Host", "one")
+
+
+@pytest.mark.parametrize("hosts", ["", "Host: a\r\n"])
+def test_a_request_of_http_1_0_needs_no_host(connection, hosts):
+    connection.sendall(f"GET /health HTTP/1.0\r\n{hosts}\r\n".encode())
+    assert answer_of(connection)[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("path", "location"),
+    [
+        ("/health/", "/health"),
+        ("/v1/pulses/?x=1", "/v1/pulses?x=1"),
+        ("/static", "/static/"),
+        ("/guide", "/guide/"),
+    ],
+)
+def test_a_redirect_does_not_repeat_the_host(connection, path, location):
+    connection.sendall(f"GET {path} HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n".encode())
+    status, head, _ = whole_answer_of(connection)
+    assert status == 307
+    assert f"location: {location}".encode() in head.split(b"\r\n")
+    assert b"evil" not in head

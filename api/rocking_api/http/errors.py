@@ -124,7 +124,7 @@ class Problem(BaseModel):
 RESPONSES: dict[int | str, dict[str, Any]] = {
     int(status): {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": schema}}}
     for schema in [{"$ref": "#/components/schemas/Problem"}]
-    for status in (404, 405, 408, 413, 415, 422, 500, 503, 504)
+    for status in (400, 404, 405, 408, 413, 415, 422, 500, 503, 504)
 }
 """For the OpenAPI description: error responses of any route."""
 
