@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import logging
+from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
 import anyio.to_thread
 
 from rocking.datasets.catalogue import UnknownDatasetError
-from rocking.lookup.collection import CubeCollection
+from rocking.lookup.collection import NO_CUBES, CubeCollection
+
+LOG = logging.getLogger("rocking.service")
 
 MAX_WAIT = 0.1
 """How long a request waits for the check to finish [s]."""
@@ -24,16 +28,25 @@ class State(NamedTuple):
 
 
 class DatasetChecker:
-    """Checks every data set once per version of its file, on request.
+    """Checks every data set once per version of its file, on request, and logs each that is found damaged or repaired.
 
     Parameters
     ----------
     cubes : CubeCollection
         Cubes and catalogue of the results folder.
+    on_change : callable, optional
+        Called with the name of a data set or folder, and whether it is damaged, where that has changed.
+
+    Attributes
+    ----------
+    damaged : dict of str to str
+        What is wrong, by name, of each data set or folder that exists and cannot be used: what the last check found.
     """
 
-    def __init__(self, cubes: CubeCollection) -> None:
+    def __init__(self, cubes: CubeCollection, on_change: Callable[[str, bool], None] = lambda *_: None) -> None:
         self._cubes = cubes
+        self._on_change = on_change
+        self.damaged: dict[str, str] = {}
         self._task: asyncio.Task[None] | None = None
         self._state = State([], 0, {})
 
@@ -57,7 +70,25 @@ class DatasetChecker:
                 problem = None  # removed meanwhile
             if problem is not None:
                 problems[name] = problem
+            self._note(name, problem)
             self._state = State(names, len(names) - k - 1, problems)
         # includes problems of the folder itself; the files are checked by now
         problems = await anyio.to_thread.run_sync(self._cubes.problems)
         self._state = State(names, 0, problems)
+        for name in {*self.damaged, *problems}:
+            self._note(name, problems.get(name))
+
+    def _note(self, name: str, problem: str | None) -> None:
+        """Log a data set that is damaged or no longer so, once."""
+        before = self.damaged.pop(name, None)
+        if problem is not None and problem != NO_CUBES:
+            self.damaged[name] = problem
+        if (now := self.damaged.get(name)) == before:
+            return
+        self._on_change(name, now is not None)
+        fields = {"dataset": name} | ({} if now is None else {"problem": now})
+        LOG.log(
+            logging.INFO if now is None else logging.ERROR,
+            "a data set is no longer damaged" if now is None else "a data set is damaged",
+            extra={"fields": fields},
+        )

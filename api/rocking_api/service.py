@@ -61,7 +61,7 @@ class Service:
         self.executor = BoundedExecutor(
             settings.max_workers, settings.max_queue, settings.max_seconds, on_change=self.metrics.heavy
         )
-        self.dataset_checker = DatasetChecker(self.cubes)
+        self.dataset_checker = DatasetChecker(self.cubes, self.metrics.damaged)
         self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.suites = SuiteReader(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)

@@ -28,6 +28,10 @@ MAX_PRIVATE_BYTES = 500_000_000
 """Tables in private memory that a collection with a cache keeps, where the cache cannot be written [bytes]."""
 
 
+NO_CUBES = "no spectrum cubes; `make reproduce` builds them"
+"""What `CubeCollection.problems` reports where nothing is damaged, but there are no cubes."""
+
+
 class CubeCollection:
     """The spectrum cubes below a results folder.
 
@@ -125,7 +129,7 @@ class CubeCollection:
         """
         names, found = self.catalogue.scan()
         if not any(name.startswith("spectra/") for name in names):
-            found.setdefault("spectra", "no spectrum cubes; `make reproduce` builds them")
+            found.setdefault("spectra", NO_CUBES)
         elif self._cache is not None:
             self._cache.keep_only(names)
         for name in names:

@@ -85,7 +85,17 @@ ROUTES = {
     "/v1/overturning": (["pulse", "restitution"], ["alpha_deg", "format"]),
     "/v1/history": ([*GROUPS, "samples"], ["alpha_deg", "duration", "contact", "format"]),
 }
-PAGES = ["/", "/docs", "/openapi.json", "/health", "/metrics", "/v1/datasets", "/static/explorer/main.js", "/static/"]
+PAGES = [
+    "/",
+    "/docs",
+    "/openapi.json",
+    "/health",
+    "/ready",
+    "/metrics",
+    "/v1/datasets",
+    "/static/explorer/main.js",
+    "/static/",
+]
 HOSTILE = [
     *("", " ", "nan", "-inf", "1e400", "-1e400", "1e-320", "0", "-0.0", "1", "-1", "true", "null", "[]", "0x10", "1_0"),
     *("9" * 400, "-" + "9" * 400, "9" * 4301, "1" + "0" * 308, "1.7976931348623157e308", "5e-324", "\u0661", "1,5"),

@@ -10,6 +10,7 @@ import pytest
 import rocking_api
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
+from rocking_api.execution.kernels import Kernels
 from rocking_api.settings import Settings
 
 from tests.api.conftest import NAMES, assert_problem, client_of
@@ -64,6 +65,77 @@ def test_with_a_damaged_cube_the_solver_is_used_and_health_reports_it(client, ow
         path.write_bytes(whole)  # repaired: detected without a restart
         assert damaged.get("/v1/response", params=QUERY).json()["source"] == "cube"
         assert health_of(damaged)["status"] == "ok"
+
+
+def ready_of(client):
+    """The response of /ready once every data set was checked."""
+    health_of(client)
+    return client.get("/ready")
+
+
+def test_ready_without_data_sets_and_with_intact_ones(client, tmp_path):
+    response = ready_of(client)
+    assert response.status_code == 200
+    assert response.headers["cache-control"] == "no-store"
+    assert response.json() == client.get("/health").json()
+    with client_of(tmp_path / "none") as empty:
+        empty.get("/v1/response", params=QUERY | {"method": "solver"})  # waits for the solver
+        deadline = time.monotonic() + 60
+        while (response := ready_of(empty)).status_code == 503 and time.monotonic() < deadline:
+            time.sleep(0.05)  # loading the kernels
+        assert response.status_code == 200
+        assert response.json()["status"] == "degraded"
+
+
+def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog):
+    names = ["overturning/sine/eta-0.85", "spectra/sine/eta-0.85"]
+    paths = [own_results / f"{name}.nc" for name in names]
+    whole = [path.read_bytes() for path in paths]
+    for path, content in zip(paths, whole, strict=True):
+        path.write_bytes(content[:1000])
+    with caplog.at_level(logging.INFO, "rocking.service"), client_of(own_results) as client:
+        for _ in range(3):
+            problem = assert_problem(ready_of(client), 503)
+        assert [error["name"] for error in problem["errors"]] == names
+        assert all("damaged" in error["value"] for error in problem["errors"])
+        assert all(name in problem["detail"] for name in names)
+        assert client.get("/health").status_code == 200
+        assert damaged_of(client) == dict.fromkeys(names, 1.0)
+        lines = [record.fields for record in caplog.records if record.getMessage() == "a data set is damaged"]
+        assert sorted(line["dataset"] for line in lines) == names
+        paths[0].write_bytes(whole[0])
+        paths[1].unlink()
+        assert ready_of(client).status_code == 200
+        assert damaged_of(client) == dict.fromkeys(names, 0.0)
+        repaired = [record for record in caplog.records if record.getMessage() == "a data set is no longer damaged"]
+        assert len(repaired) == 2
+
+
+def damaged_of(client):
+    """The gauges of damaged data sets."""
+    text = client.get("/metrics").text
+    return {
+        name: float(value)
+        for name, value in re.findall(r'^rocking_dataset_damaged\{dataset="(.*)"\} (.*)$', text, re.M)
+    }
+
+
+def test_metrics_report_a_damaged_data_set_that_nobody_asked_for(own_results):
+    name = "spectra/cosine/eta-0.90"
+    (own_results / f"{name}.nc").write_bytes(b"damaged")
+    with client_of(own_results) as client:
+        deadline = time.monotonic() + 20
+        while not (found := damaged_of(client)) and time.monotonic() < deadline:
+            time.sleep(0.02)
+    assert found == {name: 1.0}
+
+
+def test_not_ready_while_the_solver_is_loaded(client, monkeypatch):
+    monkeypatch.setattr(Kernels, "is_loaded", property(lambda _: False))
+    response = client.get("/ready")
+    assert "solver" in assert_problem(response, 503)["detail"]
+    assert response.headers["retry-after"] == "30"
+    assert client.get("/health").status_code == 200
 
 
 def test_a_cube_under_another_name_is_refused(own_results):
@@ -126,6 +198,7 @@ def test_openapi_describes_every_route(client):
         "/v1/datasets/{name}.nc",
         "/v1/datasets/{name}.zarr/{key}",
         "/health",
+        "/ready",
         "/metrics",
     }
     text = str(described)
@@ -135,8 +208,8 @@ def test_openapi_describes_every_route(client):
 
 @pytest.mark.parametrize(
     "path",
-    ["/", "/docs", "/openapi.json", "/health", "/metrics", "/v1/datasets", "/v1/datasets/spectra/sine/eta-0.85.nc",
-     "/v1/datasets/spectra/sine/eta-0.85.zarr/.zmetadata", "/v1/response?pulse=sine", "/nowhere",
+    ["/", "/docs", "/openapi.json", "/health", "/ready", "/metrics", "/v1/datasets",
+     "/v1/datasets/spectra/sine/eta-0.85.nc", "/v1/datasets/spectra/sine/eta-0.85.zarr/.zmetadata", "/v1/response?pulse=sine", "/nowhere",
      "/static/explorer/main.js", "/v1/map?pulse=sine&restitution=0.85&columns=2&rows=2"],
 )  # fmt: skip
 def test_every_response_has_nosniff(client, path):

@@ -56,6 +56,11 @@ class Kernels:
         finally:
             self._loading.cancel()  # waiting requests continue, and meet the same error if there is one
 
+    @property
+    def is_loaded(self) -> bool:
+        """Whether nothing is being compiled or loaded."""
+        return self._loading is None or self._loading.done()
+
     async def wait(self) -> None:
         """Return once they are loaded; usually at once.
 
@@ -64,7 +69,7 @@ class Kernels:
         NotReadyError
             After the time limit.
         """
-        if self._loading is None or self._loading.done():
+        if self._loading is None or self.is_loaded:
             return
         await asyncio.wait({self._loading}, timeout=self._seconds)
         if not self._loading.done():

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from http import HTTPStatus
@@ -38,6 +38,20 @@ class UnsupportedBodyError(InvalidArgumentError):
 
 class SlowBodyError(InvalidArgumentError):
     """The body does not arrive in time."""
+
+
+class DamagedDatasetsError(DatasetError):
+    """Data sets exist and cannot be used.
+
+    Parameters
+    ----------
+    damaged : mapping of str to str
+        What is wrong, by name.
+    """
+
+    def __init__(self, damaged: Mapping[str, str]) -> None:
+        super().__init__(damaged)
+        self.damaged = dict(sorted(damaged.items()))
 
 
 class InvalidQueryError(Exception):
@@ -117,7 +131,7 @@ class Problem(BaseModel):
     errors: list[InvalidParameter] | None = Field(
         None,
         description="where several parameters are missing or wrong, all of them, at most 20; `parameter`, "
-        "`value` and `allowed` are those of the first",
+        "`value` and `allowed` are those of the first; of /ready the damaged data sets",
     )
 
 
@@ -166,6 +180,13 @@ async def error_response(_: Request, error: Exception) -> Response:
         named = refusals[:MAX_ERRORS]
         detail = f"{len(refusals)} parameters are missing or wrong: " + "; ".join(one.detail for one in named)
         return problem_response(status, detail, headers, **parts, errors=[one.parameter for one in named])
+    if isinstance(error, DamagedDatasetsError):
+        datasets = [
+            InvalidParameter(name=name[:MAX_TEXT], value=text[:MAX_TEXT], allowed="an intact data set")
+            for name, text in [*error.damaged.items()][:MAX_ERRORS]
+        ]
+        detail = f"{len(error.damaged)} data sets are damaged: " + "; ".join(error.damaged)
+        return problem_response(status, detail, headers, errors=datasets)
     if isinstance(error, UnknownDatasetError):
         allowed = "a name that /v1/datasets lists"
         detail = f"there is no data set `{error.args[0]}`"

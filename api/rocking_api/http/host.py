@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from http import HTTPStatus
+from typing import Any
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -29,7 +30,7 @@ class HostCheck:
             hosts = [value for name, value in scope["headers"] if name == b"host"]
             if len(hosts) > 1 or (not hosts and scope["http_version"] != "1.0"):
                 detail = f"the request has {len(hosts)} headers Host; allowed: one"
-                named = {"parameter": "Host", "value": f"{len(hosts)} headers", "allowed": "one"}
+                named: dict[str, Any] = {"parameter": "Host", "value": f"{len(hosts)} headers", "allowed": "one"}
                 await problem_response(HTTPStatus.BAD_REQUEST, detail, **named)(scope, receive, send)
                 return
             scope["headers"] = [header for header in scope["headers"] if header[0] != b"host"]

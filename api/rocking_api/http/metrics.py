@@ -64,6 +64,13 @@ class Metrics:
             ]
         )
         self._heavy_lock = threading.Lock()
+        self._damaged = Gauge(
+            "rocking_dataset_damaged",
+            "1 for a data set or folder that exists and cannot be used, 0 once it is repaired.",
+            ["dataset"],
+            registry=self.registry,
+            multiprocess_mode="mostrecent",
+        )
         ProcessCollector(registry=self.registry)  # memory, processor time, open files
         self._all_workers: CollectorRegistry | None = None
         if FOLDER in os.environ:
@@ -86,6 +93,10 @@ class Metrics:
         with self._heavy_lock:  # the last call reports the last state
             self._running.set(executor.running)
             self._waiting.set(executor.waiting)
+
+    def damaged(self, name: str, is_damaged: bool) -> None:
+        """Report whether a data set is damaged."""
+        self._damaged.labels(name).set(is_damaged)
 
     def text(self) -> bytes:
         """In the text format of Prometheus; with several workers those of all, their processes by `pid`."""

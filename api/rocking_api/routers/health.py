@@ -1,23 +1,45 @@
-"""State of the service."""
+"""State of the service: whether it lives, and whether it is ready."""
 
 from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
+from rocking_api.execution.kernels import NotReadyError
 from rocking_api.http.encoding import json_response
+from rocking_api.http.errors import DamagedDatasetsError
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.responses import Health
-from rocking_api.service import ServiceDep
+from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(tags=["health"], route_class=ParamsRoute)
 
 
 @router.get("/health", summary="State and versions", response_model=Health)
 async def get_health(service: ServiceDep) -> Response:
-    """Every data set is checked once per version of its file, in the background; this waits at most 0.1 s for it.
+    """Always 200 while the process answers, whatever the state of the data sets: for what restarts it.
 
-    It does not wait for heavy work.
+    Every data set is checked once per version of its file, in the background; this waits at most 0.1 s for it, and not
+    for heavy work.
     """
+    return await _health(service)
+
+
+@router.get("/ready", summary="Whether all of it can be served", response_model=Health)
+async def get_ready(service: ServiceDep) -> Response:
+    """503 while the solver is loaded, or while a data set that exists cannot be used: for what distributes requests.
+
+    The damaged data sets are named. Data sets that are missing, or not yet checked, do not matter: the solver replaces
+    the former, and the latter are checked before they are used.
+    """
+    answer = await _health(service)
+    if not service.kernels.is_loaded:
+        raise NotReadyError("the solver is being loaded; retry in a moment")
+    if service.dataset_checker.damaged:
+        raise DamagedDatasetsError(service.dataset_checker.damaged)
+    return answer
+
+
+async def _health(service: Service) -> Response:
     names, unchecked, problems = await service.dataset_checker.state()
     status = "degraded" if problems else "ok"
     health = Health(status=status, datasets=len(names), unchecked=unchecked, problems=problems)

@@ -18,5 +18,9 @@ router = APIRouter(tags=["health"], route_class=ParamsRoute)
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
 async def get_metrics(service: ServiceDep) -> Response:
-    """Requests by route and status, their times, blocks by source, heavy work; of all workers since the start."""
+    """Requests by route and status, times, blocks by source, heavy work, of all workers; damaged data sets.
+
+    The data sets are checked as for `/health`.
+    """
+    await service.dataset_checker.state()
     return Response(service.metrics.text(), media_type=CONTENT_TYPE, headers={"Cache-Control": "no-store"})
