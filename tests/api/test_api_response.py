@@ -116,7 +116,28 @@ def test_bad_input_names_parameter_value_and_range(client, changes, parameter):
 
 def test_a_missing_parameter_is_named(client):
     problem = assert_problem(client.get("/v1/response", params={"pulse": "sine"}), 422, "slenderness")
-    assert problem["allowed"] == "required"
+    assert problem["allowed"] == "required in the query"
+    assert "`slenderness` is missing in the query" in problem["detail"]
+
+
+def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(client):
+    url, csv = "/v1/response", {"headers": {"content-type": "text/csv"}, "content": "slenderness\n0.4\n"}
+    body = {"pulse": "sine", "frequency_ratio": 5, "restitution": 0.85}
+    assert assert_problem(client.post(url, json=body), 422, "slenderness")["allowed"] == "required in the body"
+    unknown = assert_problem(client.post(url, json=body | {"slenderness": 1, "colour": 1}), 422, "colour")
+    assert unknown["detail"].startswith("there is no parameter `colour` in the body; allowed: one of pulse")
+    query = "?frequency_ratio=5&restitution=0.85"
+    assert assert_problem(client.post(url + query, **csv), 422, "pulse")["allowed"] == "required in the query"
+    unknown = assert_problem(client.post(url + query + "&pulse=sine&colour=1", **csv), 422, "colour")
+    assert unknown["allowed"].endswith(", in the query")
+    column = assert_problem(client.post(url + "?restitution=1&pulse=sine", **csv), 422, "frequency_ratio")
+    assert column["allowed"] == "required: a column of the body or a parameter in the URL"
+    blocks = {"blocks": [{"half_width": 0.2}], "pulse": "sine"}
+    missing = assert_problem(client.post("/v1/blocks/response", json=blocks), 422, "pulse")
+    assert missing["allowed"] == "required in the query"
+    problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
+    assert "`blocks[0].half_height` is missing in the body" in problem["detail"]
+    assert "there is no parameter `pulse` in the body" in problem["detail"]
 
 
 def test_several_missing_or_wrong_parameters_are_all_named(client):
@@ -126,7 +147,7 @@ def test_several_missing_or_wrong_parameters_are_all_named(client):
     ]  # fmt: skip
     first, missing, unknown, _, above = problem["errors"]
     assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
-    assert missing == {"name": "frequency_ratio", "allowed": "required"}
+    assert missing == {"name": "frequency_ratio", "allowed": "required in the query"}
     assert unknown["allowed"].startswith("one of pulse, alpha_deg, method, tolerance, slenderness, frequency_ratio")
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
     assert (problem["parameter"], problem["value"], problem["allowed"]) == ("slenderness", "x", "a number")

@@ -14,13 +14,14 @@ import numpy as np
 import xarray as xr
 from fastapi import Request, Response
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.execution.executor import BusyError
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_stream, dataset_of, json_stream, netcdf_response
-from rocking_api.http.errors import SlowBodyError, TooLargeError, UnsupportedBodyError
+from rocking_api.http.errors import InvalidQueryError, SlowBodyError, TooLargeError, UnsupportedBodyError
 from rocking_api.http.memory_budget import Reservation
 from rocking_api.http.number_columns import GROUPS, Columns, check_columns, cut_arrays, parse_array, parse_csv
 from rocking_api.models.metadata import METADATA_URL
@@ -122,8 +123,8 @@ def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_point
     ------
     InvalidArgumentError
         If the body cannot be parsed, a parameter is unknown, the groups differ in length, or one is out of range.
-    ValidationError
-        If JSON does not fit `BatchParams`.
+    ValidationError, InvalidQueryError
+        If JSON does not fit `BatchParams`, or options in the URL do not fit `LookupOptions`.
     TooLargeError
         For more than `max_points` points.
     StoppedError
@@ -142,7 +143,10 @@ def read_batch(body: bytes, form: Form, parameters: Mapping[str, str], max_point
                 if name in columns:
                     raise InvalidArgumentError(name, given[name], "either in the body or in the URL")
                 columns[name] = np.atleast_1d(_number(name, given.pop(name)))
-        options = LookupOptions.model_validate_strings(given)
+        try:
+            options = LookupOptions.model_validate_strings(given)
+        except ValidationError as error:
+            raise InvalidQueryError(error, []) from None
     for name in GROUPS:
         if name not in columns:
             raise InvalidArgumentError(name, None, "required: a column of the body or a parameter in the URL")

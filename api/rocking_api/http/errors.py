@@ -211,16 +211,15 @@ class _Refusal:
 def _refusals(error: Exception) -> list[_Refusal]:
     """The parameters that an error names, each once, in its order; empty if it is not about parameters."""
     if isinstance(error, InvalidQueryError):
-        found = _refusals(error.validation) + [one for own in error.out_of_range for one in _refusals(own)]
+        found = _of_model(error.validation, "query") + [one for own in error.out_of_range for one in _refusals(own)]
     elif isinstance(error, SeveralArgumentsError):
         found = [one for own in error.errors for one in _refusals(own)]
     elif isinstance(error, InvalidArgumentError):
         found = [_Refusal(str(error), error.parameter, error.value, error.allowed)]
     elif isinstance(error, RequestValidationError):
-        found = [_of_validation(one) for one in error.errors()]
+        found = [_of_validation(one, str(one["loc"][0])) for one in error.errors()]
     elif isinstance(error, ValidationError):
-        names = _names().get(error.title, [])
-        found = [_of_validation(one, names) for one in error.errors(include_url=False)]
+        found = _of_model(error, "body")
     else:
         found = []
     once: dict[str, _Refusal] = {}
@@ -229,8 +228,16 @@ def _refusals(error: Exception) -> list[_Refusal]:
     return [*once.values()]
 
 
-def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any], names: Iterable[str] = ()) -> _Refusal:
-    """An error of pydantic; `names` are the parameters of the request."""
+def _of_model(error: ValidationError, source: str) -> list[_Refusal]:
+    """The errors of a parameter model that was read from `source`."""
+    names = _names().get(error.title, [])
+    return [_of_validation(one, source, names) for one in error.errors(include_url=False)]
+
+
+def _of_validation(
+    error: pydantic_core.ErrorDetails | dict[str, Any], source: str, names: Iterable[str] = ()
+) -> _Refusal:
+    """An error of pydantic; `names` are the parameters that are expected in `source`: the query, the body, the path."""
     kind, context = str(error["type"]), error.get("ctx", {})
     place = [part for part in error["loc"] if part not in ("query", "body", "path")]
     where = [str(part) for part in place]
@@ -238,10 +245,13 @@ def _of_validation(error: pydantic_core.ErrorDetails | dict[str, Any], names: It
     if len(place) > 2 and isinstance(place[1], int):  # in an array of objects
         name = f"{name}[{place[1]}].{place[2]}"
     if kind == "missing":
-        return _Refusal(f"`{name}` is missing", name, None, "required")
+        return _Refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
     if kind == "extra_forbidden":
         known = "one of " + ", ".join(names) if names and len(place) == 1 else "see /docs"
-        return _Refusal(f"there is no parameter `{name}`; allowed: {known}", name, error["input"], known)
+        known += f", in the {source}"
+        return _Refusal(
+            f"there is no parameter `{name}` in the {source}; allowed: {known}", name, error["input"], known
+        )
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
     elif kind.startswith("float"):

@@ -87,7 +87,7 @@ def _reader(name: str, hint: Any, default: Any, in_path: bool) -> Reader:
         try:
             return validate(given[name])
         except KeyError:
-            raise InvalidArgumentError(name, None, "required") from None
+            raise InvalidArgumentError(name, None, f"required in the {'path' if in_path else 'query'}") from None
         except ValidationError as error:
             raise InvalidArgumentError(name, given[name], error.errors()[0]["msg"]) from None
 
