@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 import sys
 import threading
 import time
@@ -198,6 +199,22 @@ def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, pat
         while client.app.state.service.executor.running:
             time.sleep(0.01)
             assert time.monotonic() - began < 0.5
+
+
+def test_curves_of_an_elastic_block_end_early_and_the_answer_says_what_to_ask_instead(results):
+    query = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 10.0}
+    with client_of(results, max_seconds=6.0) as client:
+        client.get("/v1/response", params=POINT)  # waits for the solver
+        began = time.monotonic()
+        detail = assert_problem(client.get("/v1/overturning", params=query), 504)["detail"]
+        assert time.monotonic() - began < 4.0
+        assert "time limit of 1 s" in detail
+        instead = re.search(r"ask for the outcomes on a grid, (\S+),", detail)[1]
+        assert client.get(instead).status_code == 200
+        deadline = time.monotonic() + 5.0
+        while client.app.state.service.executor.running and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert not client.app.state.service.executor.running
 
 
 def test_a_part_of_the_work_may_have_its_own_time_limit():

@@ -27,10 +27,19 @@ class BusyError(RuntimeError):
 
 
 class TimeLimitError(RuntimeError):
-    """The work exceeds the time limit."""
+    """The work exceeds the time limit.
 
-    def __init__(self, seconds: float) -> None:
-        super().__init__(f"the request exceeds the time limit of {seconds:g} s; reduce it")
+    Parameters
+    ----------
+    seconds : float
+        The limit [s].
+    advice : str
+        What to ask instead.
+    """
+
+    def __init__(self, seconds: float, advice: str = "reduce it") -> None:
+        super().__init__(f"the request exceeds the time limit of {seconds:g} s; {advice}")
+        self.seconds = seconds
 
 
 class BoundedExecutor:
