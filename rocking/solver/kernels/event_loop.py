@@ -184,6 +184,7 @@ def repeat_first_flight(flight: Record, eta: float) -> bool:
     """Reuse the first flight of the cell for another eta; False if it was the last."""
     flight.outcome, flight.peak_rotation, flight.peak_mode, flight.impacts, flight.chatter = SAFE, 0.0, -1, 0, 0
     flight.first_impact_time, flight.first_impact_velocity = math.nan, math.nan
+    flight.end_rotation, flight.end_velocity, flight.end_sign = 0.0, 0.0, 0.0  # stays so if it comes to rest
     flight.length, flight.phase, flight.sign = (
         flight.first_flight_length,
         flight.first_flight_phase,
