@@ -70,7 +70,7 @@ fuzz: .venv/project ## send 5,000 random requests to the service; three minutes 
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/api/test_api_fuzz.py
 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
-	python -m stress.mutations --count $(or $(COUNT),32) --seed $(or $(SEED),1)
+	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)
 
 # Extras `seismic` and `slurm` are optional: they are not locked.
 LOCKED := service plot workflow docs dev

@@ -1,8 +1,9 @@
 """Mutation trial: change single operators and constants, run the tests: `python -m stress.mutations`.
 
 A change replaces an operator, a comparison, `and`/`or`, a sign, a constant, `min`/`max` or `sin`/`cos`. It is drawn
-from a seed and made in a copy of the tracked files; the tests of its area run until the first failure. The log holds
-one JSON line for each change; a run with the same log continues where the last one ended.
+from a seed and made in a copy of the tracked files; the tests that import its module, directly or indirectly, run until
+the first failure. The log holds one JSON line for each change; a run with the same log continues where the last one
+ended.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import argparse
 import ast
 import json
+import math
 import os
 import random
 import shutil
@@ -18,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +29,8 @@ import numba  # noqa: F401  # loaded once, before the trials fork
 import pytest
 import scipy.optimize  # noqa: F401
 import xarray  # noqa: F401
+
+from stress.imports import ImportGraph
 
 ROOT = Path(__file__).parents[1]
 
@@ -54,86 +58,19 @@ NAMES = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum",
 """Functions that replace each other."""
 
 
+BATCH_SECONDS = 15.0
+"""Time of the tests that run in one process [s]; the last of them may take longer."""
+
+COMPILE_SECONDS, SLOWER = 240.0, 4.0
+"""A batch ends after the time to compile all kernels [s] and this multiple of its time without a change: a timeout."""
+
+
 @dataclass(frozen=True)
-class Area:
-    """Modules whose changes should fail the same tests."""
+class Batch:
+    """Test files that run in one process, and their time without a change [s]."""
 
-    name: str
-    sources: tuple[str, ...]
-    first: tuple[str, ...]
-    """Tests that run first."""
-    then: tuple[str, ...]
-    """Tests that run if those pass."""
-
-    def tests(self, tree: Path) -> tuple[str, ...]:
-        """Return the test files of a tree in the order in which they run."""
-        found = (path for pattern in (*self.first, *self.then) for path in sorted(tree.glob(pattern)))
-        return tuple(dict.fromkeys(str(path.relative_to(tree)) for path in found))
-
-
-def tests(*names: str) -> tuple[str, ...]:
-    """Return the paths of test files."""
-    return tuple(f"tests/*/test_{name}.py" for name in names)
-
-
-AREAS = (
-    Area(
-        "kernels",
-        tuple(
-            f"rocking/{name}.py"
-            for name in ("solver/kernels/*", "solver/arcs/*", "solver/taylor/*", "history/sampling")
-        ),
-        tests("intervals", "free_rocking", "golden_thresholds", "slender_arcs", "taylor", "against_tables", "chatter"),
-        tests(
-            "rigid_against_tables",
-            "equations_of_motion",
-            "limits",
-            "symmetries",
-            "peak_response",
-            "history",
-            "corners",
-            "searches_end",
-            "stress",
-        ),
-    ),
-    Area(
-        "analysis",
-        tuple(
-            f"rocking/{name}.py"
-            for name in (
-                *("model/*", "solver/*", "boundary/*", "history/*", "excitation/*"),
-                *("orientation", "groups/scale_law", "errors"),
-            )
-        ),
-        tests(
-            *("block", "pulses", "contact", "orientation", "groups", "boundary", "boundary_frequency", "history"),
-            *("boundary_curves", "free_rocking", "peak_response", "closed_form_peak"),
-        ),
-        tests(
-            *("limits", "symmetries", "golden_thresholds", "equations_of_motion", "lookup", "history_contact"),
-            *("rigid_against_tables", "ablations", "cli", "arguments", "outcome_margin", "boundary_cells"),
-        ),
-    ),
-    Area(
-        "formulas",
-        ("rocking/closed_form/*.py", "rocking/groups/*.py"),
-        tests(
-            *("closed_form_coefficients", "closed_form_cases", "closed_form_no_impact", "closed_form_peak", "groups"),
-            "closed_form_ad_hoc",
-        ),
-        tests("errata", "golden_thresholds"),
-    ),
-    Area(
-        "lookup",
-        (
-            *("rocking/lookup/*.py", "rocking/spectra/*.py", "rocking/interpolation/*.py"),
-            "rocking/datasets/cube.py",
-        ),
-        tests("interpolation", "level_interval", "lookup", "lookup_levels", "boundary_curves"),
-        (*tests("cube", "ablations"), "tests/api/test_api_response.py", "tests/api/test_api_state.py"),
-    ),
-    Area("service", ("api/rocking_api/**/*.py",), ("tests/api/test_*.py",), ()),
-)
+    files: tuple[str, ...]
+    seconds: float
 
 
 @dataclass(frozen=True)
@@ -213,15 +150,14 @@ def _without_annotations(tree: ast.Module) -> ast.Module:
     return tree
 
 
-def draw_mutants(area: Area, count: int, seed: int) -> list[Mutant]:
-    """Draw changes of an area without replacement."""
-    random_ = random.Random(f"{area.name} {seed}")
+def draw_mutants(folders: list[str], count: int, seed: int) -> list[Mutant]:
+    """Draw changes of the modules below some folders without replacement."""
+    random_ = random.Random(seed)
     queues = []
-    for pattern in area.sources:
-        for path in sorted(ROOT.glob(pattern)):
-            queue = mutants_of(path)
-            random_.shuffle(queue)
-            queues.append(queue)
+    for path in modules(folders):
+        queue = mutants_of(path)
+        random_.shuffle(queue)
+        queues.append(queue)
     found: list[Mutant] = []
     while len(found) < count and any(queues):
         # the probability of a file is proportional to the square root of its number of changes
@@ -230,6 +166,43 @@ def draw_mutants(area: Area, count: int, seed: int) -> list[Mutant]:
         if all((mutant.path, mutant.start) != (other.path, other.start) for other in found):
             found.append(mutant)
     return found
+
+
+def modules(folders: list[str]) -> list[Path]:
+    """Return the modules below some folders of the tree; a module may be given by its own name."""
+    return sorted(path for name in folders for path in [*(ROOT / name).rglob("*.py"), ROOT / name] if path.is_file())
+
+
+def imported_by_tests(tree: Path) -> dict[str, dict[str, int]]:
+    """Return for each test file the modules that it imports, and through how many others, by `ImportGraph`."""
+    graph = ImportGraph(tree)
+    return {
+        test.relative_to(tree).as_posix(): {
+            module.relative_to(tree).as_posix(): steps for module, steps in graph.distances(test).items()
+        }
+        for test in sorted(tree.glob("tests/**/test_*.py"))
+    }
+
+
+def batches_of(
+    module: str, imported: dict[str, dict[str, int]], seconds: dict[str, float], budget: float
+) -> list[Batch]:
+    """Return the test files that import a module, in batches that run one after the other until one fails.
+
+    Those that import it directly and those that take little time come first. They take at most `budget` [s] together,
+    and each batch about `BATCH_SECONDS`: a process collects all tests of a batch before the first one runs.
+    """
+    cost = {
+        test: found[module] * seconds[test] for test, found in imported.items() if module in found and test in seconds
+    }
+    batches = [Batch((), 0.0)]
+    for test in sorted(cost, key=lambda test: (cost[test], test)):
+        if sum(batch.seconds for batch in batches) + seconds[test] > budget:
+            break
+        if batches[-1].seconds > BATCH_SECONDS:
+            batches.append(Batch((), 0.0))
+        batches[-1] = Batch((*batches[-1].files, test), batches[-1].seconds + seconds[test])
+    return batches if batches[0].files else []
 
 
 def run_tests(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, str]:
@@ -254,30 +227,34 @@ def run_tests(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, 
             return "timeout", ""
         output.seek(0)
         lines = output.read().splitlines()
-    if status[1] == 0:
+    if os.waitstatus_to_exitcode(status[1]) in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
         return "survived", ""
     failed = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
     return "noticed", failed[0] if failed else " | ".join(lines[-8:])
 
 
-def run(mutant: Mutant, area: Area, tree: Path, kept: set[Path], timeout: float) -> dict[str, Any]:
+def run(mutant: Mutant, batches: list[Batch], tree: Path, kept: set[Path]) -> dict[str, Any]:
     """Make a change in a copy of the tree, run the tests, undo the change; return the line of the log."""
     path = tree / mutant.path
     before, stat = path.read_text(), path.stat()
     stop = mutant.start + len(mutant.old)
     assert before[mutant.start : stop] == mutant.old, mutant
-    # tests named after the module come first
-    files = sorted(area.tests(tree), key=lambda name: path.stem not in name)
+    result, by, begun = "survived", "", time.monotonic()
     try:
         path.write_text(before[: mutant.start] + mutant.new + before[stop:])
-        result, by = run_tests(tree, tuple(files), timeout)
+        for batch in batches:
+            result, by = run_tests(tree, batch.files, COMPILE_SECONDS + SLOWER * batch.seconds)
+            if result != "survived":
+                break
     finally:
         path.write_text(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
         for folder in compiled_kernels(tree) - kept:
             shutil.rmtree(folder)
     source = before.splitlines()[mutant.line - 1].strip()
-    return asdict(mutant) | {"area": area.name, "source": source, "result": result, "by": by}
+    tests = sum(len(batch.files) for batch in batches)
+    took = round(time.monotonic() - begun, 1)
+    return asdict(mutant) | {"source": source, "result": result, "by": by, "tests": tests, "seconds": took}
 
 
 def compiled_kernels(tree: Path) -> set[Path]:
@@ -285,38 +262,61 @@ def compiled_kernels(tree: Path) -> set[Path]:
     return set((tree / "rocking" / "__pycache__").glob("kernels-*"))
 
 
-def prepare_tree(tree: Path, areas: list[Area]) -> set[Path]:
-    """Copy the files as they are staged, and run all tests once: they must pass, which also compiles the kernels."""
-    if not tree.exists():  # the files that git has staged
-        subprocess.run(["git", "checkout-index", "--all", f"--prefix={tree.resolve()}/"], cwd=ROOT, check=True)
-    for area in areas:
-        result, by = run_tests(tree, area.tests(tree), 3600.0)
-        if result != "survived":
-            sys.exit(f"{area.name}: the tests fail without a change: {by}")
-    return compiled_kernels(tree)
+def prepare_tree(tree: Path) -> None:
+    """Copy the files as they are staged, if that was not done, and compile the kernels."""
+    if not tree.exists():
+        subprocess.run(["git", "checkout-index", "--all", f"--prefix={tree}/"], cwd=ROOT, check=True)
+    environment = os.environ | {"PYTHONPATH": str(tree)}
+    subprocess.run([sys.executable, "-m", "rocking.precompile"], cwd=tree, env=environment, check=True)
+
+
+def measure_tests(tree: Path, files: Iterable[str], limit: float) -> dict[str, float]:
+    """Run test files of the tree without a change, and return their times [s], which are kept in the tree.
+
+    Those that fail or take longer than `limit` [s] are left out.
+    """
+    kept = tree / "seconds.json"
+    seconds: dict[str, float | None] = json.loads(kept.read_text()) if kept.exists() else {}
+    for test in files:
+        if test not in seconds:
+            begun = time.monotonic()
+            result, by = run_tests(tree, (test,), limit)
+            seconds[test] = round(time.monotonic() - begun, 2) if result == "survived" else None
+            kept.write_text(json.dumps(seconds, indent=1))
+            if result != "survived":
+                print(f"left out: {test}, without a change {result} {by}", flush=True)
+    return {test: time for test, time in seconds.items() if time is not None}
 
 
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folders", nargs="*", default=["rocking", "api/rocking_api"], help="whose modules are changed")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--count", type=int, default=32, help="changes of each area")
-    parser.add_argument("--area", nargs="*", choices=[area.name for area in AREAS])
+    parser.add_argument("--count", type=int, default=150, help="number of changes")
     parser.add_argument(
         "--tree", type=Path, default=ROOT / "build" / "mutants", help="folder of the copy; created if missing"
     )
     parser.add_argument("--log", type=Path, default=ROOT / "build" / "mutants.jsonl")
-    parser.add_argument("--most", type=int, help="maximum number of changes in this run; default: all")
-    parser.add_argument("--timeout", type=float, default=400.0, help="seconds for each group of tests")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="after which no further change is tried")
+    parser.add_argument("--budget", type=float, default=120.0, help="seconds of tests for each change, without it")
     options = parser.parse_args()
+    tree = options.tree.resolve()
     lines = options.log.read_text().splitlines() if options.log.exists() else []
     done = {(record["path"], record["start"], record["new"]) for record in map(json.loads, lines)}
-    areas = [area for area in AREAS if not options.area or area.name in options.area]
-    wanted = [(mutant, area) for area in areas for mutant in draw_mutants(area, options.count, options.seed)]
-    left = [pair for pair in wanted if (pair[0].path, pair[0].start, pair[0].new) not in done]
-    kept = prepare_tree(options.tree, areas)
-    for mutant, area in left[: options.most]:
-        record = run(mutant, area, options.tree, kept, options.timeout)
+    wanted = draw_mutants(options.folders, options.count, options.seed)
+    left = [mutant for mutant in wanted if (mutant.path, mutant.start, mutant.new) not in done]
+    prepare_tree(tree)
+    imported = imported_by_tests(tree)
+    changed = {mutant.path for mutant in left}
+    needed = [test for test, found in imported.items() if not changed.isdisjoint(found)]
+    seconds = measure_tests(tree, needed, options.budget)
+    kept = compiled_kernels(tree)
+    stop = time.monotonic() + 60.0 * options.minutes
+    for mutant in left:
+        if time.monotonic() > stop:
+            break
+        record = run(mutant, batches_of(mutant.path, imported, seconds, options.budget), tree, kept)
         with options.log.open("a") as log:
             print(json.dumps(record), file=log)
         place = f"{record['path']}:{record['line']} {record['old']} -> {record['new']}"

@@ -37,10 +37,11 @@ Those that mostly wait, for limits of time and for the browser, run beside those
 """
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Move these files to the front, in their order."""
-    order = {name: place for place, name in enumerate(FIRST)}
-    items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Move these files to the front, in their order, where several processes run them."""
+    if hasattr(config, "workerinput"):
+        order = {name: place for place, name in enumerate(FIRST)}
+        items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 
 pytest_plugins = ["tests.wheel_fixtures", "tests.workflow_fixtures"]

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from stress.mutations import AREAS, ROOT, draw_mutants, mutants_of
+from stress.imports import ImportGraph
+from stress.mutations import BATCH_SECONDS, ROOT, batches_of, draw_mutants, imported_by_tests, modules, mutants_of
 
 SOURCE = """def clipped(x: float, low: float = 0.0) -> float:
     if x < low and low != 1:
@@ -47,16 +48,58 @@ def test_every_operator_constant_and_sign_is_changed(monkeypatch: pytest.MonkeyP
     assert changed(tmp_path / "source.py") == {SOURCE.replace(old, new) for old, new in expected}
 
 
-@pytest.mark.parametrize("area", AREAS, ids=lambda area: area.name)
-def test_areas_name_existing_files_and_changes_are_valid_python(area) -> None:
-    assert all(list(ROOT.glob(pattern)) for pattern in area.sources)
-    assert all(list(ROOT.glob(pattern)) for pattern in (*area.first, *area.then))
-    first, again = draw_mutants(area, 30, seed=1), draw_mutants(area, 30, seed=1)
+def test_changes_are_drawn_from_the_seed_and_are_valid_python() -> None:
+    first, again = draw_mutants(["rocking"], 100, seed=1), draw_mutants(["rocking"], 100, seed=1)
     assert first == again
-    assert len({(mutant.path, mutant.start) for mutant in first}) == 30
+    assert len({(mutant.path, mutant.start) for mutant in first}) == 100
     for mutant in first:
         text = (ROOT / mutant.path).read_text()
         ast.parse(text[: mutant.start] + mutant.new + text[mutant.start + len(mutant.old) :])
+
+
+TREE = {
+    "rocking/__init__.py": "",
+    "rocking/__init__.pyi": "from .inner.a import f as f\nfrom . import inner as inner\n",
+    "rocking/inner/__init__.py": "",
+    "rocking/inner/a.py": "from rocking.inner.b import g",
+    "rocking/inner/b.py": "",
+    "api/service/app.py": "import rocking.inner.b",
+    "tests/helper.py": "from rocking.inner import a as one\none.x",
+    "tests/test_public.py": "import rocking\nrocking.f(1)",
+    "tests/test_helper.py": "import numpy as np\nfrom tests.helper import cell",
+    "tests/api/conftest.py": "from service import app",
+    "tests/api/test_service.py": "",
+}
+
+
+def test_imports_are_counted_through_public_names_helpers_and_fixtures(tmp_path: Path) -> None:
+    for name, text in TREE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    graph = ImportGraph(tmp_path)
+    a, b = tmp_path / "rocking/inner/a.py", tmp_path / "rocking/inner/b.py"
+    found = [
+        graph.distances(tmp_path / f"tests/{name}.py") for name in ("test_public", "test_helper", "api/test_service")
+    ]
+    assert [one.get(a) for one in found] == [1, 2, None]
+    assert [one.get(b) for one in found] == [2, 3, 3]
+
+
+def test_tests_of_each_module_are_those_that_import_it() -> None:
+    imported = imported_by_tests(ROOT)
+    assert imported["tests/model/test_masonry_arch.py"]["rocking/model/linkage.py"] == 1
+    known = {module for found in imported.values() for module in found}
+    missing = {path.relative_to(ROOT).as_posix() for path in modules(["rocking", "api/rocking_api"])} - known
+    assert {Path(path).name for path in missing} <= {"__init__.py", "__main__.py"}  # docstrings, and `-m`
+
+
+def test_direct_and_cheap_tests_come_first_within_the_budget() -> None:
+    imported = {"far": {"m": 3}, "near": {"m": 1}, "slow": {"m": 1}, "other": {"n": 1}, "unmeasured": {"m": 1}}
+    seconds = {"far": 10.0, "near": 20.0, "slow": 90.0, "other": 1.0}
+    batches = batches_of("m", imported, seconds, 100.0)
+    assert [batch.files for batch in batches] == [("near",), ("far",)]
+    assert batches[0].seconds > BATCH_SECONDS
+    assert batches_of("none", imported, seconds, 100.0) == []
 
 
 def result_of_trial(folder: Path, timeout: int) -> str:
