@@ -3,8 +3,10 @@
 import hashlib
 import io
 import logging
+import os
 import shutil
 import threading
+import time
 import weakref
 from collections import namedtuple
 
@@ -16,6 +18,7 @@ import rocking.lookup.collection
 import rocking.lookup.packed_tables
 from rocking.datasets.catalogue import DataFile
 from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, write_dataset
+from rocking.datasets.shared_cache import MAX_WRITE_SECONDS
 from rocking.lookup.collection import CubeCollection
 from rocking.lookup.packed_tables import LAYOUT, write_tables
 from rocking.spectra.cubes import spectra
@@ -175,6 +178,19 @@ def test_tables_of_a_replaced_cube_are_deleted(results, contents):
     (results / f"{NAMES[0]}.nc").unlink()
     assert collection(results).problems() == {}
     assert not path.parent.exists()
+
+
+def test_what_a_killed_process_left_is_deleted_but_not_what_another_one_writes(results, contents):
+    respond(collection(results))
+    folder = tables_of(results)[0].parent
+    left, new = folder / "left.partial", folder / "new.partial"
+    for path, age in ((left, 2 * MAX_WRITE_SECONDS), (new, 0.5 * MAX_WRITE_SECONDS)):
+        path.touch()
+        os.utime(path, (time.time() - age,) * 2)
+    (results / f"{NAMES[0]}.nc").write_bytes(contents[2])
+    respond(collection(results))
+    assert not left.exists()
+    assert new.exists()
 
 
 def test_a_problem_is_remembered_until_the_file_changes(results, contents, reads):

@@ -55,6 +55,9 @@ def test_files_store_the_declared_fields():
         assert dtype == field.file_dtype
         assert attributes["long_name"] == field.meaning
         assert attributes["equation"] == field.equation
+        codes = {"outcome": list(Outcome), "exceeded_alpha": [False, True]}.get(field.name, [])
+        assert list(attributes.get("flag_values", [])) == codes
+        assert len(attributes.get("flag_meanings", "").split()) == len(codes)
 
 
 def test_http_responses_have_the_declared_columns():

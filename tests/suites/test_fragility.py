@@ -215,6 +215,7 @@ def test_every_variable_has_unit_and_meaning(noisy):
         ({"records": [1.0]}, "records"),
         ({"blocks": []}, "blocks"),
         ({"blocks": [0.2]}, "blocks"),
+        ({"blocks": [BLOCK, 0.2]}, "blocks"),
         ({"intensity": []}, "intensity"),
         ({"intensity": [2.0, 1.0]}, "intensity"),
         ({"intensity": [0.0, 1.0]}, "intensity"),
