@@ -79,6 +79,8 @@ def test_text_forms():
     html = found._repr_html_()
     assert "<table>" in html
     assert "7.419 deg" in html
+    assert "<td>0.206594</td><td>m</td>" in html
+    assert "<td>1</td><td></td>" in html  # the number of impacts has no unit
     assert html.count("<tr>") == len(FIELDS)
 
 
