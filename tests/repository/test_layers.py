@@ -29,7 +29,7 @@ LAYERS = (
     ("rocking/_numba",),
     ("rocking/errors", "rocking/equality"),
     ("rocking/units",),
-    ("rocking/constants", "rocking/version"),
+    ("rocking/constants", "rocking/version", "rocking/source_tree"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as in pyproject.toml

@@ -1,0 +1,78 @@
+"""Digests of code change if and only if a dependency of the result changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rocking.source_tree import SourceTree
+
+TREE = {
+    "rocking/__init__.py": "import lazy_loader",
+    "rocking/a.py": "import math\nfrom rocking.b import x",
+    "rocking/b.py": "from rocking.group import y",
+    "rocking/c.py": "",
+    "rocking/group/__init__.py": "from rocking.group.inner import y",
+    "rocking/group/inner.py": "y = 1",
+    "rocking/group/other.py": "",
+    "script.py": "from rocking import a",
+    "lazy.py": "from rocking import peak_response",
+    "nested.py": "import rocking.group.other",
+}
+
+GROUP = {"rocking/group/__init__.py", "rocking/group/inner.py"}
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    for name, text in TREE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("script", "expected"),
+    [
+        ("script.py", {"script.py", "rocking/a.py", "rocking/b.py", *GROUP}),
+        ("nested.py", {"nested.py", "rocking/group/other.py", *GROUP}),
+        ("lazy.py", {"lazy.py", *(name for name in TREE if name.startswith("rocking/"))}),
+    ],
+)  # fmt: skip
+def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> None:
+    found = SourceTree(tree).files(tree / script)
+    assert {path.relative_to(tree).as_posix() for path in found} == expected
+
+
+def test_digest_depends_on_imported_files_and_the_lock_only(tree: Path) -> None:
+    first = SourceTree(tree).digest(tree / "script.py")
+    (tree / "rocking/c.py").write_text("unrelated = 1")
+    assert SourceTree(tree).digest(tree / "script.py") == first
+    (tree / "rocking/group/inner.py").write_text("y = 2")
+    second = SourceTree(tree).digest(tree / "script.py")
+    assert second != first
+    (tree / "environment.lock").write_text("numpy==2.4.6")
+    assert SourceTree(tree).digest(tree / "script.py") != second
+
+
+def test_digest_is_independent_of_the_folder(tree: Path, tmp_path: Path) -> None:
+    moved = tmp_path / "elsewhere"
+    for name, text in TREE.items():
+        (moved / name).parent.mkdir(parents=True, exist_ok=True)
+        (moved / name).write_text(text)
+    assert SourceTree(moved).digest(moved / "script.py") == SourceTree(tree).digest(tree / "script.py")
+
+
+def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
+    sources = SourceTree(tree)
+    first = sources.digest(tree / "script.py")
+    (tree / "rocking/b.py").write_text("changed = 1")
+    assert sources.digest(tree / "script.py") == first
+    assert sources.digest(tree / "nested.py") == SourceTree(tree).digest(tree / "nested.py")
+    assert SourceTree(tree).digest(tree / "script.py") != first
+
+
+def test_package_digest_covers_every_module() -> None:
+    assert len(SourceTree().digest()) == 64
+    assert SourceTree().digest() == SourceTree().digest()
