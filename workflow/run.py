@@ -7,6 +7,7 @@ active.
 from __future__ import annotations
 
 import argparse
+import inspect
 import os
 import shutil
 import sys
@@ -15,13 +16,21 @@ import threading
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from snakemake.cli import main as snakemake
-from snakemake.scheduling.job_scheduler import JobScheduler
 
 from workflow.parts import forget_damaged_parts
 from workflow.records import forget_false_records
 from workflow.run_lock import FOLDER, RUN_ID, RunningError, acquire, end_with
+
+try:
+    from snakemake.scheduling.job_scheduler import JobScheduler
+except ImportError:
+    JobScheduler = None
+
+METHOD = "_schedule_reevalutation"
+"""Method of Snakemake's scheduler that starts another pass after a delay [s]; the spelling is Snakemake's."""
 
 MEMORY_SHARE = 0.8
 """Share of the memory of the machine that the jobs of a run may use together [-], by what their rules state."""
@@ -62,11 +71,19 @@ def limit_passes_of_the_scheduler() -> None:
 
     A pass that leaves jobs ready starts another one a second later, for its limit of jobs per second, and so does each
     job that ends. Without this, after a hundred jobs a hundred passes a second look at all inputs of all ready jobs;
-    the run of the atlas took 40 % of a processor for itself.
+    the run of the atlas took 40 % of a processor for itself. The method is private: a Snakemake that does not have it,
+    or has another one of this name, keeps its own.
     """
+    original = getattr(JobScheduler, METHOD, None)
+    if original is None or [*inspect.signature(original).parameters] != ["self", "delay"]:
+        return
     waiting = threading.Lock()
 
-    def schedule_pass(scheduler: JobScheduler, delay: float) -> None:
+    def schedule_pass(scheduler: Any, delay: float) -> None:
+        if not hasattr(scheduler, "_open_jobs"):
+            original(scheduler, delay)
+            return
+
         def start() -> None:
             waiting.release()
             scheduler._open_jobs.release()
@@ -76,7 +93,7 @@ def limit_passes_of_the_scheduler() -> None:
             timer.daemon = True  # the end of the run does not wait for it
             timer.start()
 
-    JobScheduler._schedule_reevalutation = schedule_pass
+    setattr(JobScheduler, METHOD, schedule_pass)
 
 
 def use_temporary_folder(directory: Path) -> None:
