@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
-from numba.core import types
+from numba import types
 
 from rocking._numba.simd import VectorType, define_arithmetic, instruction
 

@@ -11,9 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
-from numba.core import cgutils, types
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba import types
+from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
 LANES = 16
 """Doubles of a vector. Processors have units of two, four or eight and process the parts at the same time: with 16 the
@@ -73,7 +72,8 @@ def _splat(builder: Any, value: Any, kind: VectorType = _VECTOR_TYPE) -> Any:
 
 def _row_address(builder: Any, array: Any, row: Any) -> Any:
     offset = builder.mul(row, ir.Constant(row.type, VECTOR_BYTES))
-    return builder.bitcast(cgutils.pointer_add(builder, array, offset), _LLVM_VECTOR.as_pointer())
+    address = builder.gep(builder.bitcast(array, ir.IntType(8).as_pointer()), [offset])
+    return builder.bitcast(address, _LLVM_VECTOR.as_pointer())
 
 
 def _absolute(builder: Any, x: Any) -> Any:
@@ -121,8 +121,8 @@ def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any
 
 
 def _square_root(builder: Any, x: Any) -> Any:
-    kind = ir.FunctionType(_LLVM_VECTOR, (_LLVM_VECTOR,))
-    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.sqrt.v{LANES}f64"), [x])
+    kind = ir.FunctionType(_LLVM_VECTOR, [_LLVM_VECTOR])
+    return builder.call(builder.module.declare_intrinsic(f"llvm.sqrt.v{LANES}f64", fnty=kind), [x])
 
 
 def _transpose(builder: Any, rows: list[Any]) -> list[Any]:
@@ -177,7 +177,9 @@ def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
 def _scatter_records(builder: Any, source: Any, places: Any, target: Any) -> None:
     words = [builder.load(_row_address(builder, source, ir.Constant(ir.IntType(64), i)), align=8) for i in range(WORDS)]
     undefined = ir.Constant(_LLVM_VECTOR, ir.Undefined)
-    nowhere = builder.bitcast(cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), WORDS)), target.type)
+    with builder.goto_entry_block():  # once, not in each iteration of a loop
+        unused = builder.alloca(ir.ArrayType(ir.DoubleType(), WORDS))
+    nowhere = builder.bitcast(unused, target.type)
     for i, records in enumerate(_transpose(builder, words)):
         for first in range(0, LANES, WORDS):
             lanes = ir.Constant(ir.VectorType(ir.IntType(32), WORDS), list(range(first, first + WORDS)))
@@ -322,12 +324,14 @@ pack_integers = instruction(_pack_integers, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_
 def _operation(operation: Any, generate: Callable[..., Any], vector: VectorType, result: Any) -> None:
     """Define `operation` for two vectors, or a vector and a number."""
 
-    @infer_global(operation)
-    class Typing(AbstractTemplate):
-        def generic(self, args: Any, _: Any) -> Any:
-            if vector not in args or not all(one == vector or isinstance(one, types.Number) for one in args):
+    @type_callable(operation)
+    def typing(_: Any) -> Any:
+        def typed(x: Any, y: Any) -> Any:
+            if vector not in (x, y) or not all(one == vector or isinstance(one, types.Number) for one in (x, y)):
                 return None
-            return signature(result, *(one if one == vector else types.float64 for one in args))
+            return result(*(one if one == vector else types.float64 for one in (x, y)))
+
+        return typed
 
     def lower(_: Any, builder: Any, sig: Any, args: Any) -> Any:
         operands = [x if kind == vector else _splat(builder, x, vector) for kind, x in zip(sig.args, args, strict=True)]
@@ -351,18 +355,14 @@ def define_arithmetic(vector: VectorType) -> None:
         _operation(operation, lambda builder, x, y, name=name: getattr(builder, name)(x, y), vector, vector)
 
 
-def _mask_operation(operation: Any, count: int, generate: Callable[..., Any]) -> None:
-    """Define `operation` for `count` masks."""
+def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
+    """Define `operation` for two masks."""
 
-    @infer_global(operation)
-    class Typing(AbstractTemplate):
-        def generic(self, args: Any, _: Any) -> Any:
-            return signature(_MASK_TYPE, *args) if list(args) == [_MASK_TYPE] * count else None
+    @type_callable(operation)
+    def typing(_: Any) -> Any:
+        return lambda x, y: _MASK_TYPE if x == y == _MASK_TYPE else None
 
-    def lower(_: Any, builder: Any, __: Any, args: Any) -> Any:
-        return generate(builder, *args)
-
-    lower_builtin(operation, *[_MASK_TYPE] * count)(lower)
+    lower_builtin(operation, _MASK_TYPE, _MASK_TYPE)(lambda _, builder, __, masks: generate(builder, *masks))
 
 
 define_arithmetic(_VECTOR_TYPE)
@@ -381,5 +381,12 @@ for _operator, _name in (
     (operator.or_, "or_"),
     (operator.ior, "or_"),
 ):
-    _mask_operation(_operator, 2, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
-_mask_operation(operator.invert, 1, lambda builder, x: builder.not_(x))
+    _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
+
+
+@type_callable(operator.invert)
+def _(_: Any) -> Any:
+    return lambda x: _MASK_TYPE if x == _MASK_TYPE else None
+
+
+lower_builtin(operator.invert, _MASK_TYPE)(lambda _, builder, __, masks: builder.not_(*masks))
