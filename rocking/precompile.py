@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._numba.compilation import cache_folder
+from rocking._numba.kernel_cache import NOT_KEPT, cache_folder
 from rocking.boundary.trends import load_entries
 from rocking.excitation.pulses import PULSE_NAMES, get_pulse
 from rocking.excitation.records.record import Record
@@ -57,7 +57,8 @@ def main() -> None:
     folder = cache_folder()
     if folder is not None and is_missing():
         load_kernels()
-        (Path(folder) / COMPLETE_MARKER).touch()
+        if not NOT_KEPT.is_set():
+            (Path(folder) / COMPLETE_MARKER).touch()
 
 
 if __name__ == "__main__":

@@ -16,13 +16,14 @@ import rocking_api.execution.kernels
 from rocking_api.execution.kernels import Kernels
 
 from rocking import precompile
-from rocking._numba.compilation import cache_folder
+from rocking._numba.kernel_cache import cache_folder
 from rocking.excitation.pulses import PULSE_NAMES
 from rocking.solver.kernels.batch import solve_batch
 from tests.api.conftest import assert_problem, client_of
 from tests.api.servers import serving
 
 QUERY = {"slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85, "method": "solver"}
+SOLVE_BATCH = f"{solve_batch.__module__}.{solve_batch.__name__}"
 SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 3}
 
 
@@ -88,7 +89,7 @@ def test_health_responds_while_the_kernels_are_compiled_and_loaded(installed, tm
     """
     precompile.main()
     compiled = Path(cache_folder())
-    missing = shutil.ignore_patterns(precompile.COMPLETE_MARKER, solve_batch.__module__)
+    missing = shutil.ignore_patterns(precompile.COMPLETE_MARKER, SOLVE_BATCH)
     copied = shutil.copytree(compiled, installed / "rocking/__pycache__" / compiled.name, ignore=missing)
     program = "import rocking, sys; print(rocking.__file__); from rocking.cli.app import app; app()"
     command, path = (sys.executable, "-c", program), {"PYTHONPATH": str(installed), "NUMBA_CACHE_DIR": ""}
@@ -103,7 +104,7 @@ def test_health_responds_while_the_kernels_are_compiled_and_loaded(installed, tm
             responses, waits = burst(server)
         assert {status for status, _ in responses.values()} == {200}
         assert max(waits) < 0.2
-        assert (copied / solve_batch.__module__).is_dir()
+        assert (copied / SOLVE_BATCH).is_dir()
     assert max(seconds for _, seconds in responses.values()) < 1.0
 
 

@@ -1,13 +1,11 @@
-"""Compiled kernels: one signature for all arguments, equal results in every process, cache on disk."""
+"""Compiled kernels: one signature for all arguments, equal results in every process."""
 
 import gc
 import math
 import os
 import re
-import shutil
 import subprocess
 import sys
-import warnings
 from pathlib import Path
 
 import numba
@@ -15,9 +13,10 @@ import numpy as np
 import pytest
 
 import rocking
-import rocking._numba.compilation
 from rocking import precompile
-from rocking._numba.compilation import _EntryCompiler, contiguous_array, entry, kernel, specialised_kernel
+from rocking._numba import kernel_cache
+from rocking._numba.compilation import contiguous_array, entry, kernel, specialised_kernel
+from rocking._numba.way import INTERNALS
 from rocking.boundary import trends
 from rocking.datasets.cube import write_dataset
 from rocking.errors import InvalidArgumentError
@@ -131,89 +130,6 @@ print(sum(sum(one.stats.cache_misses.values()) for one in entries), digest.hexdi
     assert found[0][1] == found[1][1]
 
 
-def digest_of(package):
-    return rocking._numba.compilation._digest(package)
-
-
-def test_a_copy_of_the_package_needs_no_compilation(tmp_path):
-    """Also one whose files are newer, such as an installation of the same version."""
-    precompile.main()
-    package = Path(rocking.__file__).parent
-    shutil.copytree(package, tmp_path / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
-    for file in (tmp_path / "rocking").rglob("*.py"):
-        file.touch()
-    code = f"""
-import sys
-sys.path.insert(0, {str(tmp_path)!r})
-import rocking
-from rocking.solver.kernels.batch import solve_batch
-assert rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.8, alpha=0.3).impacts > 0
-print(rocking.__file__, sum(solve_batch.stats.cache_hits.values()), sum(solve_batch.stats.cache_misses.values()))"""
-    kept = Path(rocking._numba.compilation.cache_folder()).parent
-    found = script(code, NUMBA_CACHE_DIR=str(kept)).split()
-    assert found == [str(tmp_path / "rocking/__init__.py"), "1", "0"]
-
-
-def test_the_cache_folder_depends_on_kernel_sources_and_their_imports(tmp_path):
-    (tmp_path / "inner").mkdir()
-    one, constants = tmp_path / "inner" / "one.py", tmp_path / "inner" / "constants.py"
-    one.write_text("from rocking.inner.constants import X\n\n@kernel\ndef f(x): ...\n")
-    constants.write_text("X = 1\n")
-    (tmp_path / "other.py").write_text("def g(x): ...\n")
-    first = digest_of(tmp_path)
-    (tmp_path / "other.py").write_text("def g(x): return 1\n")  # holds no kernel
-    assert digest_of(tmp_path) == first
-    one.write_text("from rocking.inner.constants import X\n\n@kernel\ndef f(x): return 1\n")
-    second = digest_of(tmp_path)
-    assert second != first
-    constants.write_text("X = 2\n")  # a constant of the machine code
-    third = digest_of(tmp_path)
-    assert third not in (first, second)
-    (tmp_path / "two.py").write_text("@entry\ndef h(x): ...\n")
-    assert digest_of(tmp_path) not in (first, second, third)
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """The cache folder of a process with its own package, user and environment."""
-    monkeypatch.setattr(rocking._numba.compilation, "_PACKAGE", tmp_path / "package")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    (tmp_path / "package").mkdir()
-    return rocking._numba.compilation.cache_folder.__wrapped__
-
-
-def closed(path):
-    """A path where no folder can be created, not even by the superuser."""
-    path.write_text("")
-
-
-def test_the_cache_is_beside_the_package_or_in_a_writable_folder(folder, tmp_path, monkeypatch):
-    assert Path(folder()).parent == tmp_path / "package" / "__pycache__"
-    shutil.rmtree(tmp_path / "package" / "__pycache__")
-    closed(tmp_path / "package" / "__pycache__")
-    assert Path(folder()).parent == tmp_path / "user" / "rocking"
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "given"))
-    assert Path(folder()).parent == tmp_path / "given"
-
-
-def test_kernels_without_a_cache_folder_give_one_warning(folder, tmp_path, monkeypatch):
-    closed(tmp_path / "package" / "__pycache__")
-    closed(tmp_path / "user")
-    with pytest.warns(RuntimeWarning, match="NUMBA_CACHE_DIR") as said:
-        assert folder() is None
-    assert len(said) == 1
-    monkeypatch.setattr(rocking._numba.compilation, "cache_folder", lambda: None)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-
-        @entry
-        def twice(x):
-            return 2.0 * x
-
-        assert twice(1.5) == 3.0
-
-
 def test_constants_need_no_code_of_their_own_unless_a_kernel_is_specialised():
     def power(x, n, inverse):
         return x**-n if inverse else x**n
@@ -230,11 +146,11 @@ def test_constants_need_no_code_of_their_own_unless_a_kernel_is_specialised():
 
 
 def test_garbage_collection_goes_on_after_compilation():
-    @numba.njit(pipeline_class=_EntryCompiler)
+    @numba.njit(pipeline_class=INTERNALS._EntryCompiler)
     def wrong(x):
         return x + "text"
 
-    @numba.njit(pipeline_class=_EntryCompiler)
+    @numba.njit(pipeline_class=INTERNALS._EntryCompiler)
     def right(x):
         return x + 1.0
 
@@ -251,7 +167,7 @@ def test_garbage_collection_goes_on_after_compilation():
 
 def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypatch):
     """That copy is compiled for the arguments of the entry: another caller gets wrong numbers, or the process ends."""
-    monkeypatch.setattr(rocking._numba.compilation, "cache_folder", lambda: None)
+    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: None)
 
     @kernel
     def weighted_sum(values, first, weight):
@@ -287,7 +203,7 @@ def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypat
 
 def test_pairs_of_reference_counts_are_removed_from_entries(monkeypatch):
     """They are atomic operations: the solver took 1.7 times the time with them."""
-    monkeypatch.setattr(rocking._numba.compilation, "cache_folder", lambda: None)
+    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: None)
 
     @kernel
     def total(values):
@@ -303,21 +219,6 @@ def test_pairs_of_reference_counts_are_removed_from_entries(monkeypatch):
     assert both(np.ones(3), np.ones(4)) == 7.0
     (code,) = both.inspect_llvm().values()
     assert re.findall(r"call .*NRT_incref", code) == []  # the wrapper for Python keeps decrements
-
-
-@pytest.mark.slow
-def test_a_process_without_a_cache_folder_gives_results_after_one_warning(tmp_path):
-    code = """
-import warnings
-with warnings.catch_warnings(record=True) as said:
-    warnings.simplefilter("always")
-    import numpy
-    from rocking.interpolation.stencils import lagrange_weight
-weight = lagrange_weight(numpy.array([0.0, 1.0]), 0, 2, 0, 0.25)
-print(len([one for one in said if "NUMBA_CACHE_DIR" in str(one.message)]), weight)
-"""
-    closed(tmp_path / "file")
-    assert script(code, NUMBA_CACHE_DIR=str(tmp_path / "file")).split() == ["1", "0.75"]
 
 
 def test_kernels_release_the_interpreter_and_do_not_reorder_sums():

@@ -1,0 +1,368 @@
+"""Machine code on disk: found again by other processes, made again where it is damaged, done without if need be."""
+
+import os
+import shutil
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+
+import rocking
+from rocking import precompile
+from rocking._numba import kernel_cache
+from rocking._numba.compilation import entry
+from rocking._numba.way import INTERNALS
+from rocking.source_tree import SourceTree
+
+ROOT = Path(__file__).parents[2]
+
+WAYS = ["", "1"]
+"""Values of ROCKING_PLAIN_NUMBA: the faster way, and the public interface of numba."""
+
+KERNELS = """
+from rocking._numba.compilation import kernel
+
+@kernel
+def double(x):
+    return 2.0 * x
+
+def total(values):
+    found = 0.0
+    for x in values:
+        found += double(x)
+    return found
+
+def one(x):
+    return x
+"""
+
+START = """
+import warnings
+said = []
+warnings.simplefilter("always")
+warnings.showwarning = lambda message, *_: said.append(str(message))
+import numpy as np
+from rocking._numba import kernel_cache
+from rocking._numba.compilation import entry
+from small_kernels import one, total
+
+def hits_and_misses(compiled):
+    return [sum(compiled.stats.cache_hits.values()), sum(compiled.stats.cache_misses.values())]
+"""
+
+CALL = """
+compiled = entry(total)
+assert compiled(np.ones(3)) == 6.0
+print(*hits_and_misses(compiled), len(said), *said)
+"""
+
+
+@pytest.fixture(params=WAYS, ids=["faster", "plain"])
+def run(request, tmp_path):
+    """Runs small kernels in a process of its own, with the cache of this test; returns what they print."""
+    kept = tmp_path / "kept"
+    (tmp_path / "small_kernels.py").write_text(KERNELS)
+    variables = {"PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}", "ROCKING_PLAIN_NUMBA": request.param}
+
+    def process(code=CALL, *, command=(sys.executable,), cache=kept):
+        environment = os.environ | variables | {"NUMBA_CACHE_DIR": str(cache)}
+        started = [*command, "-c", START + code]
+        done = subprocess.run(started, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    process.kept = kept
+    return process
+
+
+def files_of(cache):
+    """Index and machine code of the kernels."""
+    (index,), (code,) = cache.rglob("*.nbi"), cache.rglob("*.nbc")
+    return {"index": index, "machine code": code}
+
+
+def truncated(content, share):
+    return content[: int(share * len(content))]
+
+
+def flipped(content, share):
+    place = int(share * (len(content) - 1))
+    return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
+
+
+def test_other_processes_find_the_machine_code(run):
+    assert run().split() == ["0", "1", "0"]
+    assert run().split() == ["1", "0", "0"]
+
+
+def test_processes_that_start_together_compile_and_load_without_a_warning(run):
+    code = f"import os, time\nfor _ in range(2): os.fork()\n{CALL}"
+    assert [line.split()[2] for line in run(code).splitlines()] == ["0"] * 4
+    assert run().split() == ["1", "0", "0"]
+
+
+@pytest.mark.parametrize(("file", "damage"), [("index", truncated), ("machine code", flipped)])
+def test_a_damaged_file_is_made_again_with_one_warning(run, file, damage):
+    run()
+    damaged = files_of(run.kept)[file]
+    damaged.write_bytes(damage(damaged.read_bytes(), 0.5))
+    hits, misses, warned, text = run().split(maxsplit=3)
+    assert (hits, misses, warned) == ("0", "1", "1")
+    assert str(run.kept) in text
+    assert "damaged" in text
+    assert run().split() == ["1", "0", "0"]
+    assert [path.name for path in run.kept.rglob("*total.*")] == []  # what was damaged is gone
+
+
+@pytest.mark.parametrize("damage", [truncated, flipped])
+def test_damage_is_found_at_any_place(run, damage):
+    code = f"""
+from pathlib import Path
+from tests.base.test_kernel_cache import {damage.__name__}, files_of
+kernel_cache.LATENCY = 0.0
+entry(total)(np.ones(3))
+for share in (0.0, 0.02, 0.3, 0.7, 0.98, 1.0 - 1e-9):
+    for name in ("index", "machine code"):
+        damaged = files_of(Path({str(run.kept)!r}))[name]
+        damaged.write_bytes({damage.__name__}(damaged.read_bytes(), share))
+        kernel_cache._WARNED.clear()
+        said.clear()
+        compiled = entry(total)
+        assert compiled(np.ones(3)) == 6.0
+        assert hits_and_misses(compiled) == [0, 1], (name, share)
+        assert ["damaged" in text for text in said] == [True], (name, share)
+"""
+    run(code)
+    assert run().split() == ["1", "0", "0"]
+
+
+def test_machine_code_without_its_digest_is_not_loaded(run):
+    run()
+    (digest,) = run.kept.rglob(kernel_cache.DIGEST)
+    digest.unlink()
+    assert run().split()[:3] == ["0", "1", "1"]
+
+
+def test_several_damaged_entries_give_one_warning(run):
+    both = CALL + "print(entry(one)(1.0), len(said))"
+    run(both)
+    for code in run.kept.rglob("*.nbc"):
+        code.write_bytes(b"")
+    assert run(both).split()[-2:] == ["1.0", "1"]
+
+
+def test_a_damaged_folder_that_cannot_be_removed_is_done_without(run):
+    run()
+    files_of(run.kept)["machine code"].write_bytes(b"")
+    refuse = """
+from pathlib import Path
+def rename(*_):
+    raise PermissionError(13, "Permission denied")
+Path.rename = rename
+"""
+    hits, misses, warned, text = run(refuse + CALL + "assert compiled(np.ones(2)) == 4.0\n").split(maxsplit=3)
+    assert (hits, misses, warned) == ("0", "0", "1")
+    assert "NUMBA_CACHE_DIR" in text
+
+
+def test_a_folder_that_cannot_be_made_is_done_without(run):
+    run()
+    (digest,) = run.kept.rglob(kernel_cache.DIGEST)
+    shutil.rmtree(digest.parent)
+    digest.parent.write_text("")  # not even the superuser can make the folder
+    assert run().split()[:3] == ["0", "1", "1"]
+
+
+def test_a_folder_that_becomes_unwritable_is_done_without(run):
+    code = """
+from pathlib import Path
+import shutil
+compiled = entry(total)
+folder = Path(kernel_cache.cache_folder())
+shutil.rmtree(folder)
+folder.write_text("")
+assert [compiled(np.ones(n)) for n in (3, 2)] == [6.0, 4.0]
+print(*hits_and_misses(compiled), len(said), *said)
+"""
+    hits, misses, warned, text = run(code).split(maxsplit=3)
+    assert (hits, misses, warned) == ("0", "0", "1")
+    assert "NUMBA_CACHE_DIR" in text
+
+
+LIMITED = """
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no limits of processes")
+def test_files_that_become_too_large_are_done_without(run):
+    assert run(LIMITED + CALL).split()[:3] == ["0", "1", "1"]
+    assert [*run.kept.rglob("*.nbc")] == []
+    assert run().split() == ["0", "1", "0"]
+
+
+IN_NAMESPACE = ("unshare", "--mount", "--map-root-user", "--")
+
+
+def can_mount():
+    """Whether a file system can be mounted that only a process of this test sees."""
+    if shutil.which("unshare") is None:
+        return False
+    tried = [*IN_NAMESPACE, "mount", "-t", "tmpfs", "tmpfs", "/mnt"]
+    return subprocess.run(tried, capture_output=True, check=False).returncode == 0
+
+
+@pytest.mark.skipif(not can_mount(), reason="the system lets processes mount nothing")
+def test_a_full_disk_is_done_without(run, tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = f'mount -t tmpfs -o size=8k tmpfs {disk} && exec "$0" "$@"'
+    output = run(command=(*IN_NAMESPACE, "sh", "-c", mounted, sys.executable), cache=disk)
+    hits, misses, warned, text = output.split(maxsplit=3)
+    assert (hits, misses, warned) == ("0", "1", "1")
+    assert "No space left on device" in text
+    assert "NUMBA_CACHE_DIR" in text
+
+
+def test_precompilation_on_a_full_disk_is_not_complete(monkeypatch, tmp_path):
+    monkeypatch.setattr(precompile, "cache_folder", lambda: str(tmp_path))
+    monkeypatch.setattr(kernel_cache.NOT_KEPT, "is_set", lambda: True)
+    monkeypatch.setattr(precompile, "load_kernels", lambda: None)
+    precompile.main()
+    assert precompile.is_missing()
+
+
+@pytest.mark.skipif(INTERNALS is None, reason="numba's own cache belongs to a place")
+def test_a_copy_of_the_package_needs_no_compilation(tmp_path):
+    """Also one whose files are newer, such as an installation of the same version."""
+    precompile.main()
+    package = Path(rocking.__file__).parent
+    shutil.copytree(package, tmp_path / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
+    for file in (tmp_path / "rocking").rglob("*.py"):
+        file.touch()
+    code = f"""
+import sys
+sys.path.insert(0, {str(tmp_path)!r})
+import rocking
+from rocking.solver.kernels.batch import solve_batch
+assert rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.8, alpha=0.3).impacts > 0
+print(rocking.__file__, sum(solve_batch.stats.cache_hits.values()), sum(solve_batch.stats.cache_misses.values()))"""
+    kept = os.environ | {"NUMBA_CACHE_DIR": str(Path(kernel_cache.cache_folder()).parent)}
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=kept)
+    assert done.stdout.split() == [str(tmp_path / "rocking/__init__.py"), "1", "0"]
+
+
+@pytest.fixture
+def package(tmp_path):
+    """An empty package."""
+    (tmp_path / "rocking" / "inner").mkdir(parents=True)
+    return tmp_path / "rocking"
+
+
+def digest_of(package):
+    return kernel_cache.kernel_digest(SourceTree(package.parent))
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "from rocking.inner.constants import X",
+        "from rocking.inner.constants import (  # the larger one\n    Y,\n    X,\n)",
+        "from rocking.inner.constants import \\\n    X",
+        "from rocking.inner import constants",
+        "import rocking.inner.constants as known",
+        "if True:\n    from rocking.inner.constants import X",
+        "from .inner.constants import X",
+    ],
+)
+def test_the_digest_of_the_folder_depends_on_kernels_and_their_imports(package, statement):
+    one, constants = package / "one.py", package / "inner" / "constants.py"
+    imports = f"from rocking._numba.compilation import entry, kernel\n{statement}\n\n"
+    one.write_text(f"{imports}@kernel\ndef f(x): ...\n")
+    constants.write_text("X = 1\n")
+    (package / "other.py").write_text('def g(x): ...\n"""\nfrom rocking.one import f\n"""\n')
+    first = digest_of(package)
+    (package / "other.py").write_text("def g(x): return 1\n")  # holds no kernel
+    assert digest_of(package) == first
+    one.write_text(f"{imports}@kernel\ndef f(x): return 1\n")
+    second = digest_of(package)
+    assert second != first
+    constants.write_text("X = 2\n")  # a constant of the machine code
+    third = digest_of(package)
+    assert third not in (first, second)
+    (package / "two.py").write_text("from numba.extending import intrinsic\n")
+    assert digest_of(package) not in (first, second, third)
+
+
+def test_text_in_a_string_is_no_import(package):
+    kernels = (
+        'from rocking._numba.compilation import kernel\n"""\nfrom rocking.other import X\n"""\n@kernel\ndef f(x): ...'
+    )
+    (package / "one.py").write_text(kernels)
+    (package / "other.py").write_text("X = 1\n")
+    first = digest_of(package)
+    (package / "other.py").write_text("X = 2\n")
+    assert digest_of(package) == first
+
+
+@pytest.fixture
+def folder(package, monkeypatch):
+    """The cache folder of a process with its own package, user and environment."""
+    monkeypatch.setattr(kernel_cache, "PACKAGE", package)
+    monkeypatch.setattr(kernel_cache._WARNED, "is_set", lambda: False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(package.parent / "user"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    yield kernel_cache.cache_folder.__wrapped__
+    kernel_cache.NOT_KEPT.clear()
+
+
+def closed(path):
+    """A path where no folder can be created, not even by the superuser."""
+    path.write_text("")
+
+
+def test_the_cache_is_beside_the_package_or_in_a_writable_folder(folder, package, tmp_path, monkeypatch):
+    assert Path(folder()).parent == package / "__pycache__"
+    shutil.rmtree(package / "__pycache__")
+    closed(package / "__pycache__")
+    assert Path(folder()).parent == tmp_path / "user" / "rocking"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "given"))
+    assert Path(folder()).parent == tmp_path / "given"
+
+
+def test_imports_are_followed_once_for_each_state_of_the_package(folder, package, monkeypatch):
+    (package / "one.py").write_text("from rocking._numba.compilation import kernel\n@kernel\ndef f(x): ...\n")
+    first = folder()
+    (package / "other.py").write_text("")
+    assert folder() == first
+    monkeypatch.setattr(kernel_cache, "kernel_digest", None)  # not called
+    assert folder() == first
+    (package / "other.py").unlink()
+    assert folder() == first
+
+
+def test_kernels_without_a_cache_folder_give_one_warning(folder, package, tmp_path, monkeypatch):
+    closed(package / "__pycache__")
+    closed(tmp_path / "user")
+    with pytest.warns(RuntimeWarning, match="NUMBA_CACHE_DIR") as said:
+        assert folder() is None
+    assert len(said) == 1
+    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+
+        @entry
+        def twice(x):
+            return 2.0 * x
+
+        assert twice(1.5) == 3.0
+
+
+def test_a_process_without_a_cache_folder_gives_results_after_one_warning(run, tmp_path):
+    closed(tmp_path / "kept")
+    hits, misses, warned, text = run().split(maxsplit=3)
+    assert (hits, misses, warned) == ("0", "1", "1")
+    assert "NUMBA_CACHE_DIR" in text

@@ -1,0 +1,27 @@
+"""The solver compiled by the public interface of numba agrees with the references as well."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+ESSENTIAL = (
+    "tests/base/test_simd.py",
+    "tests/solver/test_against_tables.py",
+    "tests/solver/test_rigid_against_tables.py",
+    "tests/solver/test_golden_thresholds.py",
+    "tests/solver/test_free_rocking.py",
+    "tests/solver/records/test_against_table.py",
+)
+
+
+@pytest.mark.slow
+def test_the_solver_agrees_with_its_references_without_private_names_of_numba(tmp_path):
+    variables = {"ROCKING_PLAIN_NUMBA": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *ESSENTIAL]
+    done = subprocess.run(command, cwd=ROOT, env=os.environ | variables, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
