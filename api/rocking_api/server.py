@@ -7,10 +7,12 @@ import gc
 import socket
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
 import uvicorn
+from uvicorn.config import STARTUP_FAILURE
 
 from rocking.precompile import load_kernels
 from rocking_api.app import create_app
@@ -18,6 +20,7 @@ from rocking_api.execution.kernels import compile_command
 from rocking_api.http.connection import limited_protocol
 from rocking_api.http.metrics import forget_process
 from rocking_api.http.request_log import CONFIG
+from rocking_api.service_manager import tell_that_it_answers
 from rocking_api.settings import Settings
 from rocking_api.workers import Workers
 
@@ -70,18 +73,27 @@ def serve(settings: Settings, host: str, port: int, workers: int = 1) -> int:
         "server_header": False,
         "timeout_graceful_shutdown": settings.stop_seconds,
     }
+
+    def work(listener: socket.socket | None, runs: Callable[[], None]) -> None:
+        async def notify() -> None:
+            runs()
+
+        app = create_app(settings, when_ready=gc.freeze)
+        # with a negative time uvicorn notifies once a second whatever is done to the clock of the machine
+        config = uvicorn.Config(app, callback_notify=notify, timeout_notify=-sys.maxsize, **options)
+        server = uvicorn.Server(config)
+        server.run(None if listener is None else [listener])
+        if not server.started:
+            sys.exit(STARTUP_FAILURE)
+
     if workers == 1:
         _tune_garbage_collector()
-        uvicorn.run(create_app(settings, when_ready=gc.freeze), **options)
+        with suppress(KeyboardInterrupt):
+            work(None, tell_that_it_answers)
         return 0
     listeners = _listen(uvicorn.Config("", **options), workers)
     _load_kernels()
     _tune_garbage_collector()
-
-    def work(listener: socket.socket) -> None:
-        app = create_app(settings, when_ready=gc.freeze)
-        uvicorn.Server(uvicorn.Config(app, **options)).run([listener])
-
     return Workers(work, forget_process, settings.stop_seconds).run(listeners)
 
 

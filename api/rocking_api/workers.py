@@ -4,6 +4,9 @@ uvicorn's own supervisor starts each worker as a new interpreter, which imports 
 private memory and 3 s of processor time for each. A worker that is forked after the solver was loaded shares these
 pages and takes 22 MB. The main process has no other threads of Python and never answers a request. It owns the
 sockets that listen, one for each worker: connections that wait while a worker is replaced are accepted by the next one.
+
+Under a service manager with a watchdog, the main process kills a worker whose event loop has stopped, and replaces it;
+the service manager restarts the service if the main process stops, or if workers end as soon as they are started.
 """
 
 from __future__ import annotations
@@ -16,10 +19,15 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
+from multiprocessing.sharedctypes import RawValue
+from typing import Any
 
 from uvicorn.config import STARTUP_FAILURE
+
+from rocking_api.service_manager import tell_that_it_answers, watchdog_seconds
 
 LOG = logging.getLogger("rocking.service")
 
@@ -32,6 +40,21 @@ QUICK_SECONDS = 1.0
 KILL_SECONDS = 5
 """Time after `stop_seconds` until a worker that has not ended is killed [s]."""
 
+CHECK_SECONDS = 1.0
+"""Time between two looks at the workers and messages to the service manager [s]."""
+
+
+@dataclass(frozen=True)
+class _Worker:
+    """The socket that a worker serves, when it was started, and when its event loop last ran: 0 before it serves.
+
+    The worker writes that time, of the monotonic clock, to memory that it shares with the main process [s].
+    """
+
+    listener: socket.socket
+    started: float
+    last_run: Any
+
 
 class Workers:
     """The workers of one main process.
@@ -39,7 +62,8 @@ class Workers:
     Parameters
     ----------
     work : callable
-        Serves the connections of a socket until SIGTERM or SIGINT, in a worker.
+        Serves the connections of a socket until SIGTERM or SIGINT, in a worker, and calls its second argument once a
+        second while it does.
     when_ended : callable
         Called in the main process with the process id of a worker that has ended.
     stop_seconds : float
@@ -47,13 +71,16 @@ class Workers:
     """
 
     def __init__(
-        self, work: Callable[[socket.socket], None], when_ended: Callable[[int], None], stop_seconds: float
+        self,
+        work: Callable[[socket.socket, Callable[[], None]], None],
+        when_ended: Callable[[int], None],
+        stop_seconds: float,
     ) -> None:
         self._work = work
         self._when_ended = when_ended
         self._stop_seconds = stop_seconds + KILL_SECONDS
         self._listeners: Sequence[socket.socket] = ()
-        self._started: dict[BaseProcess, tuple[socket.socket, float]] = {}
+        self._started: dict[BaseProcess, _Worker] = {}
 
     def run(self, listeners: Sequence[socket.socket]) -> int:
         """Run a worker for each socket until SIGTERM or SIGINT, and return it; then new connections are refused.
@@ -75,9 +102,11 @@ class Workers:
             stopped_by = 0
             try:
                 while not stopped_by:
-                    wait([reader, *(process.sentinel for process in self._started)])
+                    events = wait([reader, *(process.sentinel for process in self._started)], CHECK_SECONDS)
                     stopped_by = _received(reader)
-                    if not stopped_by:
+                    if not events:
+                        self._check()
+                    elif not stopped_by:
                         self._replace()
             finally:
                 for listener in listeners:
@@ -93,27 +122,41 @@ class Workers:
 
     def _start(self, listener: socket.socket) -> None:
         others = {other for other in self._listeners if other is not listener}
-        process = multiprocessing.get_context("fork").Process(target=_run_worker, args=(self._work, listener, others))
+        last_run = RawValue("d", 0.0)
+        process = multiprocessing.get_context("fork").Process(
+            target=_run_worker, args=(self._work, listener, others, last_run)
+        )
         signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)  # until the worker has handlers of its own
         try:
             process.start()
         finally:
             signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
-        self._started[process] = listener, time.monotonic()
+        self._started[process] = _Worker(listener, time.monotonic(), last_run)
 
     def _replace(self) -> None:
         """Replace the workers that have ended, unless one could not start."""
-        for process, (listener, started) in self._ended():
+        for process, worker in self._ended():
             if process.exitcode == STARTUP_FAILURE:
                 raise SystemExit(STARTUP_FAILURE)
             fields = {"worker": process.pid, "status": process.exitcode}
             LOG.error("a worker has ended, another one replaces it", extra={"fields": fields})
-            time.sleep(max(0.0, started + QUICK_SECONDS - time.monotonic()))
-            self._start(listener)
+            time.sleep(max(0.0, worker.started + QUICK_SECONDS - time.monotonic()))
+            self._start(worker.listener)
 
-    def _ended(self) -> list[tuple[BaseProcess, tuple[socket.socket, float]]]:
-        """Workers that have ended, their sockets, and when they were started."""
-        ended = [(process, facts) for process, facts in self._started.items() if not process.is_alive()]
+    def _check(self) -> None:
+        """Kill the workers that have not run for the time of the watchdog; tell the service manager if all serve."""
+        earliest = time.monotonic() - watchdog_seconds()
+        for process, worker in self._started.items():
+            if max(worker.started, worker.last_run.value) < earliest:
+                LOG.error("a worker does not answer, it is killed", extra={"fields": {"worker": process.pid}})
+                process.kill()
+                process.join()
+        if all(worker.last_run.value for worker in self._started.values()):
+            tell_that_it_answers()
+
+    def _ended(self) -> list[tuple[BaseProcess, _Worker]]:
+        """Workers that have ended."""
+        ended = [(process, worker) for process, worker in self._started.items() if not process.is_alive()]
         for process, _ in ended:
             del self._started[process]
             if process.pid is not None:
@@ -143,7 +186,10 @@ def _received(reader: socket.socket) -> int:
 
 
 def _run_worker(
-    work: Callable[[socket.socket], None], listener: socket.socket, others: Collection[socket.socket]
+    work: Callable[[socket.socket, Callable[[], None]], None],
+    listener: socket.socket,
+    others: Collection[socket.socket],
+    last_run: Any,
 ) -> None:
     for other in others:  # they listen only as long as their own workers
         other.close()
@@ -152,7 +198,11 @@ def _run_worker(
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
     threading.Thread(target=_end_with_main_process, daemon=True).start()
-    work(listener)
+
+    def runs() -> None:
+        last_run.value = time.monotonic()
+
+    work(listener, runs)
 
 
 def _end_with_main_process() -> None:

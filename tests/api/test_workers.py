@@ -247,7 +247,7 @@ PROGRAM = """
 import os, signal, socket, sys, time
 from rocking_api.workers import Workers
 
-def work(_):
+def work(*_):
     os.write(1, f"{os.getpid()}\\n".encode())  # at once: both workers write to this pipe
     if sys.argv[1] == "fails":
         sys.exit(3)
