@@ -75,10 +75,12 @@ mutants: .venv/project ## mutation test: change single operators and constants, 
 # Extras `seismic` and `slurm` are optional: they are not locked.
 LOCKED := service plot workflow docs dev
 
-lock: ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions)
+RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
+
+lock: ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, deploy/service.lock
 	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
-	$(UV) pip compile pyproject.toml $(LOCKED:%=--extra %) --python $(PYTHON) \
-	    --generate-hashes --no-header --no-annotate --quiet $(UPGRADE) --output-file environment.lock
+	$(RESOLVE) $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
+	$(RESOLVE) --extra service --constraint environment.lock --output-file deploy/service.lock
 
 environment: .venv/project ## make the environment .venv and compile the kernels
 	@:

@@ -1,6 +1,7 @@
 """The files of deploy/ agree with the tree, the settings and the command of the service."""
 
 import configparser
+import itertools
 import json
 import os
 import re
@@ -47,18 +48,31 @@ def instructions(name):
 
 def test_container_copies_what_exists():
     sources = [part for line in instructions("COPY") if "--from" not in line for part in line.split()[:-1]]
-    assert {"environment.lock", "rocking", "api"} <= set(sources)
+    assert {"environment.lock", "deploy/service.lock", "rocking", "api"} <= set(sources)
     assert [name for name in sources if not (ROOT / name).exists()] == []
 
 
-def test_container_takes_the_versions_of_the_lock(tmp_path):
-    (command,) = [line for line in instructions("RUN") if line.startswith("sed")]
+def test_container_installs_what_has_the_hashes_of_the_lock(tmp_path):
     shutil.copy(ROOT / "environment.lock", tmp_path)
-    subprocess.run(["sh", "-c", command], cwd=tmp_path, check=True)
-    constraints = (tmp_path / "constraints.txt").read_text().split()
-    lock = (ROOT / "environment.lock").read_text()
-    assert constraints == re.findall(r"^(\S+==\S+) \\$", lock, re.MULTILINE)
-    assert any(line.startswith("uvicorn==") for line in constraints)
+    shutil.copy(DEPLOY / "service.lock", tmp_path)
+    (select,) = [line for line in instructions("RUN") if line.startswith("sed")]
+    subprocess.run(["sh", "-c", select], cwd=tmp_path, check=True)
+    first, second = [shlex.split(line) for line in instructions("RUN") if "pip install" in line]
+    assert {"--require-hashes", "--no-deps", "--only-binary"} <= set(first)
+    files = [value for key, value in itertools.pairwise(first) if key == "--requirement"]
+    pinned = [
+        name for file in files for name in re.findall(r"^([\w.-]+)==", (tmp_path / file).read_text(), re.MULTILINE)
+    ]
+    assert {"setuptools", "uvicorn", "numba"} <= set(pinned)
+    assert second[-3:] == ["--no-deps", "--no-build-isolation", "."]  # of the project itself there is no hash
+
+
+def test_base_of_the_container_may_be_named_by_its_digest():
+    assert [line.split()[0] for line in instructions("FROM")] == ["${BASE}", "${BASE}"]
+    assert [line.partition("=")[0] for line in instructions("ARG")] == ["BASE"]
+    for text in (CONTAINER, (ROOT / "docs" / "deploy.md").read_text()):
+        assert "--build-arg BASE=docker.io/library/python@sha256:" in text
+        assert "podman image inspect --format '{{index .RepoDigests 0}}'" in text
 
 
 def test_container_starts_the_service():

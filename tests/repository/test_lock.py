@@ -14,6 +14,7 @@ from packaging.version import Version
 
 ROOT = Path(__file__).parents[2]
 LOCK = (ROOT / "environment.lock").read_text()
+SERVICE = (ROOT / "deploy" / "service.lock").read_text()
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PINS = {canonicalize_name(name): version for name, version in re.findall(r"^([\w.-]+)==(\S+)", LOCK, re.MULTILINE)}
 EXTRAS = PROJECT["project"]["optional-dependencies"]
@@ -35,6 +36,32 @@ DIRECT = [
 
 def test_every_line_is_a_pin_or_a_hash() -> None:
     assert re.fullmatch(r"([\w.-]+==[\w.+!-]+( \\\n    --hash=sha256:[0-9a-f]{64})+\n)+", LOCK)
+
+
+def blocks(lock: str) -> dict[str, str]:
+    """Return the pins of a lock with their hashes, by name."""
+    return {canonicalize_name(block.partition("==")[0]): block for block in re.split(r"\n(?=\S)", lock.rstrip())}
+
+
+def required_by(lines: list[str]) -> set[str]:
+    """Return the packages that requirements lead to, with Python 3.11."""
+    waiting, seen = [Requirement(line) for line in lines], set()
+    while waiting:
+        requirement = waiting.pop()
+        if str(requirement) not in seen:
+            seen.add(str(requirement))
+            for inner in map(Requirement, metadata.requires(requirement.name) or ()):
+                python = {"python_version": "3.11", "python_full_version": "3.11.0"}
+                extras = {"", *requirement.extras}
+                if inner.marker is None or any(inner.marker.evaluate(python | {"extra": extra}) for extra in extras):
+                    waiting.append(inner)
+    return {canonicalize_name(Requirement(line).name) for line in seen}
+
+
+def test_lock_of_the_service_is_the_part_of_the_lock_that_it_requires() -> None:
+    part = blocks(SERVICE)
+    assert part.keys() == required_by([*PROJECT["project"]["dependencies"], *EXTRAS["service"]])
+    assert part == {name: block for name, block in blocks(LOCK).items() if name in part}
 
 
 def test_no_host_path_or_index() -> None:
