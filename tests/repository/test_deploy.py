@@ -1,25 +1,31 @@
 """The files of deploy/ agree with the tree, the settings and the command of the service."""
 
 import configparser
+import ctypes.util
 import itertools
 import json
 import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
+import sys
 from pathlib import Path
 
+import httpx2
 import pytest
 import typer
 from rocking_api.settings import Settings
 
 from rocking.cli.app import app
+from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
 CONTAINER = (DEPLOY / "Containerfile").read_text()
 PROXY = (DEPLOY / "nginx.conf").read_text()
+SYSTEMD = pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="no systemd-analyze")
 VARIABLES = {f"ROCKING_{name.upper()}" for name in Settings.model_fields}
 
 
@@ -98,13 +104,100 @@ def test_unit_starts_the_service_and_stops_it_in_time(unit):
     options = serve_arguments(shlex.split(unit["ExecStart"][0]))
     assert options["host"] == "127.0.0.1"
     variables = dict(line.split("=") for line in unit["Environment"])
-    assert set(variables) - {"NUMBA_CACHE_DIR"} <= VARIABLES
+    assert set(variables) - {"NUMBA_CACHE_DIR", "PYTHONFAULTHANDLER"} <= VARIABLES
     assert int(unit["TimeoutStopSec"][0]) > int(variables["ROCKING_STOP_SECONDS"])
+    assert unit["SocketBindAllow"] == [f"tcp:{options['port']}"]
     assert variables["NUMBA_CACHE_DIR"] == f"%C/{unit['CacheDirectory'][0]}"
     configparser.ConfigParser(strict=False, interpolation=None).read(DEPLOY / "rocking.service")
 
 
-@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="no systemd-analyze")
+def test_unit_has_a_watchdog_that_restarts_the_service(unit):
+    (environment,) = [line for line in unit["Environment"] if line.startswith("ROCKING_STOP_SECONDS")]
+    assert unit["Type"] == ["notify"]
+    assert "NotifyAccess" not in unit  # by default the main process only, which sends the messages
+    assert int(unit["WatchdogSec"][0]) > int(environment.partition("=")[2])  # it is silent while it stops
+    assert unit["Restart"] == ["on-failure"]  # which a watchdog that expires is
+
+
+RESTRICTIONS = {
+    "yes": (
+        *("DynamicUser", "PrivateUsers", "ProtectHome", "PrivateTmp", "PrivateMounts", "PrivateDevices", "PrivateIPC"),
+        *("RemoveIPC", "NoNewPrivileges", "RestrictSUIDSGID", "RestrictNamespaces", "RestrictRealtime"),
+        *("LockPersonality", "ProtectClock", "ProtectHostname", "ProtectControlGroups"),
+        *("ProtectKernelLogs", "ProtectKernelModules", "ProtectKernelTunables"),
+    ),
+    "": ("CapabilityBoundingSet", "AmbientCapabilities"),
+    "any": ("IPAddressDeny", "SocketBindDeny"),
+    "strict": ("ProtectSystem",),
+    "invisible": ("ProtectProc",),
+    "0077": ("UMask",),
+    "localhost": ("IPAddressAllow",),
+    "native": ("SystemCallArchitectures",),
+}
+
+
+@pytest.mark.parametrize(("key", "value"), [(key, value) for value, keys in RESTRICTIONS.items() for key in keys])
+def test_unit_restricts_the_service(unit, key, value):
+    assert unit[key] == [value]
+
+
+@SYSTEMD
+def test_exposure_that_systemd_finds_is_low():
+    command = ["systemd-analyze", "security", "--offline=true", "--no-pager", str(DEPLOY / "rocking.service")]
+    printed = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    assert float(re.search(r"exposure level for rocking.service: ([\d.]+)", printed)[1]) <= 1.0
+
+
+def system_calls(name):
+    """Names of the system calls of a group, and of the groups in it; of a call its own."""
+    if not name.startswith("@"):
+        return {name}
+    command = ["systemd-analyze", "syscall-filter", "--no-pager", name]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[1:]
+    names = [line.strip() for line in lines if line.startswith("    ") and not line.strip().startswith("#")]
+    return {call for inner in names for call in system_calls(inner)}
+
+
+FILTERED = """
+import ctypes, os, sys
+allow, refuse = 0x7FFF0000, 0x00050000 + 1  # SCMP_ACT_ALLOW, SCMP_ACT_ERRNO(EPERM) of seccomp.h
+library = ctypes.CDLL("libseccomp.so.2")
+library.seccomp_init.restype = ctypes.c_void_p
+calls = ctypes.c_void_p(library.seccomp_init(refuse))
+names, *command = sys.argv[1:]
+for number in map(library.seccomp_syscall_resolve_name, names.encode().split()):
+    if number >= 0:  # known to the processor
+        assert library.seccomp_rule_add(calls, allow, number, 0) == 0
+assert library.seccomp_load(calls) == 0
+os.execv(command[0], command)
+"""
+"""Runs a command that may make some system calls only: their names, the command and its arguments."""
+
+
+@SYSTEMD
+@pytest.mark.skipif(ctypes.util.find_library("seccomp") is None, reason="no libseccomp")
+def test_service_works_with_the_system_calls_of_the_unit(unit, tmp_path):
+    allowed = set()
+    for line in unit["SystemCallFilter"]:
+        calls = {call for name in line.removeprefix("~").split() for call in system_calls(name)}
+        allowed = allowed - calls if line.startswith("~") else allowed | calls
+    assert "execve" in allowed
+    assert not {"chroot", "mount", "ptrace", "setuid", "sched_setaffinity"} & allowed
+    assert unit["SystemCallErrorNumber"] == ["EPERM"]
+    filtered = (sys.executable, "-c", FILTERED, " ".join(sorted(allowed)), sys.executable)
+    chroot = "import os\ntry: os.chroot('/')\nexcept PermissionError: print('refused')"
+    done = subprocess.run([*filtered, "-c", chroot], stdout=subprocess.PIPE, text=True, check=True)
+    assert done.stdout == "refused\n"
+    question = "slenderness=0.4&frequency_ratio=5&restitution=0.85"
+    with serving(tmp_path, tmp_path / "log", command=(*filtered, "-m", "rocking.cli"), workers=2) as server:
+        response = httpx2.get(f"{server.address}/v1/response?pulse=sine&{question}", timeout=120)
+        assert response.json()["outcome"] == "SAFE"
+        assert "process_open_fds" in httpx2.get(server.address + "/metrics", timeout=120).text
+        assert server.stop() == -signal.SIGTERM
+    assert '"level":"error"' not in server.log.read_text()
+
+
+@SYSTEMD
 def test_unit_is_understood_by_systemd():
     done = subprocess.run(
         ["systemd-analyze", "verify", "--man=no", str(DEPLOY / "rocking.service")],
