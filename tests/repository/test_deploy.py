@@ -2,6 +2,7 @@
 
 import configparser
 import ctypes.util
+import http.client
 import itertools
 import json
 import os
@@ -9,8 +10,12 @@ import re
 import shlex
 import shutil
 import signal
+import socket
+import ssl
 import subprocess
 import sys
+import time
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 import httpx2
@@ -222,3 +227,61 @@ def test_proxy_has_the_limits_of_the_service(unit):
     port = serve_arguments(shlex.split(unit["ExecStart"][0]))["port"]
     assert set(directive("proxy_pass")) == {f"http://127.0.0.1:{port}"}
     assert PROXY.count("{") == PROXY.count("}")
+
+
+@contextmanager
+def proxy(service_port, folder):
+    """The configuration of the proxy in front of a service: its port on the loopback, and what it writes."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    own = PROXY.replace("/etc/ssl/rocking", str(folder)).replace("listen 443", f"listen 127.0.0.1:{port}")
+    own = own.replace("http://127.0.0.1:8000", f"http://127.0.0.1:{service_port}")
+    temporary = " ".join(
+        f"{kind}_temp_path {folder / kind};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+    )
+    (folder / "nginx.conf").write_text(
+        f"daemon off; user root; pid {folder / 'pid'}; error_log stderr; events {{}}\n"
+        f"http {{ access_log off; {temporary}\n{own} }}"
+    )
+    files = ["-keyout", str(folder / "key.pem"), "-out", str(folder / "fullchain.pem")]
+    key = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=rocking.example.org", *files]
+    subprocess.run(key, check=True, capture_output=True)
+    log = folder / "nginx.log"
+    command = ["nginx", "-p", str(folder), "-c", str(folder / "nginx.conf")]
+    with log.open("w") as output, subprocess.Popen(command, stderr=output) as process:
+        try:
+            for _ in range(100):
+                with suppress(OSError), socket.create_connection(("127.0.0.1", port)):
+                    break
+                assert process.poll() is None, log.read_text()
+                time.sleep(0.1)
+            yield port, log
+        finally:
+            process.terminate()
+
+
+@pytest.mark.skipif(None in map(shutil.which, ("nginx", "openssl")), reason="no nginx and openssl")
+def test_proxy_works_in_front_of_the_service(tmp_path):
+    trust = ssl.create_default_context()
+    trust.check_hostname, trust.verify_mode = False, ssl.CERT_NONE
+    trust.set_alpn_protocols(["h2"])
+    with serving(tmp_path, tmp_path / "log") as server, proxy(server.port, tmp_path) as (port, log):
+        with socket.create_connection(("127.0.0.1", port)) as plain, trust.wrap_socket(plain) as encrypted:
+            assert encrypted.selected_alpn_protocol() == "h2"
+        trust.set_alpn_protocols(["http/1.1"])
+        with httpx2.Client(base_url=f"https://127.0.0.1:{port}", verify=trust, timeout=120) as client:
+            question = "slenderness=0.4&frequency_ratio=5&restitution=0.85"
+            assert client.get(f"/v1/response?pulse=sine&{question}").json()["outcome"] == "SAFE"
+            assert client.get("/v1/response?pulse=none").headers["content-type"] == "application/problem+json"
+            assert client.get("/metrics").status_code == 200  # from this machine
+            body = b"slenderness\n" + b"0.4\n" * 250_000
+            batch = "/v1/response?pulse=sine&frequency_ratio=5&restitution=0.85"
+            rows = client.post(batch, content=body, headers={"content-type": "text/csv"})
+            assert rows.text.count("SAFE") == 250_000
+            with closing(http.client.HTTPSConnection("127.0.0.1", port, context=trust, timeout=120)) as large:
+                large.request("POST", "/v1/response", headers={"content-length": str(2**26 + 1)})
+                assert large.getresponse().status == 413
+            statuses = [client.get("/v1/pulses").status_code for _ in range(600)]
+            assert statuses.count(200) >= 200
+            assert set(statuses) <= {200, 429}
+    assert not re.search(r"\[(warn|emerg|alert|crit)\]", log.read_text())
