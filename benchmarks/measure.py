@@ -95,7 +95,7 @@ def versions(*packages: str) -> dict[str, str]:
 def save(record: dict[str, Any], path: Path) -> None:
     """Write a record as JSON."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(record, indent=1) + "\n")
+    path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
 def publish(

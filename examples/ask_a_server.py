@@ -40,7 +40,7 @@ request = Request(
     headers={"Content-Type": "text/csv", "Accept": "text/csv"},
 )
 with urlopen(request) as reply:
-    for row in csv.DictReader(io.TextIOWrapper(reply)):
+    for row in csv.DictReader(io.TextIOWrapper(reply, encoding="utf-8")):
         print(row["outcome"], row["peak_rotation"])
 
 # %%

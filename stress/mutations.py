@@ -86,7 +86,7 @@ class Mutant:
 
 def mutants_of(path: Path) -> list[Mutant]:
     """Return every possible change of a file."""
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
     lines = text.splitlines(keepends=True)
     before = [0]
     for line in lines:
@@ -207,7 +207,7 @@ def batches_of(
 
 def run_tests(tree: Path, files: tuple[str, ...], timeout: float) -> tuple[str, str]:
     """Run test files of a tree until the first failure, in a forked process that has the libraries loaded."""
-    with tempfile.TemporaryFile("w+") as output:
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
         child = os.fork()
         if child == 0:
             os.setsid()

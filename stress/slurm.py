@@ -126,7 +126,7 @@ def cluster(folder: Path) -> Iterator[None]:
     for name in ("state", "spool"):
         (folder / name).mkdir()
     with ExitStack() as stack:
-        SETTINGS.write_text(settings(socket.gethostname().partition(".")[0], folder))
+        SETTINGS.write_text(settings(socket.gethostname().partition(".")[0], folder), encoding="utf-8")
         stack.callback(SETTINGS.unlink)
         if not succeeds("munge", "--no-input"):
             MUNGE.mkdir(exist_ok=True)

@@ -53,7 +53,7 @@ def acquire(folder: Path) -> None:
     if folder in _held:
         return
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
-    run = (folder / FOLDER / "run.lock").open("a+")
+    run = (folder / FOLDER / "run.lock").open("a+", encoding="utf-8")
     if not _locked(run, LOCK_TIMEOUT):
         run.seek(0)
         process = run.readline().strip()
@@ -64,7 +64,7 @@ def acquire(folder: Path) -> None:
     run.write(f"{os.getpid()}\n{os.environ[RUN_NUMBER]}\n")
     run.flush()
     _held[folder] = run
-    with (folder / FOLDER / "jobs.lock").open("a") as jobs:
+    with (folder / FOLDER / "jobs.lock").open("a", encoding="utf-8") as jobs:
         if not _locked(jobs, LOCK_TIMEOUT):
             print("Waiting for jobs of an interrupted run to end ...", flush=True)
             fcntl.flock(jobs, fcntl.LOCK_EX)
@@ -95,10 +95,10 @@ def join_run() -> None:
     RunningError
         If the run of this job was killed and another one has begun.
     """
-    jobs = _held[FOLDER] = (FOLDER / "jobs.lock").open("a")
+    jobs = _held[FOLDER] = (FOLDER / "jobs.lock").open("a", encoding="utf-8")
     fcntl.flock(jobs, fcntl.LOCK_SH)
     number = os.environ.get(RUN_NUMBER)  # a cluster may not pass it on
-    if number and number not in (FOLDER / "run.lock").read_text():
+    if number and number not in (FOLDER / "run.lock").read_text(encoding="utf-8"):
         raise RunningError("the run that sent this job was killed, and another one has begun")
     end_with(int(os.environ[RUN_ID]))  # with the lock held: a later run waits for this job, or the job ends here
 

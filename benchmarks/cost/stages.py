@@ -47,7 +47,7 @@ def measure(folder: Path) -> list[dict[str, Any]]:
 
 def record_of(path: Path) -> dict[str, str]:
     """Read Snakemake's record of a job."""
-    with path.open(newline="") as stream:
+    with path.open(encoding="utf-8", newline="") as stream:
         (record,) = csv.DictReader(stream, delimiter="\t")
     return record
 

@@ -49,7 +49,7 @@ def load(port: int, path: str, connections: int, seconds: float, core: int | Non
 
 
 def _wrk(port: int, path: str, connections: int, seconds: float, core: int | None) -> dict[str, Any]:
-    with tempfile.NamedTemporaryFile("w", suffix=".lua") as script:
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".lua") as script:
         script.write(LUA.format(seed=connections, path=path, **WINDOW))
         script.flush()
         pinned = [] if core is None or not shutil.which("taskset") else ["taskset", "-c", str(core)]

@@ -48,7 +48,7 @@ class Worker:
 
     def memory(self) -> dict[str, float]:
         """Resident memory now and at most [MB]."""
-        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="utf-8")
         names = {"now_MB": "VmRSS", "most_MB": "VmHWM"}
         return {name: int(re.findall(rf"{key}:\s+(\d+) kB", status)[0]) / 1e3 for name, key in names.items()}
 

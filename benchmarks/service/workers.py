@@ -61,7 +61,7 @@ class Service:
         """Processor time of all processes so far [s]."""
         ticks = 0
         for process in self.processes():
-            fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+            fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
             ticks += int(fields[11]) + int(fields[12])
         return ticks / os.sysconf("SC_CLK_TCK")
 
@@ -88,11 +88,12 @@ def batch(pulse: str, restitution: float, points: int) -> bytes:
 
 def children(process: int) -> list[int]:
     """Process ids of the children of a process."""
-    return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    children = Path(f"/proc/{process}/task/{process}/children")
+    return [int(child) for child in children.read_text(encoding="utf-8").split()]
 
 
 def _memory(process: int) -> dict[str, float]:
-    rollup = Path(f"/proc/{process}/smaps_rollup").read_text()
+    rollup = Path(f"/proc/{process}/smaps_rollup").read_text(encoding="utf-8")
     return {key: int(size) / 1e3 for key, size in re.findall(r"^(\w+): +(\d+) kB", rollup, re.MULTILINE)}
 
 
