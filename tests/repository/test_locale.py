@@ -50,3 +50,12 @@ RESPONSE = ("-m", "rocking.cli", "response", "--pulse", "sine", "--csv", "--bloc
 def test_names_pass_from_files_and_standard_input(folder, file):
     (folder / "blocs_é.csv").write_text(BLOCKS, encoding="utf-8")
     assert "\nStèle é,0.1,0.5," in run(folder, *RESPONSE, file, PYTHONPATH=str(ROOT))
+
+
+@pytest.mark.slow
+def test_kernels_are_compiled_and_kept(folder):
+    first = run(folder, *RESPONSE, "-")
+    kept = {path: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
+    assert kept
+    assert run(folder, *RESPONSE, "-") == first
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")} == kept
