@@ -220,7 +220,13 @@ class PackageCacheLocator(UserProvidedCacheLocator):
 
     def get_cache_path(self) -> str:
         """The folder that was set for the entry."""
-        return str(Path(self._cache_path).parent)
+        return str(Path(self._cache_path))
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        """None: numba's own is a digest of the path, which fails for a path that the locale cannot express."""
+        del py_file
+        return ""
 
     def get_source_stamp(self) -> str:
         """The same at any time: the folder is that of the sources."""
