@@ -8,8 +8,8 @@ import xarray as xr
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
 from rocking.excitation.records.record import Record
+from rocking.history.body_motion import overturned
 from rocking.history.contact import add_contact
-from rocking.history.motion import overturned
 from rocking.history.record_motion import build_record_motion
 from rocking.model.response import Outcome
 
@@ -72,8 +72,9 @@ def record_history(
     block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     record, impact_times = block.events()
     if samples is None:
-        count = min(int(block.horizon / block.interval * (1.0 + 1e-12)) + 1, MAX_SAMPLES)
-        grid = block.interval * np.arange(count)
+        interval = frequency_parameter * motion.time_step
+        count = min(int(block.horizon / interval * (1.0 + 1e-12)) + 1, MAX_SAMPLES)
+        grid = interval * np.arange(count)
     else:
         grid = np.linspace(0.0, block.horizon, int(samples))
     events = [0.0, block.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
@@ -83,7 +84,7 @@ def record_history(
     last = block.sample_count(tau, rotation, record)
     tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
     impact_times = impact_times[impact_times <= tau[-1]]
-    p = block.frequency_parameter
+    p = float(frequency_parameter)
     history = xr.Dataset(
         {
             "rotation": ("tau", rotation, {"long_name": "rotation theta/alpha", "units": "1"}),
@@ -103,7 +104,7 @@ def record_history(
             "record": motion.name,
             "record_digest": motion.digest,
             "frequency_parameter": p,
-            "slenderness": block.slenderness,
+            "slenderness": float(slenderness),
             "restitution": block.restitution,
             "alpha": block.alpha,
             "outcome": Outcome(int(record["outcome"])).name,

@@ -7,9 +7,10 @@ import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import in_range
-from rocking.excitation.pulses import AbstractPulse
+from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.history.body_motion import overturned
 from rocking.history.contact import add_contact
-from rocking.history.motion import build_motion, overturned
+from rocking.history.motion import build_motion
 from rocking.model.response import Outcome
 
 
@@ -79,10 +80,8 @@ def time_history(
         },
         coords={"tau": ("tau", tau, {"long_name": "time p t from pulse start", "units": "1"})},
         attrs={
-            "pulse": motion.pulse.name,
-            "slenderness": motion.slenderness,
-            "frequency_ratio": motion.frequency_ratio,
-            "restitution": motion.restitution,
+            "pulse": as_pulse(pulse).name,
+            **{name: float(value) for name, value in groups.items()},
             "alpha": motion.alpha,
             "outcome": Outcome(int(record["outcome"])).name,
             "overturned": int(overturned(record)),
