@@ -139,7 +139,7 @@ def sample_record(
     int
         Number of impacts written.
     """
-    init_body_state(block, cell, True)
+    init_body_state(block, cell, False)
     by_arcs = cell.alpha == 0.0 and cell.vertical == 0.0
     last = cell.rate * samples[TIME, len(samples[SHAPE]) - 1]
     filled, written = 0, 0

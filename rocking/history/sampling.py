@@ -105,7 +105,7 @@ def sample_pulse(
     stop: FloatArray,
 ) -> int:
     """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
-    set_body(flight, cell, True)
+    set_body(flight, cell, False)
     omega = cell.rate
     init_state(flight, omega)
     pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega

@@ -62,8 +62,9 @@ def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> No
 
 @kernel
 def set_body(state: Record, cell: Record, each_side: bool) -> None:
-    """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge."""
-    state.alpha, state.each_side = cell.alpha, int(each_side)
+    """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
+    differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]
+    state.alpha, state.each_side = cell.alpha, int(each_side or differ)
     set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
     set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
 
