@@ -29,7 +29,7 @@ from rocking.excitation.records.record import Record
 from rocking.solver.records.batch import solve_by_steps, solve_slender
 from rocking.solver.records.record_response import record_response
 from rocking.solver.records.samples import motion_samples
-from rocking.solver.records.state import BLOCK_STATE, step_state
+from rocking.solver.records.state import body_states, step_state
 from rocking.solver.state import RESPONSE_RECORD, block_cells
 
 HALF_DIAGONAL = np.array([0.5, 1.0, 2.0, 4.0])
@@ -66,8 +66,8 @@ def stepped(motion: Record, kind: str, scales: int) -> int:
     step, samples = p * motion.time_step, motion_samples(motion)
     cells = block_cells(step, s, eta, np.full(s.size, ALPHA[kind] or 0.0))
     if kind == "slender":
-        return int(solve_slender(samples, cells, np.zeros(1, BLOCK_STATE)[0], NEVER_STOPPED, found))
-    lanes, steps = np.zeros(LANES, BLOCK_STATE), step_state(samples, cells)
+        return int(solve_slender(samples, cells, body_states(samples, 1)[0], NEVER_STOPPED, found))
+    lanes, steps = body_states(samples, LANES), step_state(samples, cells)
     return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, 2))))
 
 

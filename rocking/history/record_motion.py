@@ -14,7 +14,7 @@ from rocking.history.body_motion import FREE_DURATION, BodyMotion, Floats
 from rocking.history.record_sampling import sample_record
 from rocking.solver.records.record_response import check_record_groups
 from rocking.solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
-from rocking.solver.records.state import BLOCK_STATE, step_state
+from rocking.solver.records.state import body_states, step_state
 from rocking.solver.state import block_cells
 
 
@@ -60,7 +60,7 @@ class SamplesMotion(BodyMotion):
     def _sample_forced(
         self, tau: Floats, rotation: Floats, velocity: Floats, impact_times: Floats
     ) -> tuple[KernelRecord, int]:
-        state, start = np.zeros(1, BLOCK_STATE)[0], np.zeros(1, BLOCK_STATE)[0]
+        state, start = body_states(self.samples, 2)
         steps = step_state(self.samples, self.cell)
         rest = self.max_rotation, tau, rotation, velocity, impact_times, flag_array(self.stop)
         written = sample_record(self.samples, self.cell, state, start, steps, *rest)

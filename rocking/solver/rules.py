@@ -82,8 +82,9 @@ def reset_response(state: Record) -> None:
 
 @kernel
 def set_sign(state: Record, sign: float) -> None:
-    """Set sgn(theta) of the flight, and the edge about which the body rotates."""
+    """Set sgn(theta) of the flight, the edge about which the body rotates, and sgn(theta) a_s."""
     state.sign, state.side = sign, (0 if sign > 0.0 else 1)
+    state.strength = sign * state.a[state.side]
 
 
 @kernel
@@ -169,17 +170,20 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
 
 
 @kernel
-def pull_of(state: Record, side: int) -> float:
-    """-z'' at z = 0 over q on an edge, (p_s/p)^2 sin(alpha_s)/alpha [-]."""
+def pulls_of(state: Record) -> tuple[float, float]:
+    """-z'' at z = 0 over q on both edges, (p_s/p)^2 sin(alpha_s)/alpha [-]."""
     if state.alpha == 0.0:
-        return 1.0
-    return float(state.stiffness[side] * (math.sin(state.alpha * state.ratio[side]) / state.alpha))
+        return 1.0, 1.0
+    right = math.sin(state.alpha) / state.alpha
+    if state.ratio[1] == 1.0 and state.stiffness[1] == 1.0:
+        return right, right
+    return right, state.stiffness[1] * (math.sin(state.alpha * state.ratio[1]) / state.alpha)
 
 
 @kernel
 def softening_of(state: Record) -> float:
     """Bound of |dz''/dz| over V on both edges while |F| <= V: (p_s/p)^2 (1 + tan(alpha_s)) [-]."""
-    first = state.stiffness[0] * (1.0 + math.tan(state.alpha * state.ratio[0]))
+    first = 1.0 + math.tan(state.alpha)
     if state.ratio[1] == 1.0 and state.stiffness[1] == 1.0:
         return float(first)
     return float(max(first, state.stiffness[1] * (1.0 + math.tan(state.alpha * state.ratio[1]))))
@@ -189,6 +193,7 @@ def softening_of(state: Record) -> float:
 def impacts_accumulate(
     state: Record,
     w: float,
+    pulls: tuple[float, float],
     window: float,
     right: tuple[float, float],
     left: tuple[float, float],
@@ -204,6 +209,8 @@ def impacts_accumulate(
 
     Parameters
     ----------
+    pulls : (float, float)
+        Of `pulls_of`.
     window : float
         Time [tau].
     right, left : (float, float)
@@ -211,7 +218,7 @@ def impacts_accumulate(
     vertical : float
         Largest V during the window.
     """
-    right_pull, left_pull = pull_of(state, 0), pull_of(state, 1)
+    right_pull, left_pull = pulls
     weakest = min(right_pull * right[0], left_pull * left[0])
     if weakest <= 0.0:
         return False

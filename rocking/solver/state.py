@@ -66,6 +66,7 @@ PROGRESS_FIELDS = [
     # the flight
     ("sign", np.float64),  # sgn(theta)
     ("side", np.int64),  # edge about which the body rotates
+    ("strength", np.float64),  # sgn(theta) a_s: F over f
     ("w0", np.float64),  # velocity at its start
     ("largest_z", np.float64),  # largest z so far
     ("at_rest", np.int64),  # whether the next flight starts with an uplift

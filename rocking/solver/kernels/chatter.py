@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rocking._numba.compilation import Record, kernel
 from rocking.solver.excitation import shape_at
-from rocking.solver.rules import impacts_accumulate, pull_of
+from rocking.solver.rules import impacts_accumulate, pulls_of
 
 
 @kernel
@@ -19,7 +19,8 @@ def chatter_ends_in_rest(flight: Record, w: float, phase: float, end: float) -> 
     if not phase + flight.omega * (8.0 * w / (stiffest * loss)) <= end:  # the window is longer: most impacts end here
         return False
     f0 = shape_at(phase, flight)
-    first = min(pull_of(flight, 0) * (1.0 + flight.a[0] * f0), pull_of(flight, 1) * (1.0 - flight.a[1] * f0))
+    pulls = pulls_of(flight)
+    first = min(pulls[0] * (1.0 + flight.a[0] * f0), pulls[1] * (1.0 - flight.a[1] * f0))
     window = 8.0 * w / (first * loss)
     if not phase + flight.omega * window <= end:
         return False
@@ -27,4 +28,4 @@ def chatter_ends_in_rest(flight: Record, w: float, phase: float, end: float) -> 
     least, most = min(f0, f1), max(f0, f1)
     right = 1.0 + flight.a[0] * least, 1.0 + flight.a[0] * most
     left = 1.0 - flight.a[1] * most, 1.0 - flight.a[1] * least
-    return bool(impacts_accumulate(flight, w, window, right, left, 1.0))
+    return bool(impacts_accumulate(flight, w, pulls, window, right, left, 1.0))

@@ -25,7 +25,7 @@ from rocking.solver.rules import (
     count_impact,
     count_uplift,
     impacts_accumulate,
-    pull_of,
+    pulls_of,
     reset_response,
     set_body,
     set_sign,
@@ -48,7 +48,7 @@ def init_body_state(block: Record, cell: Record, each_side: bool) -> None:
 @kernel
 def restoring_at(block: Record, samples: FloatArray, k: int) -> float:
     """q = V + F at the sample `k`, on the edge of the flight."""
-    return float(vertical_at(block, samples, k) + block.sign * block.a[block.side] * samples[SHAPE, k])
+    return float(vertical_at(block, samples, k) + block.strength * samples[SHAPE, k])
 
 
 @kernel
@@ -128,11 +128,12 @@ def chatter_ends_in_rest(block: Record, samples: FloatArray) -> bool:
     if eta == 1.0:
         return False
     f, vertical = ground_at(block, samples, block.interval, block.s)
-    first = min(pull_of(block, 0) * (vertical + block.a[0] * f), pull_of(block, 1) * (vertical - block.a[1] * f))
+    pulls = pulls_of(block)
+    first = min(pulls[0] * (vertical + block.a[0] * f), pulls[1] * (vertical - block.a[1] * f))
     if w * w > block.peak_rotation * max(block.ratio[0], block.ratio[1]) * first:
         return False
     window = 8.0 * w / (first * (1.0 - eta))
     spread = 1.0 / (eta * eta) if eta > 0.0 else math.inf  # where q varies more, the series diverges
     least_right, most_right, least_left, most_left, highest = extremes_in_window(block, samples, window, spread)
     right, left = (least_right, most_right), (least_left, most_left)
-    return bool(impacts_accumulate(block, w, window, right, left, highest))
+    return bool(impacts_accumulate(block, w, pulls, window, right, left, highest))

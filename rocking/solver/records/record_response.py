@@ -21,7 +21,7 @@ from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.records.batch import solve_by_steps, solve_slender
 from rocking.solver.records.samples import motion_samples, pulse_samples
-from rocking.solver.records.state import BLOCK_STATE, step_state
+from rocking.solver.records.state import body_states, step_state
 from rocking.solver.state import RESPONSE_RECORD, block_cells
 
 Array = NDArray[np.float64]
@@ -214,13 +214,13 @@ def solve_bodies(
     if cells.size and by_steps[0]:
 
         def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-            blocks, steps = np.zeros(LANES, BLOCK_STATE), step_state(samples, cells[part])
+            blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])
             solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], sides[part])
 
     else:
 
         def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-            solve_slender(samples, cells[part], np.zeros(1, BLOCK_STATE)[0], flag, records[part])
+            solve_slender(samples, cells[part], body_states(samples, 1)[0], flag, records[part])
 
     cores = int(threads or AVAILABLE_CORES)
     fewest = max(MIN_CHUNK, MIN_CHUNK * 2000 // samples.shape[1])

@@ -80,7 +80,7 @@ def pulse_samples(pulse: SampledPulse, parts: int = 1) -> NDArray[np.float64]:
 @kernel
 def interval_length(block: Record, samples: FloatArray, k: int) -> float:
     """Length of the sample interval `k` [tau]."""
-    return float(block.h * (samples[TIME, k + 1] - samples[TIME, k]))
+    return float(block.h if block.equidistant == 1 else block.h * (samples[TIME, k + 1] - samples[TIME, k]))
 
 
 @kernel
@@ -97,7 +97,7 @@ def lifting_sign(block: Record, f: float, vertical: float) -> float:
 @kernel
 def vertical_at(block: Record, samples: FloatArray, k: int) -> float:
     """V = 1 + (vertical acceleration)/g at the sample `k`."""
-    return float(1.0 + block.vertical * samples[VERTICAL, k])
+    return float(1.0 if block.vertical == 0.0 else 1.0 + block.vertical * samples[VERTICAL, k])
 
 
 @kernel

@@ -28,6 +28,7 @@ BLOCK_STATE = np.dtype(
         *PROGRESS_FIELDS,
         ("h", np.float64),  # unit of the times of the samples [tau]
         ("vertical", np.float64),  # factor of the vertical component
+        ("equidistant", np.int64),  # whether that is the length of each sample interval
         ("cell", np.int64),  # index of the cell, -1: none
         # position in the motion, where the next flight starts
         ("interval", np.int64),  # sample interval
@@ -42,6 +43,13 @@ BLOCK_STATE = np.dtype(
     align=True,
 )
 """Layout of the record of a body."""
+
+
+def body_states(samples: NDArray[np.float64], count: int) -> NDArray[np.void]:
+    """Records `BLOCK_STATE` (count,) for bodies under the motion `samples` of `sample_rows`."""
+    states = np.zeros(count, BLOCK_STATE)
+    states["equidistant"] = int((np.diff(samples[TIME]) == 1.0).all())
+    return states
 
 
 def _steps_layout() -> np.dtype[np.void]:

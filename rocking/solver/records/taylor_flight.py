@@ -26,8 +26,10 @@ def start_piece(block: Record, samples: FloatArray, steps: Record, lane: int, at
     """Set the force and the limit of the step that starts at `block.s` in the interval; q is 0 there if `at_cut`."""
     k, s, h = block.interval, block.s, interval_length(block, samples, block.interval)
     q0, q1 = restoring_at(block, samples, k), restoring_at(block, samples, k + 1)
-    v0 = vertical_at(block, samples, k)
-    slope, vertical_slope = (q1 - q0) / h, (vertical_at(block, samples, k + 1) - v0) / h
+    slope, v0, vertical_slope = (q1 - q0) / h, 1.0, 0.0
+    if block.vertical != 0.0:
+        v0 = vertical_at(block, samples, k)
+        vertical_slope = (vertical_at(block, samples, k + 1) - v0) / h
     block.length = block.piece_end = h
     restoring = q0 + q1 > 0.0
     if q0 < 0.0 < q1 or q1 < 0.0 < q0:
@@ -39,7 +41,8 @@ def start_piece(block: Record, samples: FloatArray, steps: Record, lane: int, at
             restoring = q1 > 0.0
     block.destabilised = int(not restoring)
     vertical = v0 + vertical_slope * s
-    steps.vertical[lane], steps.vertical_rate[lane] = vertical, vertical_slope
+    if steps.has_vertical == 1:
+        steps.vertical[lane], steps.vertical_rate[lane] = vertical, vertical_slope
     steps.force[lane] = -vertical if at_cut else (q0 - v0) + (slope - vertical_slope) * s
     steps.force_rate[lane] = slope - vertical_slope
     steps.limit[lane] = max(block.piece_end - s, 0.0)
@@ -64,14 +67,14 @@ def never_returns(block: Record, samples: FloatArray, z: float, w: float) -> boo
     """
     alpha, ratio = block.alpha, block.ratio[block.side]
     beyond = z - ratio
+    if w <= 0.0 or beyond <= 0.0:
+        return False
+    if alpha > 0.0 and z >= 0.5 * math.pi / alpha:
+        return True
     k = block.interval
     strongest = block.a[block.side] * samples[LATER, k] / (1.0 + block.vertical * samples[LATER_LOW, k])
     if alpha == 0.0:
-        return bool(beyond > strongest and w > 0.0)
-    if z >= 0.5 * math.pi / alpha:
-        return True
-    if beyond <= 0.0 or w <= 0.0:
-        return False
+        return bool(beyond > strongest)
     return bool(math.sin(alpha * beyond) > math.tan(alpha * ratio) * strongest)
 
 
@@ -100,7 +103,8 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
     if h < steps.limit[lane]:  # the series is accurate on a part of the piece only
         block.s += h
         steps.force[lane] += steps.force_rate[lane] * h
-        steps.vertical[lane] += steps.vertical_rate[lane] * h
+        if steps.has_vertical == 1:
+            steps.vertical[lane] += steps.vertical_rate[lane] * h
         steps.limit[lane] -= h
         return IN_FLIGHT, block.s, z, w
     if block.piece_end < block.length:

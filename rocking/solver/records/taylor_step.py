@@ -16,12 +16,15 @@ def expand_motion(steps: Record) -> None:
     """Fill `z` and `rate` from z0, w0, the force and V."""
     z, rate, s, c = steps.z, steps.rate, steps.s, steps.c
     force, force_rate = load(steps.force, 0), load(steps.force_rate, 0)
-    vertical, vertical_rate = load(steps.vertical, 0), load(steps.vertical_rate, 0)
+    has_vertical = steps.has_vertical == 1
+    vertical, vertical_rate = splat(1.0), splat(0.0)
+    if has_vertical:
+        vertical, vertical_rate = load(steps.vertical, 0), load(steps.vertical_rate, 0)
     start_series(steps)
     factor, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
     for n in range(steps.order - 1):
         restoring = load(s, n)
-        if steps.has_vertical == 1:
+        if has_vertical:
             restoring = vertical * restoring
             if n > 0:
                 restoring += vertical_rate * load(s, n - 1)

@@ -63,7 +63,7 @@ def start_steps(flight: Record, steps: Record, lane: int) -> None:
     set_edge_lane(steps, lane, flight, flight.side)
     steps.phase[lane], steps.z0[lane], steps.w0[lane] = flight.phase, 0.0, flight.w0
     steps.starts_at_uplift[lane] = flight.starts_at_uplift
-    steps.strength[lane] = flight.sign * flight.a[flight.side]
+    steps.strength[lane] = flight.strength
     steps.in_use[lane], steps.at_ground[lane], steps.known[lane] = 1.0, 1.0, known_rotation(flight)
     next_segment(flight, steps, lane)
 
