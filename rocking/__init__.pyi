@@ -15,6 +15,7 @@ from .excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from .excitation.pulses import get_pulse as get_pulse
 from .excitation.records.readers.read_record import read_record as read_record
 from .excitation.records.record import Record as Record
+from .excitation.sampled import SampledPulse as SampledPulse
 from .history.record_history import record_history as record_history
 from .history.time_history import time_history as time_history
 from .lookup.cube import Cube as Cube

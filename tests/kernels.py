@@ -4,13 +4,15 @@ from rocking._numba.compilation import Record
 from rocking.excitation.pulses import AbstractPulse, get_pulse
 from rocking.solver.arcs.flight import set_angles
 from rocking.solver.kernels.event_loop import init_state, start_flight
+from rocking.solver.rules import SAFE, final_outcome, set_block, set_sign
 from rocking.solver.state import pulse_state
 
 
-def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
+def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:
     """Return the record of a block at rest before the pulse."""
     flight = pulse_state(get_pulse(pulse) if isinstance(pulse, str) else pulse).copy()
-    init_state(slenderness, omega, alpha, flight)
+    set_block(flight, slenderness, eta, alpha)
+    init_state(flight, omega)
     return flight
 
 
@@ -27,3 +29,19 @@ def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
     flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
     assert start_flight(flight)
     return flight
+
+
+def edge(alpha: float) -> Record:
+    """The record of a block of this slenderness angle, for a lane of Taylor steps."""
+    return cell("sine", 0.5, 1.0, alpha)
+
+
+def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, float, int]:
+    """From z and w at the end of the motion: impacts until it overturns plus one, or 0; peak; impacts before it."""
+    state = cell("sine", 2.0, 1.0, alpha, eta)
+    set_sign(state, 1.0)
+    state["outcome"], state["uplifts"] = SAFE, 1
+    final_outcome(state, z, w, False)
+    overturns = int(state["outcome"]) > SAFE
+    after = 0 if overturns else max(int(state["peak_mode"]), 0) // 2
+    return int(state["impacts"]) + 1 if overturns else 0, float(state["peak_rotation"]), after

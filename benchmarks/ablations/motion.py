@@ -17,11 +17,13 @@ from benchmarks.ablations.ablation import Ablation, measure_both
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking.excitation.pulses import get_pulse
-from rocking.history.motion import MAX_FREE_IMPACTS, MAX_ROTATION
+from rocking.history.body_motion import MAX_FREE_IMPACTS, MAX_ROTATION
 from rocking.history.sampling import REST_VELOCITY, sample_free_rocking
 from rocking.solver.arcs.flight import state_at
-from rocking.solver.kernels.event_loop import SAFE, advance, init_state
+from rocking.solver.kernels.event_loop import advance, init_state
 from rocking.solver.peak_response import peak_response
+from rocking.solver.records.state import BLOCK_STATE
+from rocking.solver.rules import SAFE, set_block
 from rocking.solver.state import pulse_state, step_state
 from rocking.solver.taylor.step import take_step
 
@@ -78,6 +80,7 @@ def follow_block(
     eta: float,
     alpha: float,
     flight: Record,
+    body: Record,
     steps: Record,
     followed: int,
     impact_times: FloatArray,
@@ -85,11 +88,12 @@ def follow_block(
     counts: FloatArray,
 ) -> None:
     """Solve one block as the solver does, and integrate farther where `followed` says so."""
-    init_state(slenderness, omega, alpha, flight)
+    set_block(flight, slenderness, eta, alpha)
+    init_state(flight, omega)
     going, phase = flight.interval_count > 0, math.inf
     while going:
         flight.length = math.nan
-        going = advance(flight, steps, eta)
+        going = advance(flight, steps)
         if math.isnan(flight.length):
             break
         counts[FLIGHTS] += 1
@@ -103,14 +107,14 @@ def follow_block(
         counts[FARTHER] += continue_beyond_return(flight, steps, phase)
     if not before_end and followed & FREE:
         nothing = impact_times[:0]
+        set_block(body, slenderness, eta, alpha)
         farthest = min(MAX_ROTATION, 0.5 * math.pi / alpha) if alpha > 0.0 else MAX_ROTATION
         counts[IMPACTS] += sample_free_rocking(
             flight.end_rotation,
             flight.end_velocity,
             flight.end_sign,
-            alpha,
+            body,
             steps,
-            eta,
             0.0,
             LONG_DURATION,
             farthest,
@@ -130,6 +134,7 @@ def follow_blocks(
     eta: float,
     alpha: float,
     flight: Record,
+    body: Record,
     steps: Record,
     followed: int,
     impact_times: FloatArray,
@@ -139,7 +144,7 @@ def follow_blocks(
 ) -> None:
     """Solve blocks one after another; fills `peaks` (cells,)."""
     for i in range(len(slenderness)):
-        follow_block(slenderness[i], omega[i], eta, alpha, flight, steps, followed, impact_times, stop, counts)
+        follow_block(slenderness[i], omega[i], eta, alpha, flight, body, steps, followed, impact_times, stop, counts)
         peaks[i] = flight.peak_rotation
 
 
@@ -159,6 +164,7 @@ def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], N
         RESTITUTION,
         alpha,
         flight,
+        np.zeros(1, BLOCK_STATE)[0],
         step_state(flight),
         what,
         np.empty(MAX_FREE_IMPACTS),

@@ -26,11 +26,11 @@ from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.simd import LANES
 from rocking.constants import STANDARD_GRAVITY
 from rocking.excitation.records.record import Record
-from rocking.solver.records.batch import solve_rigid, solve_slender
+from rocking.solver.records.batch import solve_by_steps, solve_slender
 from rocking.solver.records.record_response import record_response
 from rocking.solver.records.samples import motion_samples
-from rocking.solver.records.state import BLOCK_STATE, step_state
-from rocking.solver.state import RESPONSE_RECORD
+from rocking.solver.records.state import body_states, step_state
+from rocking.solver.state import RESPONSE_RECORD, block_cells
 
 HALF_DIAGONAL = np.array([0.5, 1.0, 2.0, 4.0])
 FREQUENCY_PARAMETER = np.sqrt(0.75 * STANDARD_GRAVITY / HALF_DIAGONAL)
@@ -63,13 +63,12 @@ def stepped(motion: Record, kind: str, scales: int) -> int:
     """Return the number of sample intervals that the solver steps through."""
     p, s = blocks(scales)
     eta, found = np.full(s.size, RESTITUTION), np.empty(s.size, RESPONSE_RECORD)
-    step = p * motion.time_step
+    step, samples = p * motion.time_step, motion_samples(motion)
+    cells = block_cells(step, s, eta, np.full(s.size, ALPHA[kind] or 0.0))
     if kind == "slender":
-        block = np.zeros(1, BLOCK_STATE)[0]
-        return int(solve_slender(motion_samples(motion), step, s.copy(), eta, block, NEVER_STOPPED, found))
-    alpha, lanes = np.full(s.size, ALPHA[kind]), np.zeros(LANES, BLOCK_STATE)
-    steps = step_state(float(step.max()))
-    return int(solve_rigid(motion_samples(motion), step, s.copy(), eta, alpha, lanes, steps, NEVER_STOPPED, found))
+        return int(solve_slender(samples, cells, body_states(samples, 1)[0], NEVER_STOPPED, found))
+    lanes, steps = body_states(samples, LANES), step_state(samples, cells)
+    return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, 2))))
 
 
 def processor_time(call: Callable[[], Any], rounds: int) -> dict[str, float]:

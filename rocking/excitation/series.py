@@ -21,6 +21,8 @@ class Family(IntEnum):
     """f = sum of c cos(w phi + d)."""
     WAVELET = 1
     """f = (sum of c_k phi^k) exp(-phi^2/spread)."""
+    SAMPLES = 2
+    """f is linear between samples, `rocking.excitation.sampled`; solved by `rocking.solver.records`."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class ExcitationSeries:
     @property
     def has_exact_arcs(self) -> bool:
         """Whether the slender block (3.1) has exact arcs (3.4) under it at all frequencies."""
-        return self.family == Family.SINUSOIDS
+        return self.family != Family.WAVELET
 
     @property
     def least_arc_frequency(self) -> float:

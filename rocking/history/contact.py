@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.compilation import Record
-from rocking.history.motion import SampledMotion, overturned
+from rocking.history.body_motion import BodyMotion, overturned
 from rocking.model.reactions import Floats, Reactions, impulse_ratio, reactions
 from rocking.model.response import Outcome
 
@@ -167,7 +167,7 @@ class ContactExtremes:
         return said
 
 
-def add_contact(history: xr.Dataset, motion: SampledMotion, impact_times: Floats) -> xr.Dataset:
+def add_contact(history: xr.Dataset, motion: BodyMotion, impact_times: Floats) -> xr.Dataset:
     """Add the contact forces to a time history of this motion.
 
     Returns
@@ -197,17 +197,17 @@ def add_contact(history: xr.Dataset, motion: SampledMotion, impact_times: Floats
 
 
 def reactions_of(
-    motion: SampledMotion, impact_times: Floats, tau: Floats, rotation: Floats, velocity: Floats
+    motion: BodyMotion, impact_times: Floats, tau: Floats, rotation: Floats, velocity: Floats
 ) -> Reactions:
     """The reactions at samples of the motion, all arrays (samples,); at an impact those after it.
 
     Parameters
     ----------
-    motion : Motion
+    motion : BodyMotion
     impact_times : float array (impacts,)
         Times of the impacts [tau], ascending.
     tau, rotation, velocity
-        Ascending times and `Motion.sample` there.
+        Ascending times and `BodyMotion.sample` there.
     """
     ground = motion.ground_acceleration(tau)
     # between two impacts one corner is in contact; the sign of a sample next to an impact may be a rounding error
@@ -219,7 +219,7 @@ def reactions_of(
     return reactions(rotation, velocity, ground, np.where(still, lifting, side), motion.alpha)
 
 
-def contact_extremes(motion: SampledMotion) -> ContactExtremes:
+def contact_extremes(motion: BodyMotion) -> ContactExtremes:
     """Extremes of the contact forces during the motion, up to its horizon."""
     record, impact_times = motion.events()
     tau, rotation = _fine_samples(motion, record, impact_times)
@@ -248,7 +248,7 @@ def contact_extremes(motion: SampledMotion) -> ContactExtremes:
     )
 
 
-def _fine_samples(motion: SampledMotion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:
+def _fine_samples(motion: BodyMotion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:
     """Times and rotations: both sides of every event, and small steps where the block moves, until it overturns."""
     end = motion.pulse_end
     after = max(impact_times.max(initial=end) - end, 0.0) + LAST_FLIGHT
@@ -273,7 +273,7 @@ def _fine_samples(motion: SampledMotion, record: Record, impact_times: Floats) -
         tau = np.sort(np.concatenate([tau, between.ravel()]))
 
 
-def _until_last_crossing_of_alpha(motion: SampledMotion, tau: Floats, rotation: Floats) -> Floats:
+def _until_last_crossing_of_alpha(motion: BodyMotion, tau: Floats, rotation: Floats) -> Floats:
     """The times up to the last crossing of |theta| = alpha, after which the block overturns monotonically."""
     below = int(np.flatnonzero(np.abs(rotation) <= 1.0)[-1])
     if below == tau.size - 1:

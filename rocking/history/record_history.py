@@ -6,12 +6,13 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import integer
+from rocking.errors import integer, number
 from rocking.excitation.records.record import Record
+from rocking.history.body_motion import Floats, overturned
 from rocking.history.contact import add_contact
-from rocking.history.motion import Floats, overturned
-from rocking.history.record_motion import RecordMotion, build_record_motion
+from rocking.history.record_motion import SamplesMotion, build_record_motion
 from rocking.model.response import Outcome
+from rocking.solver.records.record_response import frequency_parameter_range
 from rocking.units import Scalar
 
 MAX_SAMPLES = 1_000_000
@@ -84,7 +85,7 @@ def record_history(
     last = block.sample_count(tau, rotation, record)
     tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
     impact_times = impact_times[impact_times <= tau[-1]]
-    p = block.frequency_parameter
+    p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
     history = xr.Dataset(
         {
             "rotation": ("tau", rotation, {"long_name": "rotation theta/alpha", "units": "1"}),
@@ -104,7 +105,7 @@ def record_history(
             "record": motion.name,
             "record_digest": motion.digest,
             "frequency_parameter": p,
-            "slenderness": block.slenderness,
+            "slenderness": float(block.cell["slenderness"][0]),
             "restitution": block.restitution,
             "alpha": block.alpha,
             "outcome": Outcome(int(record["outcome"])).name,
@@ -119,11 +120,11 @@ def record_history(
     return history.swap_dims(tau="time")
 
 
-def _default_times(block: RecordMotion) -> Floats:
+def _default_times(block: SamplesMotion) -> Floats:
     """Times of the samples of the motion [tau], continued to the horizon at their step or a larger one."""
-    count, most = block.record.samples, max(block.record.samples, MIN_CONTINUED)
-    wanted = min(block.horizon / block.interval * (1.0 + 1e-12), count + most)
+    count, interval = block.times.size, float(block.cell["rate"])
+    most = max(count, MIN_CONTINUED)
+    wanted = min(block.horizon / interval * (1.0 + 1e-12), count + most)
     if wanted < count + most:
-        return block.interval * np.arange(int(wanted) + 1, dtype=np.float64)
-    forced = block.interval * np.arange(count, dtype=np.float64)
-    return np.concatenate([forced, np.linspace(block.pulse_end, block.horizon, most + 1)[1:]])
+        return interval * np.arange(int(wanted) + 1, dtype=np.float64)
+    return np.concatenate([block.times, np.linspace(block.pulse_end, block.horizon, most + 1)[1:]])

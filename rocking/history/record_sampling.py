@@ -1,4 +1,4 @@
-"""Time histories under a recorded motion: samples of each flight of the solver, until the motion ends."""
+"""Time histories under samples of the ground motion: the flights of the solver, until the motion ends."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking.errors import SearchError
 from rocking.solver.records.arc_flight import flight_by_arcs
 from rocking.solver.records.batch import end_flight
-from rocking.solver.records.event_loop import init_block_state, restoring_at, start_flight
+from rocking.solver.records.event_loop import init_body_state, restoring_at, start_flight
 from rocking.solver.records.piece import piece_state
-from rocking.solver.records.samples import SHAPE
+from rocking.solver.records.samples import SHAPE, TIME, interval_length
 from rocking.solver.records.taylor_flight import process_step, start_piece, start_steps
 from rocking.solver.records.taylor_step import take_step
+from rocking.solver.rules import set_sign
 from rocking.solver.state import IMPACT, IN_FLIGHT, PULSE_END
 from rocking.solver.taylor.events import evaluate_series
 from rocking.solver.taylor.flight import MAX_STEPS
-from rocking.solver.taylor.step import init_block
 
 
 @kernel
@@ -45,19 +45,20 @@ def sample_arc_flight(
 
     Returns the number of samples passed, z and w at `end` or at the last sample of the motion.
     """
-    h, k, s = start.h, start.interval, start.s
+    k, s = start.interval, start.s
     z, w = 0.0, start.w0
     count = len(samples[SHAPE]) - 1
     while k < count and z < max_rotation:
-        q0, q1 = restoring_at(start, samples, start.sign, k), restoring_at(start, samples, start.sign, k + 1)
+        left, h = start.h * samples[TIME, k], interval_length(start, samples, k)
+        q0, q1 = restoring_at(start, samples, k), restoring_at(start, samples, k + 1)
         r = (q1 - q0) / h
         at = 0.0 if start.starts_at_uplift == 1 and k == start.interval else q0 + r * s
-        right = min(end, h * (k + 1))
+        right = min(end, start.h * samples[TIME, k + 1])
         while filled < len(tau) and tau[filled] < right:
-            at_sample, rate = piece_state(z, w, at, r, max(tau[filled] - (h * k + s), 0.0))
+            at_sample, rate = piece_state(z, w, at, r, max(tau[filled] - (left + s), 0.0))
             rotation[filled], velocity[filled] = start.sign * at_sample, start.sign * rate
             filled += 1
-        z, w = piece_state(z, w, at, r, max(right - (h * k + s), 0.0))
+        z, w = piece_state(z, w, at, r, max(right - (left + s), 0.0))
         if right == end:
             break
         k, s = k + 1, 0.0
@@ -81,7 +82,7 @@ def sample_taylor_flight(
     sign, ended = start.sign, IN_FLIGHT
     z, w = 0.0, start.w0
     for _ in range(MAX_STEPS + 8 * len(samples[SHAPE])):
-        left = start.h * start.interval + start.s
+        left = start.h * samples[TIME, start.interval] + start.s
         take_step(steps)
         length = steps.h[0]
         right = min(end, left + length)
@@ -102,10 +103,7 @@ def sample_taylor_flight(
 @entry
 def sample_record(
     samples: FloatArray,
-    step: float,
-    slenderness: float,
-    eta: float,
-    alpha: float,
+    cell: Record,
     block: Record,
     start: Record,
     steps: Record,
@@ -120,8 +118,10 @@ def sample_record(
 
     Parameters
     ----------
-    samples, step, slenderness, eta, alpha
-        As for `rocking.solver.records.batch.solve_rigid`, numbers; `alpha` 0 is the slender limit.
+    samples
+        As for `rocking.solver.records.batch.solve_by_steps`.
+    cell
+        A record `BODY_CELL`.
     block, start, steps
         Solver state: two records `BLOCK_STATE`, and `step_state`; `block` holds the response on return, with z, w and
         sgn(theta) at the last sample of the motion, 0 at rest.
@@ -139,26 +139,26 @@ def sample_record(
     int
         Number of impacts written.
     """
-    init_block_state(block, slenderness, eta, alpha, step)
-    init_block(steps, 0, alpha, 1.0)
-    last = step * (len(samples[SHAPE]) - 1)
+    init_body_state(block, cell, False)
+    by_arcs = cell.alpha == 0.0 and cell.vertical == 0.0
+    last = cell.rate * samples[TIME, len(samples[SHAPE]) - 1]
     filled, written = 0, 0
     while start_flight(block, samples) and not is_stopped(stop):
         copy_start(block, start)
-        begin = step * block.interval + block.s
+        begin = cell.rate * samples[TIME, block.interval] + block.s
         while filled < len(tau) and tau[filled] < begin:
             filled += 1  # at rest
-        if alpha == 0.0:
+        if by_arcs:
             ended, k, s, z, w = flight_by_arcs(block, samples)
         else:
             ended, k, s, z, w = flight_by_taylor_steps(block, samples, steps)
         going = end_flight(block, samples, ended, k, s, z, w)
-        end = step * k + s if ended == IMPACT else last
+        end = cell.rate * samples[TIME, k] + s if ended == IMPACT else last
         if ended == IMPACT and written < len(impact_times):
             impact_times[written] = end
             written += 1
         limit = max_rotation if ended != IMPACT else 1e300
-        if alpha == 0.0:
+        if by_arcs:
             filled, z, w = sample_arc_flight(start, samples, end, limit, tau, filled, rotation, velocity)
         else:
             filled, z, w = sample_taylor_flight(start, samples, steps, end, limit, tau, filled, rotation, velocity)
@@ -171,7 +171,14 @@ def sample_record(
 @kernel
 def copy_start(block: Record, start: Record) -> None:
     """Copy what describes the start of a flight."""
-    start.a, start.eta, start.alpha, start.h = block.a, block.eta, block.alpha, block.h
-    start.interval, start.s, start.w0, start.sign = block.interval, block.s, block.w0, block.sign
+    for side in range(2):
+        start.a[side], start.ratio[side], start.stiffness[side] = (
+            block.a[side],
+            block.ratio[side],
+            block.stiffness[side],
+        )
+    start.alpha, start.h, start.each_side = block.alpha, block.h, 0
+    start.interval, start.s, start.w0 = block.interval, block.s, block.w0
+    set_sign(start, block.sign)
     start.starts_at_uplift, start.at_rest = block.starts_at_uplift, 0
     start.peak_rotation, start.largest_z = 1e300, 0.0  # no peak exceeds it: none is searched for

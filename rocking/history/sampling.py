@@ -8,9 +8,10 @@ from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking.solver.arcs.flight import set_angles, state_at
 from rocking.solver.kernels.event_loop import advance, advance_by_arc, init_state
+from rocking.solver.rules import set_body, set_sign
 from rocking.solver.taylor.events import evaluate_series
 from rocking.solver.taylor.flight import impact_in_step, start_steps
-from rocking.solver.taylor.step import init_block, take_step
+from rocking.solver.taylor.step import set_edge_lane, take_step
 
 REST_VELOCITY = 1e-7
 """Velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha."""
@@ -50,7 +51,7 @@ def sample_steps(
     velocity: FloatArray,
 ) -> tuple[int, float, float]:
     """Repeat the last flight of `advance`, at most to z = `max_rotation`; returns the samples passed, last z, w."""
-    init_block(steps, 0, flight.alpha, flight.omega)
+    steps.omega[0] = flight.omega
     start_steps(flight, steps, 0)
     elapsed, z, w = 0.0, 0.0, flight.w0
     while elapsed < flight.length and z < max_rotation:
@@ -93,10 +94,7 @@ def sample_arc(
 
 @kernel
 def sample_pulse(
-    slenderness: float,
-    omega: float,
-    eta: float,
-    alpha: float,
+    cell: Record,
     flight: Record,
     steps: Record | None,
     max_rotation: float,
@@ -107,12 +105,14 @@ def sample_pulse(
     stop: FloatArray,
 ) -> int:
     """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
-    init_state(slenderness, omega, alpha, flight)
+    set_body(flight, cell, False)
+    omega = cell.rate
+    init_state(flight, omega)
     pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
     filled, written, going = 0, 0, flight.interval_count > 0
     while going and not is_stopped(stop):
         flight.length = math.nan
-        going = advance_by_arc(flight, eta) if steps is None else advance(flight, steps, eta)
+        going = advance_by_arc(flight) if steps is None else advance(flight, steps)
         if math.isnan(flight.length):
             break  # at rest until the end
         start = (flight.phase - flight.end_phase[0]) / omega
@@ -142,10 +142,7 @@ def sample_pulse(
 
 @entry
 def solve_and_sample(
-    slenderness: float,
-    omega: float,
-    eta: float,
-    alpha: float,
+    cell: Record,
     flight: Record,
     steps: Record,
     max_rotation: float,
@@ -161,8 +158,8 @@ def solve_and_sample(
 
     Parameters
     ----------
-    slenderness, omega, eta, alpha : float
-        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
+    cell
+        A record `BODY_CELL`.
     flight, steps
         Solver state, records of `pulse_state` and `step_state`; `flight` holds the response on return.
     max_rotation : float
@@ -179,17 +176,12 @@ def solve_and_sample(
     int
         Number of impacts written.
     """
-    return sample_pulse(
-        slenderness, omega, eta, alpha, flight, steps, max_rotation, tau, rotation, velocity, impact_times, stop
-    )
+    return sample_pulse(cell, flight, steps, max_rotation, tau, rotation, velocity, impact_times, stop)
 
 
 @entry
 def sample_arcs(
-    slenderness: float,
-    omega: float,
-    eta: float,
-    alpha: float,
+    cell: Record,
     flight: Record,
     max_rotation: float,
     tau: FloatArray,
@@ -199,9 +191,7 @@ def sample_arcs(
     stop: FloatArray,
 ) -> int:
     """`solve_and_sample` for a slender block under sinusoids, compiled without Taylor steps."""
-    return sample_pulse(
-        slenderness, omega, eta, alpha, flight, None, max_rotation, tau, rotation, velocity, impact_times, stop
-    )
+    return sample_pulse(cell, flight, None, max_rotation, tau, rotation, velocity, impact_times, stop)
 
 
 @entry
@@ -209,9 +199,8 @@ def sample_free_rocking(
     z: float,
     w: float,
     sign: float,
-    alpha: float,
+    body: Record,
     steps: Record,
-    eta: float,
     start: float,
     horizon: float,
     max_rotation: float,
@@ -227,12 +216,10 @@ def sample_free_rocking(
     ----------
     z, w, sign : float
         |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and `end_sign`.
-    alpha : float
-        Slenderness angle [rad], 0: slender.
+    body
+        Record `BLOCK_STATE` with the fields `BODY_FIELDS`.
     steps
         Solver state of `step_state`.
-    eta : float
-        Restitution [-].
     start, horizon : float
         Times from the pulse's start at which free rocking begins and at which to stop [-].
     max_rotation : float
@@ -249,7 +236,9 @@ def sample_free_rocking(
     int
         Number of impacts written.
     """
-    init_block(steps, 0, alpha, 1.0)
+    set_sign(body, sign)
+    set_edge_lane(steps, 0, body, body.side)
+    steps.omega[0] = 1.0
     steps.strength[0], steps.starts_at_uplift[0], steps.phase[0] = 0.0, 0.0, 0.0
     filled, written = 0, 0
     while filled < len(tau) and tau[filled] < start:
@@ -272,8 +261,10 @@ def sample_free_rocking(
             impact_times[written] = time
             written += 1
         steps.z0[0] = 0.0
-        steps.w0[0] = -eta * evaluate_series(steps.rate, 0, steps.order - 1, h)  # (2.3)
+        steps.w0[0] = -body.eta[body.side] * evaluate_series(steps.rate, 0, steps.order - 1, h)  # (2.3)
         sign = -sign
+        set_sign(body, sign)
+        set_edge_lane(steps, 0, body, body.side)
         if steps.w0[0] <= REST_VELOCITY or written == len(impact_times):
             break
     return written

@@ -7,9 +7,12 @@ import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import integer
-from rocking.excitation.pulses import AbstractPulse
+from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.history.body_motion import overturned
 from rocking.history.contact import add_contact
-from rocking.history.motion import build_motion, overturned
+from rocking.history.motion import build_motion
+from rocking.model.checks import check_number
+from rocking.model.parameters import FREQUENCY_RATIO
 from rocking.model.response import Outcome
 from rocking.units import Scalar
 
@@ -80,9 +83,9 @@ def time_history(
         },
         coords={"tau": ("tau", tau, {"long_name": "time p t from pulse start", "units": "1"})},
         attrs={
-            "pulse": motion.pulse.name,
-            "slenderness": motion.slenderness,
-            "frequency_ratio": motion.frequency_ratio,
+            "pulse": as_pulse(pulse).name,
+            "slenderness": float(motion.cell["slenderness"][0]),
+            "frequency_ratio": check_number(FREQUENCY_RATIO, frequency_ratio),
             "restitution": motion.restitution,
             "alpha": motion.alpha,
             "outcome": Outcome(int(record["outcome"])).name,

@@ -23,7 +23,7 @@ def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     Returns
     -------
     float array
-        Positive where the block overturns: the larger of (w - X)/X(0), see `rocking.solver.kernels.free_rocking`, and
+        Positive where the block overturns: the larger of (w - X)/X(0), see `rocking.solver.free_rocking`, and
         of the energy after the next impact, relative to that of the barrier, minus 1, (3.16). It is continuous and
         zero at the transition.
     """

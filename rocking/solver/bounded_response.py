@@ -12,8 +12,8 @@ from rocking.equality import EqualByValue
 from rocking.excitation.pulses import AbstractPulse
 from rocking.model.fields import BOUNDED_FIELDS
 from rocking.model.outcome import Outcome
-from rocking.solver.kernels.event_loop import IMPACT_LIMIT
 from rocking.solver.peak_response import peak_response
+from rocking.solver.rules import IMPACT_LIMIT
 
 SOLVER_ERROR = 1e-12
 """Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""

@@ -52,8 +52,8 @@ def refine_crossings(
 
 
 @kernel
-def find_crossings(slenderness: float, flight: Record) -> None:
-    """Set `crossing_phase` to the phases at which f = -1/a and f = 1/a on the pieces that contain them.
+def find_crossings(below: float, above: float, flight: Record) -> None:
+    """Set `crossing_phase` to the phases at which f = -`below` and f = `above` on the pieces that contain them.
 
     The crossing with sgn(f) opposite to f' on a piece precedes the other one. The first guess is that of a cosine
     between the ends of the piece.
@@ -61,7 +61,8 @@ def find_crossings(slenderness: float, flight: Record) -> None:
     for row in range((2 * flight.pieces + LANES - 1) // LANES):
         left, right = load(flight.crossing_left, row), load(flight.crossing_right, row)
         f_left, f_right = load(flight.crossing_f_left, row), load(flight.crossing_f_right, row)
-        level = slenderness * load(flight.crossing_sign, row)
+        sign = load(flight.crossing_sign, row)
+        level = select(sign > 0.0, above * sign, below * sign)
         wanted = (level > minimum(f_left, f_right)) & (level < maximum(f_left, f_right))
         if not any_lane(wanted):
             continue

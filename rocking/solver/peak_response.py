@@ -15,6 +15,7 @@ from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, integer
 from rocking.excitation.pulses import AbstractPulse, as_pulse
+from rocking.excitation.sampled import SampledPulse
 from rocking.model.checks import check_groups, check_number
 from rocking.model.fields import RESPONSE_FIELDS
 from rocking.model.outcome_margin import outcome_margin
@@ -22,10 +23,11 @@ from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.kernels.batch import solve_batch
+from rocking.solver.records.record_response import solve_pulse
 from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import StageState, stage_state
-from rocking.solver.state import FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
+from rocking.solver.state import BODY_CELL, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
 
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
@@ -38,6 +40,10 @@ TRUNCATION_FRACTION = 1e-4
 
 NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
+
+
+NO_BODIES = np.empty(0, BODY_CELL)
+"""For blocks with equal edges."""
 
 
 class SolverState(threading.local):
@@ -119,7 +125,8 @@ def peak_response(
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
     accepted = 0.0 if tolerance is None else check_number(TOLERANCE, tolerance)
-    by_arcs = made.series.has_exact_arcs and slender  # exact: no terms to truncate
+    # no terms to truncate
+    by_arcs = isinstance(made, SampledPulse) or (made.series.has_exact_arcs and slender)
     precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
@@ -169,6 +176,8 @@ def solve_cells(
     StoppedError
         If `stop` was set.
     """
+    if isinstance(pulse, SampledPulse):
+        return solve_pulse(pulse, cells, threads, stop)
     if len(cells) == 3 and cells[1].min(initial=math.inf) >= pulse.series.least_arc_frequency:
         return _solve_alike(pulse, cells, True, precision, threads, stop)
     exact = solved_by_arcs(pulse, cells)
@@ -200,7 +209,7 @@ def _solve_alike(
         if by_arcs:
             _fill_by_arcs(pulse, chunk, flag, records[part])
         else:
-            solve_batch(*_with_alpha(chunk), *solver_state.of_steps(pulse, precision), flag, records[part])
+            _solve_by_steps(pulse, chunk, precision, flag, records[part])
 
     fill_chunks(fill, size, chunk_size, cores, stop)
     return records
@@ -218,8 +227,20 @@ def _fill_by_arcs(
         return
     left = np.flatnonzero(records["outcome"] == LEFT)
     rest = np.empty(left.size, RESPONSE_RECORD)
-    solve_batch(*_with_alpha([cell[left] for cell in cells]), *solver_state.of_steps(pulse, FULL_PRECISION), flag, rest)
+    _solve_by_steps(pulse, [cell[left] for cell in cells], FULL_PRECISION, flag, rest)
     records[left] = rest
+
+
+def _solve_by_steps(
+    pulse: AbstractPulse,
+    cells: list[NDArray[np.float64]],
+    precision: float,
+    flag: NDArray[np.uint8],
+    records: NDArray[np.void],
+) -> None:
+    solve_batch(
+        *_with_alpha(cells), NO_BODIES, *solver_state.of_steps(pulse, precision), flag, records, np.empty((0, 2))
+    )
 
 
 def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

@@ -10,6 +10,7 @@ import math
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
@@ -32,6 +33,61 @@ FULL_PRECISION = 1e-17
 
 IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
 """What has ended a flight. OVERTURNS: no later ground acceleration of the pulse can prevent overturning."""
+
+EDGES = (2,)
+
+BODY_FIELDS = [
+    # of both edges, the right one (theta > 0) first; times and rotations have the units of the right edge
+    ("slenderness", np.float64, EDGES),  # g tan(alpha_s) over the largest ground acceleration
+    ("a", np.float64, EDGES),  # its reciprocal, largest ground acceleration over g tan(alpha_s): F = sgn(theta) a f
+    ("eta", np.float64, EDGES),  # restitution of an impact that leaves the edge
+    ("ratio", np.float64, EDGES),  # alpha_s/alpha
+    ("stiffness", np.float64, EDGES),  # (p_s/p)^2
+    ("speed", np.float64, EDGES),  # ratio p_s/p: velocity w over that in the units of the edge
+    ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
+    ("each_side", np.int64),  # whether peaks are wanted for each edge; always where the edges differ
+]
+"""Fields of a solver state that describe the body; set once for a cell, by `rocking.solver.rules`."""
+
+BODY_CELL = np.dtype(
+    [
+        ("rate", np.float64),  # samples: p times the unit of their times [tau]; pulses: frequency ratio omega_g/p
+        ("vertical", np.float64),  # factor of the vertical component
+        ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
+        ("slenderness", np.float64, EDGES),  # g tan(alpha_s)/(largest horizontal acceleration)
+        ("eta", np.float64, EDGES),
+        ("ratio", np.float64),  # alpha_s/alpha of the left edge
+        ("stiffness", np.float64),  # (p_s/p)^2 of the left edge
+    ]
+)
+"""A body under a motion: the argument of the kernels that know two edges."""
+
+PROGRESS_FIELDS = [
+    # the flight
+    ("sign", np.float64),  # sgn(theta)
+    ("side", np.int64),  # edge about which the body rotates
+    ("strength", np.float64),  # sgn(theta) a_s: F over f
+    ("w0", np.float64),  # velocity at its start
+    ("largest_z", np.float64),  # largest z so far
+    ("at_rest", np.int64),  # whether the next flight starts with an uplift
+    ("starts_at_uplift", np.int64),  # whether it starts with an uplift through q = 0, where q is exactly 0
+    ("uplifts", np.int64),  # uplifts from rest so far
+    ("impacts_before_uplift", np.int64),  # impacts before the last of them
+    # the response, see `rocking.model.fields`
+    ("outcome", np.int64),
+    ("peak_rotation", np.float64),
+    ("side_peak", np.float64, EDGES),  # largest z on each edge
+    ("peak_mode", np.int64),
+    ("impacts", np.int64),
+    ("chatter", np.int64),
+    ("uplift_time", np.float64),
+    ("first_impact_time", np.float64),
+    ("first_impact_velocity", np.float64),
+    ("end_rotation", np.float64),  # state at the end of the motion, in the mirror image of the flight,
+    ("end_velocity", np.float64),
+    ("end_sign", np.float64),  # and sgn(theta), 0 at rest
+]
+"""Fields of a solver state that the rules of events change: the flight and the response."""
 
 
 def _flight_layout() -> np.dtype[np.void]:
@@ -65,11 +121,10 @@ def _flight_layout() -> np.dtype[np.void]:
             ("growth_rate", np.float64),  # bound of the growth of its derivatives [1/rad]
             ("series_length", np.int64),  # of the series at the start of a flight in `rocking.solver.stages`
             # the cell
-            ("a", np.float64),  # 1/slenderness
+            *BODY_FIELDS,
             ("omega", np.float64),  # frequency ratio
             ("rate", np.float64, per_term),  # Omega = omega w
             ("max_rate", np.float64),  # largest of 1 and the rates
-            ("alpha", np.float64),  # slenderness angle [rad], 0: slender limit
             ("interval_phase", np.float64, cuts),  # ends of the intervals, see `split_into_intervals`
             ("interval_level", np.float64, cuts),  # in the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
             ("interval_slope", np.float64, cuts),  # sign of f' there
@@ -81,19 +136,14 @@ def _flight_layout() -> np.dtype[np.void]:
             ("last_cell", np.int64),  # last of the consecutive cells that differ in eta only
             ("interval_count", np.int64),  # number of intervals
             ("interval", np.int64),  # interval that holds the start of the next flight
-            ("at_rest", np.int64),  # whether the next flight starts with an uplift
-            ("uplifts", np.int64),  # uplifts from rest so far
-            ("impacts_before_uplift", np.int64),  # impacts before the last of them
+            *PROGRESS_FIELDS,
             ("next_phase", np.float64),  # its start
             ("next_w", np.float64),
             ("next_sign", np.float64),
             # the flight
-            ("sign", np.float64),  # sgn(theta)
             ("force", np.float64, per_term),  # sgn(theta) a c
             ("phase", np.float64),  # phi at its start
-            ("w0", np.float64),  # velocity there
             ("length", np.float64),  # its duration [tau]
-            ("starts_at_uplift", np.int64),  # whether it starts with an uplift through |a f| = 1, where q is exactly 0
             ("q0", np.float64),  # restoring acceleration there
             ("particular", np.float64, per_term),  # coefficients of its arc, see `init_arc`
             ("x0", np.float64),
@@ -112,7 +162,6 @@ def _flight_layout() -> np.dtype[np.void]:
             # its Taylor steps
             ("segment_end", np.int64),  # index of the interval end at which the steps must end next
             ("elapsed", np.float64),  # time since the flight's start
-            ("largest_z", np.float64),  # largest z so far
             # end of the first flight, which does not depend on eta
             ("first_flight_known", np.int64),  # whether it is known
             ("first_flight_end", np.int64),
@@ -123,18 +172,6 @@ def _flight_layout() -> np.dtype[np.void]:
             ("first_flight_phase", np.float64),
             ("first_flight_sign", np.float64),
             ("first_flight_interval", np.int64),
-            # the response, see `rocking.model.fields`
-            ("outcome", np.int64),
-            ("peak_rotation", np.float64),
-            ("peak_mode", np.int64),
-            ("impacts", np.int64),
-            ("chatter", np.int64),
-            ("uplift_time", np.float64),
-            ("first_impact_time", np.float64),
-            ("first_impact_velocity", np.float64),
-            ("end_rotation", np.float64),  # state at the end of the pulse, in the mirror image of the flight,
-            ("end_velocity", np.float64),
-            ("end_sign", np.float64),  # and sgn(theta), 0 at rest
         ],
         align=True,
     )
@@ -142,6 +179,23 @@ def _flight_layout() -> np.dtype[np.void]:
 
 FLIGHT_STATE = _flight_layout()
 """Layout of the record of an excitation and a cell."""
+
+
+EDGE_LANES = [
+    ("slender", np.float64, (LANES,)),  # 1 for the slender limit, else 0
+    ("alpha", np.float64, (LANES,)),  # of the right edge [rad]; arbitrary in the slender limit
+    ("ratio", np.float64, (LANES,)),  # alpha_s/alpha
+    ("stiffness", np.float64, (LANES,)),  # (p_s/p)^2
+    ("sine_alpha", np.float64, (LANES,)),  # of alpha_s
+    ("cosine_alpha", np.float64, (LANES,)),
+    ("restoring_factor", np.float64, (LANES,)),  # (p_s/p)^2 sin(alpha_s)/alpha
+    ("s_rate", np.float64, (LANES,)),  # -alpha/tan(alpha_s)
+    ("c_rate", np.float64, (LANES,)),  # alpha tan(alpha_s)
+]
+"""Fields of Taylor steps that describe the edges about which the bodies rotate, see `rocking.solver.taylor.step`."""
+
+AT_REST = ("slender", "alpha", "ratio", "stiffness", "sine_alpha", "cosine_alpha", "restoring_factor", "omega")
+"""Lanes that are 1 while unused: a block at rest, which produces no infinities."""
 
 
 def _steps_layout() -> np.dtype[np.void]:
@@ -168,13 +222,7 @@ def _steps_layout() -> np.dtype[np.void]:
             # the block and the strength of the pulse
             ("strength", np.float64, lanes),  # sgn(theta) a
             ("omega", np.float64, lanes),
-            ("slender", np.float64, lanes),  # 1 for the slender limit, else 0
-            ("alpha", np.float64, lanes),  # arbitrary in the slender limit
-            ("sine_alpha", np.float64, lanes),
-            ("cosine_alpha", np.float64, lanes),
-            ("restoring_factor", np.float64, lanes),  # sin(alpha)/alpha
-            ("s_rate", np.float64, lanes),  # -alpha/tan(alpha)
-            ("c_rate", np.float64, lanes),  # alpha tan(alpha)
+            *EDGE_LANES,
             # the step
             ("h", np.float64, lanes),  # step size [tau]
             ("z1", np.float64, lanes),  # z at its end
@@ -195,6 +243,22 @@ def _steps_layout() -> np.dtype[np.void]:
 
 STEP_STATE = _steps_layout()
 """Layout of the record of `LANES` Taylor steps. Scalars come last, so that the rows of lanes are aligned."""
+
+
+def block_cells(
+    rate: NDArray[np.float64], slenderness: NDArray[np.float64], eta: NDArray[np.float64], alpha: NDArray[np.float64]
+) -> NDArray[np.void]:
+    """Cells `BODY_CELL` (size,) of blocks with equal edges, from arrays (size,)."""
+    cells = np.empty(rate.size, BODY_CELL)
+    cells["rate"], cells["alpha"], cells["vertical"], cells["ratio"], cells["stiffness"] = rate, alpha, 0.0, 1.0, 1.0
+    cells["slenderness"], cells["eta"] = slenderness[:, None], eta[:, None]
+    return cells
+
+
+def block_cell(rate: float, slenderness: float, eta: float, alpha: float) -> Record:
+    """The cell of one block."""
+    return block_cells(*(np.array([value]) for value in (rate, slenderness, eta, alpha)))[0]
+
 
 RESPONSE_RECORD = record_dtype(RESPONSE_FIELDS)
 """Record of the response of a cell."""
@@ -248,7 +312,6 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
         steps[name] = flight[name]
     steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)
-    # unused lanes hold a block at rest, which produces no infinities
-    for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "restoring_factor", "omega"):
+    for name in AT_REST:
         steps[name] = 1.0
     return steps

@@ -13,6 +13,7 @@ from rocking.boundary.frequency import critical_frequency_ratio
 from rocking.errors import StoppedError
 from rocking.history.motion import build_motion
 from rocking.solver.kernels.batch import solve_batch
+from rocking.solver.peak_response import NO_BODIES
 from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import stage_state
@@ -98,7 +99,10 @@ def test_a_kernel_reads_the_flag_within_one_cell():
             kernel = solve_batch if alpha else solve_remainder
             timer = threading.Timer(delay, flag.fill, [1])
             timer.start()
-            kernel(*groups, *scratch, flag, answers)
+            if alpha:
+                kernel(*groups, NO_BODIES, *scratch, flag, answers, np.empty((0, 2)))
+            else:
+                kernel(*groups, *scratch, flag, answers)
             timer.join()
             reached = (scratch[0][0] if alpha else scratch[0])["impacts"]
             if 0 < reached < 200_000:

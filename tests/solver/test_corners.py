@@ -100,7 +100,8 @@ def test_a_flight_within_rounding_of_the_end_of_an_interval(growing, starts_at_u
     flight["outcome"], flight["impacts"], flight["interval"] = Outcome.SAFE, 3, interval
     flight["starts_at_uplift"], flight["length"] = starts_at_uplift, 0.0
     flight["phase"], flight["sign"] = flight["interval_phase"][interval], -flight["interval_level"][interval]
-    on_impact(flight, -1e-30, 0.9)
+    flight["side"] = int(flight["sign"] < 0.0)
+    on_impact(flight, -1e-30)
     assert flight["impacts"] == 4
     again = growing and starts_at_uplift == 0
     assert flight["interval"] == (interval if again else interval + 1)

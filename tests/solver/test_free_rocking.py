@@ -10,7 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rocking
-from rocking.solver.kernels.free_rocking import free_outcome, highest_rotation
+from rocking.solver.free_rocking import highest_rotation
+from tests.kernels import free_outcome
 
 ALPHAS = st.one_of(st.just(0.0), st.floats(-8, 0.19).map(lambda x: 10**x))
 

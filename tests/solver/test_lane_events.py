@@ -7,6 +7,7 @@ import rocking
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, load, store
 from rocking.solver.kernels.event_loop import init_state, start_flight
+from rocking.solver.rules import set_block
 from rocking.solver.state import MAX_ORDER, pulse_state, step_state
 from rocking.solver.taylor import events
 from rocking.solver.taylor.flight import free_lanes, highest_peak, impact_in_step, start_steps
@@ -19,7 +20,7 @@ from rocking.solver.taylor.lane_events import (
     second_derivative_bounds,
     values_and_slopes,
 )
-from rocking.solver.taylor.step import init_block, take_step
+from rocking.solver.taylor.step import take_step
 
 
 @kernel
@@ -76,12 +77,13 @@ def test_roots_of_all_lanes_are_refined_to_rounding():
 
 
 @kernel
-def first_steps(flights, steps, omega, alpha):
+def first_steps(flights, steps, slenderness, omega, alpha):
     free_lanes(steps)
     for lane in range(LANES - 1):  # the last lane is not in use
-        init_state(flights[lane].a, omega[lane], alpha[lane], flights[lane])
+        set_block(flights[lane], slenderness[lane], 0.9, alpha[lane])
+        init_state(flights[lane], omega[lane])
         start_flight(flights[lane])
-        init_block(steps, lane, alpha[lane], omega[lane])
+        steps.omega[lane] = omega[lane]
         start_steps(flights[lane], steps, lane)
 
 
@@ -93,8 +95,8 @@ def test_events_of_all_lanes_are_those_of_one(pulse):
     flights, steps = np.array([state] * LANES), step_state(state)
     impacts = peaks = undecided = 0
     for case in range(120):
-        flights["a"] = rng.uniform(0.1, 0.9, LANES)
-        first_steps(flights, steps, rng.uniform(0.5, 8.0, LANES), rng.uniform(0.05, 1.0, LANES))
+        slenderness = rng.uniform(0.1, 0.9, LANES)
+        first_steps(flights, steps, slenderness, rng.uniform(0.5, 8.0, LANES), rng.uniform(0.05, 1.0, LANES))
         if case % 2:
             steps["z0"], steps["w0"] = rng.uniform(0.0, 0.3, LANES), rng.uniform(-0.5, 0.5, LANES)
             steps["at_ground"], steps["starts_at_uplift"], steps["limit"] = 0.0, 0.0, 3.0

@@ -6,8 +6,9 @@ import pytest
 import rocking
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
-from rocking.solver.kernels.event_loop import IMPACT_LIMIT, on_impact
+from rocking.solver.kernels.event_loop import on_impact
 from rocking.solver.peak_response import SolverState
+from rocking.solver.rules import IMPACT_LIMIT
 from rocking.solver.state import step_state
 from rocking.solver.taylor.events import first_crossing
 from rocking.solver.taylor.flight import flight_by_steps
@@ -75,6 +76,6 @@ def test_flights_side_by_side_end(monkeypatch):
 def test_impacts_end():
     flight = first_flight("sine", 0.5, 3.0)
     flight["length"], flight["impacts"] = 0.1, IMPACT_LIMIT + 3 * flight["interval_count"] - 1
-    on_impact(flight, -0.1, 0.9)
+    on_impact(flight, -0.1)
     with pytest.raises(SearchError, match="impacts"):
-        on_impact(flight, -0.1, 0.9)
+        on_impact(flight, -0.1)

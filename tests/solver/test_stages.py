@@ -9,8 +9,8 @@ import rocking
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import WORDS
 from rocking.excitation.pulses import SinusoidalPulse
-from rocking.solver.kernels.batch import write_response
 from rocking.solver.kernels.event_loop import advance_by_arc, init_state
+from rocking.solver.rules import set_block, write_response
 from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import BLOCK_SIZE, stage_state
@@ -43,8 +43,9 @@ def by_stages(pulse, s, w, eta):
 def follow_cells(s, w, eta, flight, found):
     """One cell after another, from event to event."""
     for i in range(s.size):
-        init_state(s[i], w[i], 0.0, flight)
-        while advance_by_arc(flight, eta[i]):
+        set_block(flight, s[i], eta[i], 0.0)
+        init_state(flight, w[i])
+        while advance_by_arc(flight):
             pass
         write_response(flight, found[i])
 

@@ -14,7 +14,8 @@ from rocking.excitation.pulses import PULSE_NAMES
 from rocking.solver.peak_response import SolverState
 from rocking.solver.state import FULL_PRECISION, MAX_ORDER, pulse_state, step_state
 from rocking.solver.taylor.events import evaluate_series, first_crossing, refine_root, value_and_slope
-from rocking.solver.taylor.step import init_block, take_step
+from rocking.solver.taylor.step import set_edge_lane, take_step
+from tests.kernels import edge
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
@@ -32,7 +33,8 @@ def step_from(
     limit: float = np.inf,
 ):
     steps = step_state(pulse_state(rocking.get_pulse(pulse)), precision)
-    init_block(steps, lane, alpha, omega)
+    set_edge_lane(steps, lane, edge(alpha), 0)
+    steps["omega"][lane] = omega
     for name, value in {"z0": z, "w0": w, "phase": phase, "strength": sign / 0.4, "limit": limit}.items():
         steps[name][lane] = value
     take_step(steps)
@@ -125,7 +127,8 @@ def test_lanes_are_independent():
     alone = [step_from("c1", 0.2, 0.3, 0.7, 1.9, alpha, lane=lane) for lane, alpha in enumerate((0.0, 0.3, 1e-6))]
     together = step_state(pulse_state(rocking.get_pulse("c1")))
     for lane, one in enumerate(alone):
-        init_block(together, lane, (0.0, 0.3, 1e-6)[lane], 1.9)
+        set_edge_lane(together, lane, edge((0.0, 0.3, 1e-6)[lane]), 0)
+        together["omega"][lane] = 1.9
         for name in ("z0", "w0", "phase", "strength", "limit"):
             together[name][lane] = one[name][lane]
     take_step(together)
@@ -138,7 +141,8 @@ def test_lanes_are_independent():
 @pytest.mark.parametrize("alpha", [0.0, 1e-9, 0.3, 1.5])
 def test_acceleration_at_uplift_is_exactly_zero(alpha):
     steps = step_state(pulse_state(rocking.get_pulse("sine")))
-    init_block(steps, 0, alpha, 2.0)
+    set_edge_lane(steps, 0, edge(alpha), 0)
+    steps["omega"][0] = 2.0
     steps["starts_at_uplift"][0], steps["phase"][0], steps["strength"][0], steps["limit"][0] = 1.0, 0.4, -2.5, 1.0
     take_step(steps)
     assert steps["z"][2, 0] == 0.0

@@ -9,7 +9,7 @@ import pytest
 import rocking
 from rocking.excitation.pulses import WaveletPulse
 from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.peak_response import solve_cells, solver_state
+from rocking.solver.peak_response import NO_BODIES, solve_cells, solver_state
 from rocking.solver.stages.batch import LEFT
 from rocking.solver.state import FULL_PRECISION, RESPONSE_RECORD, WAVELET_SERIES_LENGTH
 from tests.solver.test_stages import assert_agree, assert_equal, by_stages, cells
@@ -36,9 +36,8 @@ def frequencies(pulse, s, w):
 
 def by_steps(pulse, s, w, eta):
     found = np.zeros(s.size, RESPONSE_RECORD)
-    solve_batch(
-        s, w, eta, np.zeros(s.size), *solver_state.of_steps(pulse, FULL_PRECISION), np.zeros(1, np.uint8), found
-    )
+    state = solver_state.of_steps(pulse, FULL_PRECISION)
+    solve_batch(s, w, eta, np.zeros(s.size), NO_BODIES, *state, np.zeros(1, np.uint8), found, np.empty((0, 2)))
     return found
 
 

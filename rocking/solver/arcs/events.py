@@ -78,7 +78,7 @@ def long_flight(flight: Record) -> tuple[int, float, float, float, float]:
     start, omega = flight.phase, flight.omega
     z_left, w_left, h_left = 0.0, flight.w0, 0.0
     known = True
-    sign, limit = flight.sign, 1.0 + flight.a
+    sign, limit = flight.sign, 1.0 + flight.a[0]
     largest = 0.0
     left, count = flight.interval, flight.interval_count
     while left < count:

@@ -11,25 +11,11 @@ from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
 from rocking.solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
+from rocking.solver.rules import set_block, set_body, write_response
 from rocking.solver.state import IN_FLIGHT
 from rocking.solver.taylor.flight import MAX_STEPS, free_lanes, process_step, start_steps
 from rocking.solver.taylor.lane_events import locate_events
-from rocking.solver.taylor.step import init_block, take_step
-
-
-@kernel
-def write_response(flight: Record, response: Record) -> None:
-    """Write the response of a cell."""
-    response.outcome, response.chatter, response.impacts, response.peak_mode = (
-        flight.outcome,
-        flight.chatter,
-        flight.impacts,
-        flight.peak_mode,
-    )
-    response.exceeded_alpha = not (flight.peak_rotation <= 1.0)  # also where it is nan
-    response.peak_rotation, response.uplift_time = flight.peak_rotation, flight.uplift_time
-    response.first_impact_time, response.first_impact_velocity = flight.first_impact_time, flight.first_impact_velocity
-    response.end_rotation, response.end_velocity = flight.end_rotation, flight.end_velocity
+from rocking.solver.taylor.step import take_step
 
 
 @kernel
@@ -39,28 +25,44 @@ def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha:
 
 
 @kernel
-def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record) -> bool:
+def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record, sides: FloatArray) -> bool:
     """Write the response of a finished cell and start the next flight of the next eta; False if there is none."""
     while True:
         write_response(flight, responses[flight.cell])
+        if flight.each_side == 1:
+            sides[flight.cell, 0], sides[flight.cell, 1] = flight.side_peak[0], flight.side_peak[1]
         if flight.cell == flight.last_cell:
             return False
         flight.cell += 1
+        flight.eta[0] = flight.eta[1] = eta[flight.cell]
         if flight.first_flight_known == 0:  # no uplift, whatever eta
             continue
-        if repeat_first_flight(flight, eta[flight.cell]) and start_flight(flight):
+        if repeat_first_flight(flight) and start_flight(flight):
             return True
 
 
 @kernel
-def init_cell(flight: Record, first: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> int:
+def init_cell(
+    flight: Record,
+    first: int,
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    bodies: Record,
+) -> int:
     """Initialise the state of the cell `first`; returns the first cell that differs in more than eta."""
     flight.cell, flight.last_cell = first, first
+    if len(bodies) > 0:
+        set_body(flight, bodies[first], True)
+        init_state(flight, omega[first])
+        return first + 1
     while flight.last_cell + 1 < len(slenderness) and same_cell(
         flight.cell, flight.last_cell + 1, slenderness, omega, alpha
     ):
         flight.last_cell += 1
-    init_state(slenderness[first], omega[first], alpha[first], flight)
+    set_block(flight, slenderness[first], eta[first], alpha[first])
+    init_state(flight, omega[first])
     return flight.last_cell + 1
 
 
@@ -74,17 +76,19 @@ def next_cell(
     omega: FloatArray,
     eta: FloatArray,
     alpha: FloatArray,
+    bodies: Record,
     stop: FloatArray,
     responses: Record,
+    sides: FloatArray,
 ) -> int:
     """Put the next cell with an uplift into a lane; returns the cell after it."""
     while following < len(slenderness) and not is_stopped(stop):
-        following = init_cell(flight, following, slenderness, omega, alpha)
+        following = init_cell(flight, following, slenderness, omega, eta, alpha, bodies)
         if start_flight(flight):
-            init_block(steps, lane, flight.alpha, flight.omega)
+            steps.omega[lane] = flight.omega
             start_steps(flight, steps, lane)
             return following
-        continue_with_next_eta(flight, eta, responses)
+        continue_with_next_eta(flight, eta, responses, sides)
     flight.cell = -1
     return following
 
@@ -95,10 +99,12 @@ def solve_batch(
     omega: FloatArray,
     eta: FloatArray,
     alpha: FloatArray,
+    bodies: Record,
     flights: Record,
     steps: Record,
     stop: FloatArray,
     responses: Record,
+    sides: FloatArray,
 ) -> None:
     """Follow blocks from rest to their final outcome, by Taylor steps.
 
@@ -106,19 +112,25 @@ def solve_batch(
     ----------
     slenderness, omega, eta, alpha : float arrays (cells,)
         1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
+    bodies : array (cells,) of `BODY_CELL`, or (0,)
+        Bodies with two edges, instead of slenderness, eta and alpha.
     flights, steps
         Solver state: an array (LANES,) of records of `pulse_state`, and `step_state`.
     stop : uint8 array (1,)
         Once another thread sets it to 1, the function returns within a flight or a Taylor step; responses are missing.
     responses : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
+    sides : float array (cells, 2), or (0, 2)
+        Of `bodies`, filled with the largest z on the right and the left edge; nan where the body overturns.
     """
     following, busy, taken = 0, 0, steps.taken
     free_lanes(steps)
     for lane in range(LANES):
         taken[lane] = 0
     for lane in range(LANES):
-        following = next_cell(flights[lane], steps, lane, following, slenderness, omega, eta, alpha, stop, responses)
+        following = next_cell(
+            flights[lane], steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, sides
+        )
         if flights[lane].cell >= 0:
             busy += 1
     while busy > 0 and not is_stopped(stop):
@@ -136,11 +148,13 @@ def solve_batch(
                 continue
             taken[lane] = 0
             flight.length = flight.elapsed
-            going = end_flight(flight, eta[flight.cell], ended, w, z, flight.largest_z) and start_flight(flight)
-            if going or continue_with_next_eta(flight, eta, responses):
+            going = end_flight(flight, ended, w, z, flight.largest_z) and start_flight(flight)
+            if going or continue_with_next_eta(flight, eta, responses, sides):
                 start_steps(flight, steps, lane)
                 continue
-            following = next_cell(flight, steps, lane, following, slenderness, omega, eta, alpha, stop, responses)
+            following = next_cell(
+                flight, steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, sides
+            )
             if flight.cell < 0:
                 steps.in_use[lane] = 0.0
                 busy -= 1

@@ -5,20 +5,19 @@ from __future__ import annotations
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking.solver.records.event_loop import cut_time, restoring_at
 from rocking.solver.records.piece import follow_piece, hyperbolic
-from rocking.solver.records.samples import LATER, SHAPE
+from rocking.solver.records.samples import LATER, SHAPE, TIME, interval_length
 from rocking.solver.state import IMPACT, OVERTURNS, PULSE_END
 
 
 @kernel
 def follow_interval(
-    block: Record, q0: float, q1: float, s: float, z: float, w: float, at_uplift: bool
+    block: Record, h: float, q0: float, q1: float, s: float, z: float, w: float, at_uplift: bool
 ) -> tuple[float, float, float]:
-    """Follow a flight from time `s` to the end of a sample interval with q from `q0` to `q1` at its ends.
+    """Follow a flight from time `s` to the end of a sample interval of length `h` with q from `q0` to `q1` at its ends.
 
     Updates `block.largest_z`. Returns the time of the impact since the left end, -1 if there is none, and z and w there
     or at the right end.
     """
-    h = block.h
     r = (q1 - q0) / h
     at = 0.0 if at_uplift else (q0 if s == 0.0 else q0 + r * s)
     if (q0 < 0.0 < q1 or q1 < 0.0 < q0) and not at_uplift:
@@ -46,21 +45,27 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
     Returns what ended it, the interval and the time since its left end, z and w there. Beyond z + w = 1 + max later |u|
     the block certainly overturns, since (z + w)' = (z + w) - q.
     """
-    f, later, a, sign, h = samples[SHAPE], samples[LATER], block.a, block.sign, block.h
+    f, later, a, sign = samples[SHAPE], samples[LATER], block.a[0], block.sign
     count = len(f) - 1
     k, s = block.interval, block.s
-    q0, q1 = restoring_at(block, samples, sign, k), restoring_at(block, samples, sign, k + 1)
-    impact, z, w = follow_interval(block, q0, q1, s, 0.0, block.w0, block.starts_at_uplift == 1)
+    h = interval_length(block, samples, k)
+    q0, q1 = restoring_at(block, samples, k), restoring_at(block, samples, k + 1)
+    impact, z, w = follow_interval(block, h, q0, q1, s, 0.0, block.w0, block.starts_at_uplift == 1)
     block.stepped += 1
     if impact >= 0.0:
         return IMPACT, k, impact, z, w
     k += 1
-    cosh1, sinh, above = hyperbolic(h)
-    above, slope = above / h, cosh1 / h
-    known, sagitta = max(block.peak_rotation, block.largest_z), 0.125 * h * h
+    known = max(block.peak_rotation, block.largest_z)
+    cosh1, sinh, above, slope, sagitta = 0.0, 0.0, 0.0, 0.0, 0.0
+    time, unit, at = samples[TIME], -1.0, samples[TIME, k]
     while k < count:
         if z + w > 1.0 + a * later[k]:
             return OVERTURNS, k, 0.0, z, w
+        step, at = time[k + 1] - at, time[k + 1]
+        if step != unit:  # once for equidistant samples
+            unit, h = step, block.h * step
+            cosh1, sinh, above = hyperbolic(h)
+            above, slope, sagitta = above / h, cosh1 / h, 0.125 * h * h
         q0, q1 = q1, 1.0 + sign * a * f[k + 1]
         c, rise = z - q0, q1 - q0
         # grouped so that the chain of operations from one sample to the next is short
@@ -80,7 +85,7 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
         if plain:
             z, w = z1, w1
         else:
-            impact, z, w = follow_interval(block, q0, q1, 0.0, z, w, False)
+            impact, z, w = follow_interval(block, h, q0, q1, 0.0, z, w, False)
             known = max(known, block.largest_z)
             if impact >= 0.0:
                 return IMPACT, k, impact, z, w

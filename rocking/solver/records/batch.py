@@ -1,4 +1,4 @@
-"""Many blocks under one recorded motion: slender ones by exact arcs one after another, rigid ones `LANES` at a time.
+"""Many bodies under samples: slender blocks by exact arcs one after another, others by Taylor steps, `LANES` at a time.
 
 A SIMD lane takes the next block as soon as its block is finished.
 """
@@ -10,25 +10,18 @@ from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
 from rocking.solver.records.arc_flight import flight_by_arcs
-from rocking.solver.records.event_loop import (
-    final_outcome,
-    init_block_state,
-    on_impact,
-    start_flight,
-    update_peak,
-    write_response,
-)
+from rocking.solver.records.event_loop import init_body_state, on_impact, start_flight
 from rocking.solver.records.taylor_flight import process_step, start_steps
 from rocking.solver.records.taylor_step import take_step
+from rocking.solver.rules import final_outcome, update_peak, write_response
 from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS
 from rocking.solver.taylor.flight import MAX_STEPS
-from rocking.solver.taylor.step import init_block
 
 
 @kernel
 def end_flight(block: Record, samples: FloatArray, ended: int, k: int, s: float, z: float, w: float) -> bool:
     """End a flight in the interval `k` at time `s` with z and w; False if it was the last."""
-    update_peak(block, block.largest_z, block.impacts, 0)
+    update_peak(block, block.side, block.largest_z, block.impacts, 0)
     if ended != IMPACT:
         final_outcome(block, z, w, ended == OVERTURNS)
         return False
@@ -36,26 +29,24 @@ def end_flight(block: Record, samples: FloatArray, ended: int, k: int, s: float,
     return True
 
 
+@kernel
+def write_cell(block: Record, cell: int, responses: Record, sides: FloatArray) -> None:
+    """Write the response of a cell, and the largest z on both edges where they are wanted."""
+    write_response(block, responses[cell])
+    if block.each_side == 1:
+        sides[cell, 0], sides[cell, 1] = block.side_peak[0], block.side_peak[1]
+
+
 @entry
-def solve_slender(
-    samples: FloatArray,
-    step: FloatArray,
-    slenderness: FloatArray,
-    eta: FloatArray,
-    block: Record,
-    stop: FloatArray,
-    responses: Record,
-) -> int:
-    """Follow slender blocks from rest to their final outcome.
+def solve_slender(samples: FloatArray, cells: Record, block: Record, stop: FloatArray, responses: Record) -> int:
+    """Follow slender blocks from rest to their final outcome, without vertical motion.
 
     Parameters
     ----------
-    samples : float array (3, samples)
-        Of `motion_samples`.
-    step : float array (cells,)
-        Length of a sample interval p dt of each block [tau].
-    slenderness, eta : float arrays (cells,)
-        1/a > 0, restitution in [0, 1] [-].
+    samples : float array (7, samples)
+        Of `sample_rows`.
+    cells : array (cells,) of `BODY_CELL`
+        Blocks with equal edges and alpha = 0.
     block
         Solver state, a record `BLOCK_STATE`.
     stop : uint8 array (1,)
@@ -69,10 +60,10 @@ def solve_slender(
         Number of sample intervals followed.
     """
     stepped = 0
-    for cell in range(len(slenderness)):
+    for cell in range(len(cells)):
         if is_stopped(stop):
             break
-        init_block_state(block, slenderness[cell], eta[cell], 0.0, step[cell])
+        init_body_state(block, cells[cell], False)
         while start_flight(block, samples) and not is_stopped(stop):
             ended, k, s, z, w = flight_by_arcs(block, samples)
             if not end_flight(block, samples, ended, k, s, z, w):
@@ -89,57 +80,48 @@ def next_cell(
     steps: Record,
     lane: int,
     following: int,
-    step: FloatArray,
-    slenderness: FloatArray,
-    eta: FloatArray,
-    alpha: FloatArray,
+    cells: Record,
     responses: Record,
+    sides: FloatArray,
 ) -> int:
-    """Put the next block that uplifts into a lane; returns the cell after it."""
-    while following < len(slenderness):
+    """Put the next body that uplifts into a lane; returns the cell after it."""
+    while following < len(cells):
         cell = following
         following += 1
-        init_block_state(block, slenderness[cell], eta[cell], alpha[cell], step[cell])
+        init_body_state(block, cells[cell], len(sides) > 0)
         if start_flight(block, samples):
             block.cell = cell
-            init_block(steps, lane, alpha[cell], 1.0)
             start_steps(block, samples, steps, lane)
             return following
-        write_response(block, responses[cell])
+        write_cell(block, cell, responses, sides)
     block.cell = -1
     # the lane continues with a block at rest
-    steps.z0[lane], steps.w0[lane], steps.force[lane], steps.force_rate[lane], steps.limit[lane] = (
-        0.0,
-        0.0,
-        -1.0,
-        0.0,
-        1.0,
-    )
+    steps.z0[lane], steps.w0[lane], steps.force[lane], steps.force_rate[lane] = 0.0, 0.0, -1.0, 0.0
+    steps.vertical[lane], steps.vertical_rate[lane], steps.limit[lane] = 1.0, 0.0, 1.0
     return following
 
 
 @entry
-def solve_rigid(
+def solve_by_steps(
     samples: FloatArray,
-    step: FloatArray,
-    slenderness: FloatArray,
-    eta: FloatArray,
-    alpha: FloatArray,
+    cells: Record,
     blocks: Record,
     steps: Record,
     stop: FloatArray,
     responses: Record,
+    sides: FloatArray,
 ) -> int:
-    """Follow rigid blocks from rest to their final outcome.
+    """Follow bodies from rest to their final outcome, by Taylor steps.
 
     Parameters
     ----------
-    samples, step, slenderness, eta, stop, responses
-        As for `solve_slender`.
-    alpha : float array (cells,)
-        Slenderness angle [rad], (0, pi/2).
+    samples, cells, stop, responses
+        As for `solve_slender`, for any body and motion.
     blocks, steps
         Solver state: an array (LANES,) of records `BLOCK_STATE`, and `step_state`.
+    sides : float array (cells, 2)
+        Filled with the largest z on the right and the left edge, nan where the body overturns. Of shape (0, 2) if they
+        are not wanted, for blocks with equal edges.
 
     Returns
     -------
@@ -151,7 +133,7 @@ def solve_rigid(
     for lane in range(LANES):
         taken[lane] = 0
     for lane in range(LANES):
-        following = next_cell(blocks[lane], samples, steps, lane, following, step, slenderness, eta, alpha, responses)
+        following = next_cell(blocks[lane], samples, steps, lane, following, cells, responses, sides)
         if blocks[lane].cell >= 0:
             busy += 1
     while busy > 0 and not is_stopped(stop):
@@ -170,9 +152,9 @@ def solve_rigid(
             if end_flight(block, samples, ended, block.interval, s, z, w) and start_flight(block, samples):
                 start_steps(block, samples, steps, lane)
                 continue
-            write_response(block, responses[block.cell])
+            write_cell(block, block.cell, responses, sides)
             stepped += block.stepped
-            following = next_cell(block, samples, steps, lane, following, step, slenderness, eta, alpha, responses)
+            following = next_cell(block, samples, steps, lane, following, cells, responses, sides)
             if block.cell < 0:
                 busy -= 1
     return stepped

@@ -13,23 +13,28 @@ from rocking._numba.compilation import contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import InvalidArgumentError, broadcast, in_range, integer
 from rocking.excitation.records.record import Record
+from rocking.excitation.sampled import SampledPulse
 from rocking.model.checks import check, check_alpha
 from rocking.model.fields import RESPONSE_FIELDS
 from rocking.model.parameters import FREQUENCY_PARAMETER, RESTITUTION, SLENDERNESS
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
-from rocking.solver.records.batch import solve_rigid, solve_slender
-from rocking.solver.records.samples import motion_samples
-from rocking.solver.records.state import BLOCK_STATE, step_state
-from rocking.solver.state import RESPONSE_RECORD
+from rocking.solver.records.batch import solve_by_steps, solve_slender
+from rocking.solver.records.samples import motion_samples, pulse_samples
+from rocking.solver.records.state import body_states, step_state
+from rocking.solver.state import RESPONSE_RECORD, block_cells
 
 Array = NDArray[np.float64]
 
 MAX_INTERVAL = 50.0
 """Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
 
+MAX_DIVIDED = 200_000
+"""Most intervals into which the samples of a pulse are divided where they are longer than `MAX_INTERVAL`."""
+
 MIN_CHUNK, MAX_CHUNK = 64, 512
-"""Cells given to a thread at a time: about a millisecond of work at least, and full SIMD lanes for most of it."""
+"""Cells given to a thread at a time: about a millisecond of work at least, and full SIMD lanes for most of it. Of a
+motion with fewer samples than an ordinary record, 2,000, so many more."""
 
 
 def record_response(
@@ -88,9 +93,9 @@ def record_response(
     checked = check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha)
     groups = broadcast(given, checked)
     shape = groups[0].shape
-    cells = [contiguous_array(group).ravel() for group in groups]
-    cells[0] = cells[0] * motion.time_step
-    records = _solve_cells(motion, cells, cores, stop)
+    p, s, eta, angle = (contiguous_array(group).ravel() for group in groups)
+    cells = block_cells(p * motion.time_step, s, eta, angle)
+    records, _ = solve_bodies(motion_samples(motion), cells, cores, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
     return Response(
         **found,
@@ -135,30 +140,94 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
     return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
 
 
-def _solve_cells(
-    motion: Record, cells: list[NDArray[np.float64]], threads: int, stop: StopFlag | None
+def solve_pulse(
+    pulse: SampledPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
-    """Response records (size,) of cells given by four arrays (size,): p dt [tau], 1/a, eta, alpha [rad]."""
-    rigid = cells[3] > 0.0
-    records = np.empty(rigid.size, RESPONSE_RECORD)
-    if rigid.any() and not rigid.all():
-        for kind in (rigid, ~rigid):
-            records[kind] = _solve_cells(motion, [cell[kind] for cell in cells], threads, stop)
-        return records
-    samples = motion_samples(motion)
-    if rigid.size and rigid[0]:
-        longest = float(cells[0].max())
+    """Response records (size,) of blocks under a sampled pulse; `cells` as for `solve_cells` of `peak_response`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the frequency ratio is so low that the samples had to be divided into more than `MAX_DIVIDED` intervals.
+    StoppedError
+        If `stop` was set.
+    """
+    slenderness, omega, eta = cells[:3]
+    alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
+    return solve_bodies(
+        pulse_rows(pulse, float(omega.min(initial=math.inf))),
+        block_cells(1.0 / omega, slenderness, eta, alpha),
+        threads,
+        stop,
+    )[0]
+
+
+def pulse_rows(pulse: SampledPulse, lowest: float) -> Array:
+    """`pulse_samples` with intervals of at most `MAX_INTERVAL` at frequency ratios from `lowest` on.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If that takes more than `MAX_DIVIDED` intervals.
+    """
+    longest = float(np.diff(pulse.phases).max())
+    parts = max(1, math.ceil(longest / (MAX_INTERVAL * lowest)))
+    most = max(1, MAX_DIVIDED // pulse.values.size)
+    if parts > most:
+        least = longest / (MAX_INTERVAL * most)
+        raise InvalidArgumentError(
+            "frequency_ratio", lowest, f"at least {least:.3g} for this pulse of {pulse.values.size} samples"
+        )
+    return pulse_samples(pulse, parts)
+
+
+def solve_bodies(
+    samples: Array,
+    cells: NDArray[np.void],
+    threads: int | None,
+    stop: StopFlag | None,
+    each_side: bool = False,
+) -> tuple[NDArray[np.void], Array]:
+    """Response records (size,) of bodies under samples, and the largest z on both edges.
+
+    Parameters
+    ----------
+    samples : float array (7, samples)
+        Of `sample_rows`.
+    cells : array (size,) of `BODY_CELL`
+        The bodies.
+    threads : int or None
+        Number of threads, None: all cores.
+    stop : StopFlag or None
+        Cancels the work.
+    each_side : bool
+        Whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size, 2), the
+        right edge first; else the second result has the shape (0, 2).
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
+    records, sides = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, 2))
+    if by_steps.any() and not by_steps.all():
+        for kind in (by_steps, ~by_steps):
+            records[kind] = solve_bodies(samples, cells[kind], threads, stop)[0]
+        return records, sides
+    if cells.size and by_steps[0]:
 
         def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-            blocks = np.zeros(LANES, BLOCK_STATE)
-            solve_rigid(samples, *(cell[part] for cell in cells), blocks, step_state(longest), flag, records[part])
+            blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])
+            solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], sides[part])
 
     else:
 
         def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-            block = np.zeros(1, BLOCK_STATE)[0]
-            solve_slender(samples, *(cell[part] for cell in cells[:3]), block, flag, records[part])
+            solve_slender(samples, cells[part], body_states(samples, 1)[0], flag, records[part])
 
-    chunk_size = min(max(math.ceil(rigid.size / threads), MIN_CHUNK), MAX_CHUNK)
-    fill_chunks(fill, rigid.size, chunk_size, threads, stop)
-    return records
+    cores = int(threads or AVAILABLE_CORES)
+    fewest = max(MIN_CHUNK, MIN_CHUNK * 2000 // samples.shape[1])
+    chunk_size = min(max(math.ceil(cells.size / cores), fewest), max(MAX_CHUNK, fewest))
+    fill_chunks(fill, cells.size, chunk_size, cores, stop)
+    return records, sides

@@ -1,58 +1,55 @@
-"""State of the solver under a recorded motion: a record for each block, a record for the Taylor steps of `LANES`."""
+"""State of the solver under samples: a record for each body, a record for the Taylor steps of `LANES`."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
-from rocking.solver.state import FULL_PRECISION, MAX_ORDER
+from rocking.solver.records.samples import TIME
+from rocking.solver.state import (
+    AT_REST,
+    BODY_FIELDS,
+    EDGE_LANES,
+    FULL_PRECISION,
+    MAX_ORDER,
+    PROGRESS_FIELDS,
+)
 
 MIN_ORDER = 6
 """Smallest degree of the Taylor steps."""
 
 BLOCK_STATE = np.dtype(
     [
-        # the block and the motion
-        ("a", np.float64),  # 1/slenderness: u = a f
-        ("eta", np.float64),
-        ("alpha", np.float64),  # slenderness angle [rad], 0: slender limit
-        ("h", np.float64),  # length of a sample interval [tau]
+        *BODY_FIELDS,
+        *PROGRESS_FIELDS,
+        ("h", np.float64),  # unit of the times of the samples [tau]
+        ("vertical", np.float64),  # factor of the vertical component
+        ("equidistant", np.int64),  # whether that is the length of each sample interval
         ("cell", np.int64),  # index of the cell, -1: none
         # position in the motion, where the next flight starts
         ("interval", np.int64),  # sample interval
         ("s", np.float64),  # time since its left end [tau]
-        ("w0", np.float64),  # velocity there
-        ("sign", np.float64),  # sgn(theta) of the flight
-        ("at_rest", np.int64),  # whether the next flight starts with an uplift
-        ("starts_at_uplift", np.int64),  # whether it starts with an uplift through |u| = 1, where q is exactly 0
-        # progress
-        ("uplifts", np.int64),  # uplifts from rest so far
-        ("impacts_before_uplift", np.int64),
-        ("largest_z", np.float64),  # largest z of the flight so far
         ("stepped", np.int64),  # sample intervals followed so far, for benchmarks
         # pieces of a flight by Taylor steps, see `rocking.solver.records.taylor_flight`
+        ("length", np.float64),  # of the interval [tau]
         ("piece_end", np.float64),  # time since the left end of the interval at which the piece ends [tau]
         ("destabilised", np.int64),  # whether q <= 0 on the piece
         ("from_ground", np.int64),  # whether the step starts at z = 0
-        # the response, see `rocking.model.fields`
-        ("outcome", np.int64),
-        ("peak_rotation", np.float64),
-        ("peak_mode", np.int64),
-        ("impacts", np.int64),
-        ("chatter", np.int64),
-        ("uplift_time", np.float64),
-        ("first_impact_time", np.float64),
-        ("first_impact_velocity", np.float64),
-        ("end_rotation", np.float64),
-        ("end_velocity", np.float64),
-        ("end_sign", np.float64),
     ],
     align=True,
 )
-"""Layout of the record of a block."""
+"""Layout of the record of a body."""
+
+
+def body_states(samples: NDArray[np.float64], count: int) -> NDArray[np.void]:
+    """Records `BLOCK_STATE` (count,) for bodies under the motion `samples` of `sample_rows`."""
+    states = np.zeros(count, BLOCK_STATE)
+    states["equidistant"] = int((np.diff(samples[TIME]) == 1.0).all())
+    return states
 
 
 def _steps_layout() -> np.dtype[np.void]:
@@ -66,24 +63,21 @@ def _steps_layout() -> np.dtype[np.void]:
             # start of the step
             ("z0", np.float64, lanes),
             ("w0", np.float64, lanes),
-            ("force", np.float64, lanes),  # sgn(theta) u there,
+            ("force", np.float64, lanes),  # F there,
             ("force_rate", np.float64, lanes),  # and its rate
+            ("vertical", np.float64, lanes),  # V there,
+            ("vertical_rate", np.float64, lanes),  # and its rate
             ("limit", np.float64, lanes),  # largest step size [tau]
-            # the block, as in `rocking.solver.state.STEP_STATE`
+            # the edges
             ("omega", np.float64, lanes),
-            ("slender", np.float64, lanes),
-            ("alpha", np.float64, lanes),
-            ("sine_alpha", np.float64, lanes),
-            ("cosine_alpha", np.float64, lanes),
-            ("restoring_factor", np.float64, lanes),
-            ("s_rate", np.float64, lanes),
-            ("c_rate", np.float64, lanes),
+            *EDGE_LANES,
             # the step
             ("h", np.float64, lanes),  # step size [tau]
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
             ("taken", np.int64, lanes),  # number of steps of the flight
+            ("has_vertical", np.int64),  # whether V is not 1 everywhere
             # accuracy
             ("order", np.int64),  # degree of the steps, `MIN_ORDER` to `MAX_ORDER`
             ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
@@ -108,14 +102,14 @@ def taylor_order(interval: float) -> int:
     return order
 
 
-def step_state(interval: float) -> Record:
-    """Taylor steps for sample intervals of at most this length [tau]."""
+def step_state(samples: NDArray[np.float64], cells: NDArray[np.void]) -> Record:
+    """Taylor steps for the motion `samples` of `sample_rows` and cells `BODY_CELL`."""
     memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
     start = -memory.ctypes.data % VECTOR_BYTES
     steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
-    steps["order"] = taylor_order(interval)
+    steps["order"] = taylor_order(float(cells["rate"].max()) * float(np.diff(samples[TIME]).max()))
     steps["log_precision"] = math.log2(FULL_PRECISION)
-    # unused lanes hold a block at rest, which produces no infinities
-    for name in ("slender", "alpha", "sine_alpha", "cosine_alpha", "restoring_factor", "omega"):
+    steps["has_vertical"] = int(cells["vertical"].any())
+    for name in AT_REST:
         steps[name] = 1.0
     return steps

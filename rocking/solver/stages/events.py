@@ -1,6 +1,6 @@
 """Ends of flights of `LANES` blocks: impacts, chatter, rest, and the outcome by energy after the pulse.
 
-The vector form of `rocking.solver.kernels.event_loop`, `chatter` and `free_rocking` for slender blocks.
+The vector form of `rocking.solver.rules` for slender blocks.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
-from rocking.solver.kernels.event_loop import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, SAFE
+from rocking.solver.rules import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, SAFE
 from rocking.solver.stages.excitation import excitation_at_angles, set_angles
 from rocking.solver.stages.state import (
     AT_UPLIFT,
@@ -58,7 +58,7 @@ def end_flights(pulse: Record, group: Record, sign: float) -> None:
 
 @kernel
 def update_peaks(group: Record, where: Any, peak: SimdVector, impacts: SimdVector, free: SimdVector) -> None:
-    """Update the largest peak; see `rocking.solver.kernels.event_loop.update_peak`."""
+    """Update the largest peak; see `rocking.solver.rules.update_peak`."""
     before = load(group.columns, PEAK)
     uplifts, impacts_before = load(group.columns, UPLIFTS), load(group.columns, IMPACTS_BEFORE)
     mode = float(MODES_PER_UPLIFT) * (uplifts - 1.0) + 2.0 * (impacts - impacts_before) + free
@@ -68,7 +68,7 @@ def update_peaks(group: Record, where: Any, peak: SimdVector, impacts: SimdVecto
 
 @kernel
 def final_outcomes(group: Record, over: Any) -> None:
-    """Outcome of the cells `over` from the energy at the end of the pulse; see `free_outcome` for the equations."""
+    """Outcome of the cells `over` from the energy at the end of the pulse; see `rocking.solver.rules.final_outcome`."""
     z, w, eta = load(group.end_z, 0), load(group.end_w, 0), load(group.columns, ETA)
     impacts = load(group.columns, IMPACTS)
     x = 1.0 - z

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry
-from rocking.solver.kernels.batch import write_response
 from rocking.solver.kernels.event_loop import advance_by_arc, init_state
+from rocking.solver.rules import set_block, write_response
 from rocking.solver.stages.batch import LEFT
 
 
@@ -38,8 +38,9 @@ def solve_remainder(
         followed = response.impacts
         uplift_time, impact_time = response.uplift_time, response.first_impact_time
         impact_velocity = response.first_impact_velocity
-        init_state(slenderness[cell], omega[cell], 0.0, pulse)
-        while advance_by_arc(pulse, eta[cell]) and not is_stopped(stop):
+        set_block(pulse, slenderness[cell], eta[cell], 0.0)
+        init_state(pulse, omega[cell])
+        while advance_by_arc(pulse) and not is_stopped(stop):
             pass
         write_response(pulse, response)
         if followed > 0:  # the same bits for each eta

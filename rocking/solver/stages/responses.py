@@ -7,7 +7,7 @@ import math
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.memory import prefetch_for_write
 from rocking._numba.simd import LANES, load, pack_integers, scatter_records, select, splat, store
-from rocking.solver.kernels.event_loop import NO_UPLIFT
+from rocking.solver.rules import NO_UPLIFT
 from rocking.solver.stages.state import (
     CHATTER,
     FIRST_IMPACT_TIME,

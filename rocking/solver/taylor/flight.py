@@ -14,10 +14,11 @@ import math
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import splat, store
 from rocking.errors import SearchError
+from rocking.solver.rules import known_rotation
 from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS, PULSE_END
 from rocking.solver.taylor.events import evaluate_series, first_crossing, refine_root, second_derivative_bound
 from rocking.solver.taylor.lane_events import UNDECIDED, locate_events
-from rocking.solver.taylor.step import init_block, take_step
+from rocking.solver.taylor.step import set_edge_lane, take_step
 
 MAX_STEPS = 1_000_000
 """Largest number of Taylor steps of one flight, a hundred times what is needed. The step size is of the order of
@@ -59,10 +60,11 @@ def free_lanes(steps: Record) -> None:
 def start_steps(flight: Record, steps: Record, lane: int) -> None:
     """Set a lane to the start of a flight."""
     flight.elapsed, flight.largest_z = 0.0, 0.0
+    set_edge_lane(steps, lane, flight, flight.side)
     steps.phase[lane], steps.z0[lane], steps.w0[lane] = flight.phase, 0.0, flight.w0
     steps.starts_at_uplift[lane] = flight.starts_at_uplift
-    steps.strength[lane] = flight.sign * flight.a
-    steps.in_use[lane], steps.at_ground[lane], steps.known[lane] = 1.0, 1.0, flight.peak_rotation
+    steps.strength[lane] = flight.strength
+    steps.in_use[lane], steps.at_ground[lane], steps.known[lane] = 1.0, 1.0, known_rotation(flight)
     next_segment(flight, steps, lane)
 
 
@@ -155,10 +157,10 @@ def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, 
     if flight.alpha > 0.0:
         if max(z, flight.largest_z) >= 0.5 * math.pi / flight.alpha:
             return OVERTURNS, w, z
-    elif z + w >= 1.0 + flight.a:  # see `long_flight`
+    elif z + w >= 1.0 + flight.a[0]:  # see `long_flight`
         return OVERTURNS, w, z
     steps.z0[lane], steps.w0[lane], steps.starts_at_uplift[lane] = z, w, 0.0
-    steps.at_ground[lane], steps.known[lane] = 0.0, max(flight.peak_rotation, flight.largest_z)
+    steps.at_ground[lane], steps.known[lane] = 0.0, max(known_rotation(flight), flight.largest_z)
     if h < steps.limit[lane]:
         steps.phase[lane] += steps.omega[lane] * h
         steps.limit[lane] = (flight.interval_phase[flight.segment_end] - steps.phase[lane]) / steps.omega[lane]
@@ -175,7 +177,7 @@ def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, 
 def flight_by_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
     """Follow one flight in the first lane to its end, as `process_step`."""
     free_lanes(steps)
-    init_block(steps, 0, flight.alpha, flight.omega)
+    steps.omega[0] = flight.omega
     start_steps(flight, steps, 0)
     for _ in range(MAX_STEPS):
         take_step(steps)

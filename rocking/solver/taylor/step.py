@@ -1,12 +1,14 @@
 """One Taylor step of `LANES` rocking blocks, slender or rigid, under any excitation.
 
-With z = |theta|/alpha and w = dz/dtau, (2.2) reads
+With z = |theta|/alpha and w = dz/dtau, (2.2) reads for the edge s (`rocking.solver.rules`)
 
-    z'' = -(sin(alpha)/alpha) (S + F C),  S = sin(alpha (1 - z))/sin(alpha),  C = cos(alpha (1 - z))/cos(alpha)
+    z'' = -(p_s/p)^2 (sin(alpha_s)/alpha) (S + F C),
+    S = sin(alpha_s - alpha z)/sin(alpha_s),  C = cos(alpha_s - alpha z)/cos(alpha_s)
 
-with F = sgn(theta) a f. S and C follow from S' = -(alpha/tan(alpha)) C z' and C' = alpha tan(alpha) S z'; at z = 0 both
-are 1, so that the acceleration is exactly zero at uplift through F = -1. As alpha goes to 0 this tends to (3.1), with
-S = 1 - z and C = 1, without a separate form.
+with F = sgn(theta) a_s f. S and C follow from S' = -(alpha/tan(alpha_s)) C z' and C' = alpha tan(alpha_s) S z'; at
+z = 0 both are 1, so that the acceleration is exactly zero at uplift through F = -1. As alpha goes to 0 this tends to
+(3.1), with S = 1 - z and C = 1, without a separate form. alpha_s enters as alpha (alpha_s/alpha), in lanes `alpha` and
+`ratio`; z is exact near the unstable equilibrium, where S vanishes.
 """
 
 from __future__ import annotations
@@ -18,23 +20,29 @@ from rocking.solver.excitation import expand_excitation
 
 
 @kernel
-def init_block(steps: Record, lane: int, alpha: float, omega: float) -> None:
-    """Set a lane to a block of slenderness angle `alpha` [rad] (0: slender) and frequency ratio `omega`."""
-    steps.omega[lane] = omega
-    slender, angle = (1.0, 1.0) if alpha == 0.0 else (0.0, alpha)
-    if steps.slender[lane] == slender and steps.alpha[lane] == angle and steps.s_rate[lane] != 0.0:
-        return  # the angle of the block before
-    steps.slender[lane], steps.alpha[lane] = slender, angle
+def set_edge_lane(steps: Record, lane: int, state: Record, side: int) -> None:
+    """Set a lane to an edge of the body of a solver state (`alpha` 0: slender)."""
+    slender, alpha = (1.0, 1.0) if state.alpha == 0.0 else (0.0, state.alpha)
+    ratio, stiffness = state.ratio[side], state.stiffness[side]
+    if (
+        steps.alpha[lane] == alpha
+        and steps.ratio[lane] == ratio
+        and steps.stiffness[lane] == stiffness
+        and steps.slender[lane] == slender
+        and steps.s_rate[lane] != 0.0
+    ):
+        return  # the edge of the flight before
+    steps.slender[lane], steps.alpha[lane], steps.ratio[lane], steps.stiffness[lane] = slender, alpha, ratio, stiffness
     # by the same function as S and C, so that these are exactly 1 at z = 0
-    sines, cosines = sine_and_cosine(load(steps.alpha, 0))
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * load(steps.ratio, 0))
     store(steps.sine_alpha, 0, sines)
     store(steps.cosine_alpha, 0, cosines)
-    if alpha == 0.0:
+    if slender == 1.0:
         steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
         return
     sine, cosine = steps.sine_alpha[lane], steps.cosine_alpha[lane]
     steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = (
-        sine / alpha,
+        stiffness * (sine / alpha),
         -alpha * cosine / sine,
         alpha * sine / cosine,
     )
@@ -47,7 +55,7 @@ def start_series(steps: Record) -> None:
     store(steps.z, 0, z0)
     store(steps.z, 1, w0)
     store(steps.rate, 0, w0)
-    rest = 1.0 - z0
+    rest = load(steps.ratio, 0) - z0
     sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
     store(steps.s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
     store(steps.c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))

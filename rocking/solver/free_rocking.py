@@ -2,7 +2,9 @@
 
 With z = |theta|/alpha and w = dz/dtau let X(z) = (2/alpha) sin(alpha (1 - z)/2), which is 1 - z in the slender limit.
 (2.2) without ground motion conserves X^2 - w^2 between impacts, with the barrier at X = 0 (theta = alpha). The block
-escapes when w >= X, which is (3.8) in the slender limit; otherwise it returns, and at most one more impact can matter.
+escapes when w >= X, which is (3.8) in the slender limit; otherwise it returns. `rocking.solver.rules.final_outcome`
+says which impacts after the motion can matter. The functions are those of a block in its own time p t and angle alpha;
+edges that differ are scaled by the caller.
 """
 
 from __future__ import annotations
@@ -13,46 +15,45 @@ from rocking._numba.compilation import kernel
 
 
 @kernel
-def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, float, int]:
-    """Outcome from the rotation z >= 0 and the velocity w at the end of the pulse.
+def barrier_of(alpha: float) -> float:
+    """X(0) [-]: the velocity at z = 0 from which the block passes alpha."""
+    return 1.0 if alpha == 0.0 else 2.0 * math.sin(0.5 * alpha) / alpha
+
+
+@kernel
+def release(z: float, w: float, alpha: float) -> tuple[bool, float, float]:
+    """What follows from the rotation z >= 0 and the velocity w at the end of the motion, up to the next impact.
 
     Parameters
     ----------
     z, w : float
         |theta|/alpha, below pi/(2 alpha), and its rate with respect to tau [-].
-    eta : float
-        Coefficient of restitution [-], [0, 1].
     alpha : float
         Slenderness angle [rad], [0, pi/2); 0 is the slender limit.
 
     Returns
     -------
-    escapes : int
-        0: comes to rest, 1: overturns without another impact, 2: overturns after the next impact.
-    peak : float
-        Largest z from then on [-] if the block does not overturn.
-    after : int
-        1 if that peak is after the next impact, else 0.
+    escapes : bool
+        Whether the block overturns without another impact, (3.8).
+    top : float
+        Largest z up to the impact [-].
+    squared : float
+        Square of the velocity at the impact, (3.15).
     """
+    barrier = barrier_of(alpha)
     if alpha == 0.0:
-        barrier, x = 1.0, 1.0 - z
+        x = 1.0 - z
         climbed = z * (2.0 - z)  # X(0)^2 - X(z)^2
     else:
-        barrier, x = 2.0 * math.sin(0.5 * alpha) / alpha, 2.0 * math.sin(0.5 * alpha * (1.0 - z)) / alpha
+        x = 2.0 * math.sin(0.5 * alpha * (1.0 - z)) / alpha
         climbed = 4.0 * math.sin(0.5 * alpha * z) * math.sin(0.5 * alpha * (2.0 - z)) / (alpha * alpha)
     if w >= x:  # (3.8): B >= 0
-        return 1, math.inf, 0
-    # square of the impact velocity, (3.15); the second form has no cancellation far beyond alpha
+        return True, math.inf, math.inf
+    # the second form has no cancellation far beyond alpha
     squared = w * w + climbed if x > 0.0 else barrier * barrier - (x - w) * (x + w)
-    if w > 0.0:  # z increases first; since w < X, the impact velocity, and eta times it, is smaller than the barrier
-        return 0, highest_rotation(squared, math.sqrt((x - w) * (x + w)), barrier, alpha), 0
-    rebound = eta * eta * squared
-    if rebound >= barrier * barrier:  # (3.16), (3.17)
-        return 2, math.inf, 1
-    peak = highest_rotation(rebound, math.sqrt(barrier * barrier - rebound), barrier, alpha)
-    if peak > z:
-        return 0, peak, 1
-    return 0, z, 0
+    if w > 0.0:  # z increases first
+        return False, highest_rotation(squared, math.sqrt((x - w) * (x + w)), barrier, alpha), squared
+    return False, z, squared
 
 
 @kernel
