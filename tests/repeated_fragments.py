@@ -22,7 +22,7 @@ import typer
 from pydantic import ValidationError
 from rocking_api.app import create_app
 from rocking_api.http.batch import read_batch
-from rocking_api.http.errors import TooLargeError
+from rocking_api.http.errors import InvalidQueryError, TooLargeError
 from rocking_api.models.blocks import BlockRows
 from rocking_api.settings import Settings
 
@@ -185,7 +185,7 @@ def request(text: str, path: str, header: str = "") -> None:
 
 def body(text: str, form: str) -> None:
     """Read the body of a request for many points, or for many blocks."""
-    with suppress(InvalidArgumentError, ValidationError, TooLargeError):
+    with suppress(InvalidArgumentError, ValidationError, InvalidQueryError, TooLargeError):
         if form == "blocks":
             BlockRows.model_validate_json(text)
         else:

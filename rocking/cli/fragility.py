@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 Configuration = Annotated[
     str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
 ]
+
+MAX_NESTING = 100
+"""Most brackets within brackets of a suite in YAML."""
 
 MAX_LINE = 4096
 """Most characters of a line of TOML: the time of tomllib grows with the square of the parts of a key such as a.b.c."""
@@ -182,6 +186,9 @@ def _yaml(text: str) -> Any:
         import yaml  # of the extra `workflow`
     except ModuleNotFoundError:
         raise ValueError("YAML needs the package pyyaml; TOML and JSON need none") from None
+    open_brackets = accumulate((c in "[{") - (c in "]}") for c in text)
+    if max(open_brackets, default=0) > MAX_NESTING:  # the reader takes time with the square of the depth
+        raise ValueError(f"brackets are nested at most {MAX_NESTING} deep")
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:

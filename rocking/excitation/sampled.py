@@ -23,7 +23,7 @@ MAX_RATIO = 1e9
 
 @final
 class SampledPulse(AbstractPulse):
-    """A pulse shape f(phi) that is linear between samples and zero outside, scaled to max |f| = 1.
+    """A pulse of any shape, linear between samples and zero outside, scaled to the peak 1.
 
     Responses, histories, thresholds and boundaries under it are exact for this shape: no event is missed, and there is
     no time step. Equal samples, times and period make equal pulses.

@@ -95,7 +95,7 @@ class AbstractBlock(ABC):
 
     def top_displacement(self, rotation: float) -> float:
         """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
-        return self.top_height * math.sin(rotation)
+        return self.top_height * math.sin(rotation) if math.isfinite(rotation) else math.nan
 
 
 @dataclass(frozen=True, init=False)

@@ -191,7 +191,7 @@ BODIES: dict[str, dict[str, Any]] = {
 }
 """Ordinary bodies of the routes by media type."""
 
-NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Restitution)\b")
+NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Restitution|Scalar)\b")
 
 
 class LateError(BaseException):

@@ -314,7 +314,7 @@ async def exchange(app, sent: Sent) -> Received:
         "raw_path": sent.path.encode(),
         "root_path": "",
         "query_string": sent.query.encode("latin-1"),
-        "headers": [(name.encode(), value.encode("latin-1")) for name, value in sent.headers],
+        "headers": [(name.encode(), value.encode("latin-1")) for name, value in [("host", "a"), *sent.headers]],
         "client": ("127.0.0.1", 1),
         "server": ("127.0.0.1", 80),
         "state": {},

@@ -37,7 +37,8 @@ def download(results, change, **headers):
             "path": URL,
             "raw_path": URL.encode(),
             "query_string": b"",
-            "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
+            "http_version": "1.1",
+            "headers": [(name.encode(), value.encode()) for name, value in {"host": "a", **headers}.items()],
         }
         status, received, body = 0, {}, b""
 
