@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.search import UNCOUNTED, Floats, classifier, counted_code, outcomes_along
+from rocking.boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
 from rocking.equality import EqualByValue
 from rocking.errors import number
 from rocking.excitation.pulses import AbstractPulse, as_pulse
@@ -75,13 +75,16 @@ def critical_amplitude(
     StoppedError
         If `stop` was set.
     """
-    lowest = 1.0 / number("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
-    log_omega = float(np.log(check_number(FREQUENCY_RATIO, frequency_ratio)))
-    eta = check_number(RESTITUTION, restitution)
+    highest = number("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
+    omega, eta = check_number(FREQUENCY_RATIO, frequency_ratio), check_number(RESTITUTION, restitution)
+    return amplitude_changes(block_solver(as_pulse(pulse), alpha, stop), omega, eta, highest)
+
+
+def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float) -> Thresholds:
+    """`critical_amplitude` by any solver, whose amplitude is 1 at uplift."""
+    lowest, log_omega = 1.0 / highest, float(np.log(omega))
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    made = as_pulse(pulse)
-    classify = classifier(made, alpha, stop, counted_code)
-    grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classify)
+    grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classifier(solve, counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])[::-1]
     above = overturns[edge]  # 1/a falls as the amplitude rises
@@ -89,5 +92,5 @@ def critical_amplitude(
     place, met = grid[overturned], codes[overturned]
     many = met == UNCOUNTED
     if many.any():
-        met[many], _ = classifier(made, alpha, stop)(place[many], *np.array([log_omega, eta]))
+        met[many], _ = classifier(solve)(place[many], *np.array([log_omega, eta]))
     return Thresholds(1.0 / place, above, *decode_outcomes(met))

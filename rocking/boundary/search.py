@@ -63,6 +63,8 @@ Codes = NDArray[np.int64]
 Index = NDArray[np.intp]
 Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
 """From 1/a, log omega and eta, which broadcast, to the code of the outcome and its margin to another."""
+Solve = Callable[[Floats, Floats, Floats], tuple[NDArray[np.void], Floats]]
+"""From arrays (size,) of 1/a, omega and eta to response records and the margin of the outcome to another."""
 
 
 class Outcomes(Protocol):
@@ -147,14 +149,8 @@ class Found:
     chatter: NDArray[np.bool_]
 
 
-def classifier(
-    pulse: AbstractPulse,
-    alpha: Scalar | None,
-    stop: StopFlag | None = None,
-    code_of: Callable[[Outcomes], Codes] = outcome_code,
-    work: Work | None = None,
-) -> Classify:
-    """The solver as a `Classify`, which raises `StoppedError` once `stop` is set, and notes its work in `work`.
+def block_solver(pulse: AbstractPulse, alpha: Scalar | None, stop: StopFlag | None = None) -> Solve:
+    """The solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
 
     It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
 
@@ -165,17 +161,27 @@ def classifier(
     """
     angle = check_one_alpha(alpha)
 
+    def solve(slenderness: Floats, omega: Floats, eta: Floats) -> tuple[NDArray[np.void], Floats]:
+        cells = [slenderness, omega, eta, np.full(eta.size, angle)]
+        records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
+        return records, outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
+
+    return solve
+
+
+def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code, work: Work | None = None) -> Classify:
+    """A solver as a `Classify`, which notes its work in `work`."""
+
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         omega = np.clip(
             np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
         )  # rounding must not lead out of the range
-        groups = np.broadcast_arrays(slenderness, omega, eta, angle)
+        groups = np.broadcast_arrays(slenderness, omega, eta)
         cells = [contiguous_array(group).ravel() for group in groups]
-        records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
+        records, margin = solve(*cells)
         if work is not None:
             work.add(cells[2], records["impacts"])
         codes = code_of(Found(*(records[name] for name in ("outcome", "impacts", "chatter"))))
-        margin = outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
         return codes.reshape(groups[0].shape), margin.reshape(groups[0].shape)
 
     return classify

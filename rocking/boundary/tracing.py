@@ -17,7 +17,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.boundary.chains import Chains, chains_of
 from rocking.boundary.chords import refine_chords
 from rocking.boundary.columns import THINNEST
-from rocking.boundary.search import Floats, Work, classifier, layer_code, region_code
+from rocking.boundary.search import Floats, Solve, Work, block_solver, classifier, layer_code, region_code
 from rocking.boundary.tracer import CHORD, END, Tracer
 from rocking.errors import integer
 from rocking.excitation.pulses import AbstractPulse, as_pulse
@@ -109,26 +109,37 @@ def overturning_boundaries(
     stop: StopFlag | None = None,
 ) -> list[xr.Dataset]:
     """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit."""
+    etas = np.atleast_1d(check(RESTITUTION, restitution))
+    angle, made = check_one_alpha(alpha), as_pulse(pulse)
+    curves = trace_curves(block_solver(made, angle, stop), etas, frequency_ratio, slenderness, nodes)
+    for one in curves:
+        one.attrs = {"pulse": made.name, "restitution": one.attrs["restitution"], "alpha": angle} | one.attrs
+    return curves
+
+
+def trace_curves(
+    solve: Solve,
+    etas: NDArray[np.float64],
+    frequency_ratio: tuple[float, float],
+    slenderness: tuple[float, float],
+    nodes: int = 401,
+) -> list[xr.Dataset]:
+    """`overturning_boundaries` by any solver, whose slenderness is 1 at uplift."""
     nodes = integer("nodes", nodes, 16, 4001)
     low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
     bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
-    etas = np.atleast_1d(check(RESTITUTION, restitution))
-    angle = check_one_alpha(alpha)
-    made = as_pulse(pulse)
     log_omega = np.linspace(np.log(low), np.log(high), nodes)
     rows = _rows(bottom, top, nodes, log_omega.size)
     unique, which = np.unique(etas, return_inverse=True)
     work = Work(unique)
-    classify, classify_regions = (classifier(made, angle, stop, code, work) for code in (layer_code, region_code))
+    classify, classify_regions = (classifier(solve, code, work) for code in (layer_code, region_code))
     tracer = Tracer(log_omega, unique, classify, classify_regions, work)
     tracer.trace(rows)
     joins = (join for k in tracer.panels for join in tracer.joins[k])
     refined = refine_chords(chains_of(joins), unique, classify_regions, largest=CHORD, uncounted=tracer.chords, end=END)
     curves = [
         _as_dataset(chains).assign_attrs(
-            pulse=made.name,
             restitution=float(eta),
-            alpha=angle,
             chord_error=error,
             uncounted_chord_error=uncounted_error,
             thinnest_region=THINNEST,

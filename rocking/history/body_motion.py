@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
 from rocking.excitation.pulses import get_pulse
 from rocking.history.sampling import sample_free_rocking
+from rocking.model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking.model.response import Outcome
 from rocking.solver.records.state import BLOCK_STATE
 from rocking.solver.rules import IMPACT_LIMIT
@@ -42,11 +43,17 @@ class BodyMotion(ABC):
         tau at which to stop [-].
     stop : StopFlag, optional
         Cancels the work: the methods raise `StoppedError` soon after another thread sets the flag.
+    inertia_ratio : (float, float)
+        R p^2/g of the right and the left edge [-], for the contact forces; 3/4 for a rectangle.
+    tilt : float
+        Angle by which the base is inclined towards the right [rad].
     """
 
     cell: Record
     horizon: float
     stop: StopFlag | None
+    inertia_ratio: tuple[float, float] = field(default=(INERTIA_RATIO, INERTIA_RATIO), kw_only=True)
+    tilt: float = field(default=0.0, kw_only=True)
 
     @property
     @abstractmethod
@@ -90,6 +97,12 @@ class BodyMotion(ABC):
     def alpha(self) -> float:
         """Slenderness angle of the right edge [rad], 0 for the slender limit."""
         return float(self.cell["alpha"])
+
+    @property
+    def contact_geometry(self) -> ContactGeometry:
+        """What the contact forces need beside alpha."""
+        ratio, speed = float(self.cell["ratio"]), math.sqrt(float(self.cell["stiffness"]))
+        return ContactGeometry(ratio, speed, self.inertia_ratio, self.tilt)
 
     @property
     def max_rotation(self) -> float:

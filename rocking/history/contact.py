@@ -209,14 +209,25 @@ def reactions_of(
     tau, rotation, velocity
         Ascending times and `BodyMotion.sample` there.
     """
-    ground = motion.ground_acceleration(tau)
-    # between two impacts one corner is in contact; the sign of a sample next to an impact may be a rounding error
-    stretch = np.searchsorted(impact_times, tau, side="right")
-    leaning = np.sign(np.bincount(stretch, weights=rotation))[stretch]
+    ground, vertical = motion.ground_acceleration(tau), 1.0 + motion.vertical_acceleration(tau)
+    geometry = motion.contact_geometry
+    leaning = _sides_between(impact_times, tau, rotation)[np.searchsorted(impact_times, tau, side="right")]
     side = np.where(leaning != 0.0, leaning, np.sign(velocity))
     still = (rotation == 0.0) & (velocity == 0.0)
-    lifting = np.where(np.abs(ground) > 1.0, -np.sign(ground), 0.0)  # a pulse that starts with a jump
-    return reactions(rotation, velocity, ground, np.where(still, lifting, side), motion.alpha)
+    # a motion that starts with a jump
+    left = math.tan(geometry.ratio * motion.alpha) / math.tan(motion.alpha) if motion.alpha > 0.0 else geometry.ratio
+    lifting = np.where(ground > left * vertical, -1.0, np.where(-ground > vertical, 1.0, 0.0))
+    side = np.where(still, lifting, side)
+    return reactions(rotation, velocity, ground, side, motion.alpha, vertical, geometry)
+
+
+def _sides_between(impact_times: Floats, tau: Floats, rotation: Floats) -> Floats:
+    """Sgn(theta) before the first impact, between the impacts, and after the last one; array (impacts + 1,).
+
+    Between two impacts one edge is in contact; the sign of a sample next to an impact may be a rounding error.
+    """
+    stretch = np.searchsorted(impact_times, tau, side="right")
+    return np.asarray(np.sign(np.bincount(stretch, weights=rotation, minlength=impact_times.size + 1)))
 
 
 def contact_extremes(motion: BodyMotion) -> ContactExtremes:
@@ -225,6 +236,7 @@ def contact_extremes(motion: BodyMotion) -> ContactExtremes:
     tau, rotation = _fine_samples(motion, record, impact_times)
     count = motion.sample_count(tau, rotation, record)
     tau, rotation = tau[:count], rotation[:count]
+    left = _sides_between(impact_times, tau, rotation)[:-1]
     if overturned(record):
         tau = _until_last_crossing_of_alpha(motion, tau, rotation)
 
@@ -242,10 +254,21 @@ def contact_extremes(motion: BodyMotion) -> ContactExtremes:
         friction_time=time,
         smallest_normal_reaction=-lowest,
         normal_time=normal_time,
-        impulse_ratio=impulse_ratio(motion.restitution, motion.alpha) if impact_times.size else 0.0,
+        impulse_ratio=_largest_impulse_ratio(motion, left),
         chatters=bool(record["chatter"]),
         outcome=Outcome(int(record["outcome"])),
     )
+
+
+def _largest_impulse_ratio(motion: BodyMotion, left: Floats) -> float:
+    """Of impacts that leave the edges with these sgn(theta); 0 if there are none."""
+    alpha = motion.alpha + motion.tilt, motion.alpha * motion.contact_geometry.ratio - motion.tilt  # above the base
+    found = [
+        impulse_ratio(float(motion.cell["eta"][edge]), alpha[edge], alpha[1 - edge])
+        for edge, sign in enumerate((1.0, -1.0))
+        if (left == sign).any()
+    ]
+    return max(found, default=0.0)
 
 
 def _fine_samples(motion: BodyMotion, record: Record, impact_times: Floats) -> tuple[Floats, Floats]:

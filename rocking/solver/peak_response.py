@@ -27,7 +27,7 @@ from rocking.solver.records.record_response import solve_pulse
 from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import StageState, stage_state
-from rocking.solver.state import BODY_CELL, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
+from rocking.solver.state import BODY_CELL, EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
 
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
@@ -238,9 +238,8 @@ def _solve_by_steps(
     flag: NDArray[np.uint8],
     records: NDArray[np.void],
 ) -> None:
-    solve_batch(
-        *_with_alpha(cells), NO_BODIES, *solver_state.of_steps(pulse, precision), flag, records, np.empty((0, 2))
-    )
+    state = solver_state.of_steps(pulse, precision)
+    solve_batch(*_with_alpha(cells), NO_BODIES, *state, flag, records, np.empty((0, EDGE_COLUMNS)))
 
 
 def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 
-from rocking._numba.compilation import Record, kernel
+from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking.solver.free_rocking import barrier_of, highest_rotation, release
 
 IMPACT_LIMIT = 200_000
@@ -77,7 +77,7 @@ def reset_response(state: Record) -> None:
     state.side_peak[0], state.side_peak[1] = 0.0, 0.0
     state.impacts, state.chatter = 0, 0
     state.uplift_time, state.first_impact_time, state.first_impact_velocity = math.nan, math.nan, math.nan
-    state.end_rotation, state.end_velocity, state.end_sign = 0.0, 0.0, 0.0
+    state.end_rotation, state.end_velocity, state.end_sign, state.final_sign = 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -131,6 +131,7 @@ def overturn(state: Record, further_impacts: int) -> None:
     state.outcome = DIRECTLY if state.impacts == 0 else AFTER_IMPACT
     state.peak_rotation, state.peak_mode = math.nan, -1
     state.side_peak[0], state.side_peak[1] = math.nan, math.nan
+    state.final_sign = state.sign if further_impacts % 2 == 0 else -state.sign
 
 
 @kernel
@@ -248,3 +249,11 @@ def write_response(state: Record, response: Record) -> None:
     response.peak_rotation, response.uplift_time = state.peak_rotation, state.uplift_time
     response.first_impact_time, response.first_impact_velocity = state.first_impact_time, state.first_impact_velocity
     response.end_rotation, response.end_velocity = state.end_rotation, state.end_velocity
+
+
+@kernel
+def write_edges(state: Record, edges: FloatArray, cell: int) -> None:
+    """Write what differs from edge to edge, `EDGE_COLUMNS`, if it is wanted."""
+    if state.each_side == 1:
+        edges[cell, 0], edges[cell, 1] = state.side_peak[0], state.side_peak[1]
+        edges[cell, 2], edges[cell, 3] = state.end_sign, state.final_sign

@@ -86,8 +86,14 @@ PROGRESS_FIELDS = [
     ("end_rotation", np.float64),  # state at the end of the motion, in the mirror image of the flight,
     ("end_velocity", np.float64),
     ("end_sign", np.float64),  # and sgn(theta), 0 at rest
+    ("final_sign", np.float64),  # sgn(theta) of a body that overturns, else 0
 ]
 """Fields of a solver state that the rules of events change: the flight and the response."""
+
+
+EDGE_COLUMNS = 4
+"""Columns of the arrays of responses by edges: largest z on the right and on the left edge, nan where the body
+overturns; sgn(theta) at the end of the motion, 0 at rest; sgn(theta) of a body that overturns, else 0."""
 
 
 def _flight_layout() -> np.dtype[np.void]:

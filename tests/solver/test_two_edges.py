@@ -7,20 +7,15 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.peak_response import solver_state
+from rocking.solver.bodies import solve_motion
 from rocking.solver.records.record_response import solve_bodies
 from rocking.solver.records.samples import pulse_samples
-from rocking.solver.state import BODY_CELL, FULL_PRECISION, RESPONSE_RECORD, block_cells
+from rocking.solver.state import BODY_CELL, block_cells
 
 
 def under_pulse(name: str, cells: NDArray[np.void]) -> tuple[NDArray[np.void], NDArray[np.float64]]:
-    records, sides = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, 2))
-    unused = np.ones(cells.size)
-    state = solver_state.of_steps(rocking.get_pulse(name), FULL_PRECISION)
-    omega = cells["rate"].copy()
-    solve_batch(unused, omega, unused, unused, cells, *state, np.zeros(1, np.uint8), records, sides)
-    return records, sides
+    records, edges = solve_motion(rocking.get_pulse(name), cells, None, None)
+    return records, edges[:, :2]
 
 
 def bodies(count: int, seed: int) -> NDArray[np.void]:
@@ -44,7 +39,8 @@ def test_bodies_under_a_pulse_are_those_under_its_samples(name: str) -> None:
         rows = pulse_samples(rocking.SampledPulse(pulse.shape(phases), phases, 2.0 * np.pi))
         sampled = cells.copy()
         sampled["rate"] = 1.0 / cells["rate"]
-        found, other = solve_bodies(rows, sampled, 1, None, each_side=True)
+        found, edges = solve_bodies(rows, sampled, 1, None, each_side=True)
+        other = edges[:, :2]
         same = found["outcome"] == exact["outcome"]
         assert np.count_nonzero(~same) <= 2
         rocks = same & (exact["outcome"] == rocking.Outcome.SAFE)

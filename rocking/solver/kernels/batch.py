@@ -11,7 +11,7 @@ from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES
 from rocking.errors import SearchError
 from rocking.solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
-from rocking.solver.rules import set_block, set_body, write_response
+from rocking.solver.rules import set_block, set_body, write_edges, write_response
 from rocking.solver.state import IN_FLIGHT
 from rocking.solver.taylor.flight import MAX_STEPS, free_lanes, process_step, start_steps
 from rocking.solver.taylor.lane_events import locate_events
@@ -25,12 +25,11 @@ def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha:
 
 
 @kernel
-def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record, sides: FloatArray) -> bool:
+def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record, edges: FloatArray) -> bool:
     """Write the response of a finished cell and start the next flight of the next eta; False if there is none."""
     while True:
         write_response(flight, responses[flight.cell])
-        if flight.each_side == 1:
-            sides[flight.cell, 0], sides[flight.cell, 1] = flight.side_peak[0], flight.side_peak[1]
+        write_edges(flight, edges, flight.cell)
         if flight.cell == flight.last_cell:
             return False
         flight.cell += 1
@@ -79,7 +78,7 @@ def next_cell(
     bodies: Record,
     stop: FloatArray,
     responses: Record,
-    sides: FloatArray,
+    edges: FloatArray,
 ) -> int:
     """Put the next cell with an uplift into a lane; returns the cell after it."""
     while following < len(slenderness) and not is_stopped(stop):
@@ -88,7 +87,7 @@ def next_cell(
             steps.omega[lane] = flight.omega
             start_steps(flight, steps, lane)
             return following
-        continue_with_next_eta(flight, eta, responses, sides)
+        continue_with_next_eta(flight, eta, responses, edges)
     flight.cell = -1
     return following
 
@@ -104,7 +103,7 @@ def solve_batch(
     steps: Record,
     stop: FloatArray,
     responses: Record,
-    sides: FloatArray,
+    edges: FloatArray,
 ) -> None:
     """Follow blocks from rest to their final outcome, by Taylor steps.
 
@@ -120,8 +119,8 @@ def solve_batch(
         Once another thread sets it to 1, the function returns within a flight or a Taylor step; responses are missing.
     responses : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
-    sides : float array (cells, 2), or (0, 2)
-        Of `bodies`, filled with the largest z on the right and the left edge; nan where the body overturns.
+    edges : float array (cells, EDGE_COLUMNS), or (0, EDGE_COLUMNS)
+        Of `bodies`, filled, see `rocking.solver.state.EDGE_COLUMNS`.
     """
     following, busy, taken = 0, 0, steps.taken
     free_lanes(steps)
@@ -129,7 +128,7 @@ def solve_batch(
         taken[lane] = 0
     for lane in range(LANES):
         following = next_cell(
-            flights[lane], steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, sides
+            flights[lane], steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, edges
         )
         if flights[lane].cell >= 0:
             busy += 1
@@ -149,11 +148,11 @@ def solve_batch(
             taken[lane] = 0
             flight.length = flight.elapsed
             going = end_flight(flight, ended, w, z, flight.largest_z) and start_flight(flight)
-            if going or continue_with_next_eta(flight, eta, responses, sides):
+            if going or continue_with_next_eta(flight, eta, responses, edges):
                 start_steps(flight, steps, lane)
                 continue
             following = next_cell(
-                flight, steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, sides
+                flight, steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, edges
             )
             if flight.cell < 0:
                 steps.in_use[lane] = 0.0

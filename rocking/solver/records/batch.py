@@ -13,7 +13,7 @@ from rocking.solver.records.arc_flight import flight_by_arcs
 from rocking.solver.records.event_loop import init_body_state, on_impact, start_flight
 from rocking.solver.records.taylor_flight import process_step, start_steps
 from rocking.solver.records.taylor_step import take_step
-from rocking.solver.rules import final_outcome, update_peak, write_response
+from rocking.solver.rules import final_outcome, update_peak, write_edges, write_response
 from rocking.solver.state import IMPACT, IN_FLIGHT, OVERTURNS
 from rocking.solver.taylor.flight import MAX_STEPS
 
@@ -27,14 +27,6 @@ def end_flight(block: Record, samples: FloatArray, ended: int, k: int, s: float,
         return False
     on_impact(block, samples, k, s, w)
     return True
-
-
-@kernel
-def write_cell(block: Record, cell: int, responses: Record, sides: FloatArray) -> None:
-    """Write the response of a cell, and the largest z on both edges where they are wanted."""
-    write_response(block, responses[cell])
-    if block.each_side == 1:
-        sides[cell, 0], sides[cell, 1] = block.side_peak[0], block.side_peak[1]
 
 
 @entry
@@ -82,18 +74,19 @@ def next_cell(
     following: int,
     cells: Record,
     responses: Record,
-    sides: FloatArray,
+    edges: FloatArray,
 ) -> int:
     """Put the next body that uplifts into a lane; returns the cell after it."""
     while following < len(cells):
         cell = following
         following += 1
-        init_body_state(block, cells[cell], len(sides) > 0)
+        init_body_state(block, cells[cell], len(edges) > 0)
         if start_flight(block, samples):
             block.cell = cell
             start_steps(block, samples, steps, lane)
             return following
-        write_cell(block, cell, responses, sides)
+        write_response(block, responses[cell])
+        write_edges(block, edges, cell)
     block.cell = -1
     # the lane continues with a block at rest
     steps.z0[lane], steps.w0[lane], steps.force[lane], steps.force_rate[lane] = 0.0, 0.0, -1.0, 0.0
@@ -109,7 +102,7 @@ def solve_by_steps(
     steps: Record,
     stop: FloatArray,
     responses: Record,
-    sides: FloatArray,
+    edges: FloatArray,
 ) -> int:
     """Follow bodies from rest to their final outcome, by Taylor steps.
 
@@ -119,9 +112,9 @@ def solve_by_steps(
         As for `solve_slender`, for any body and motion.
     blocks, steps
         Solver state: an array (LANES,) of records `BLOCK_STATE`, and `step_state`.
-    sides : float array (cells, 2)
-        Filled with the largest z on the right and the left edge, nan where the body overturns. Of shape (0, 2) if they
-        are not wanted, for blocks with equal edges.
+    edges : float array (cells, EDGE_COLUMNS)
+        Filled, see `rocking.solver.state.EDGE_COLUMNS`; of shape (0, EDGE_COLUMNS) if they are not wanted, for blocks
+        with equal edges.
 
     Returns
     -------
@@ -133,7 +126,7 @@ def solve_by_steps(
     for lane in range(LANES):
         taken[lane] = 0
     for lane in range(LANES):
-        following = next_cell(blocks[lane], samples, steps, lane, following, cells, responses, sides)
+        following = next_cell(blocks[lane], samples, steps, lane, following, cells, responses, edges)
         if blocks[lane].cell >= 0:
             busy += 1
     while busy > 0 and not is_stopped(stop):
@@ -152,9 +145,10 @@ def solve_by_steps(
             if end_flight(block, samples, ended, block.interval, s, z, w) and start_flight(block, samples):
                 start_steps(block, samples, steps, lane)
                 continue
-            write_cell(block, block.cell, responses, sides)
+            write_response(block, responses[block.cell])
+            write_edges(block, edges, block.cell)
             stepped += block.stepped
-            following = next_cell(block, samples, steps, lane, following, cells, responses, sides)
+            following = next_cell(block, samples, steps, lane, following, cells, responses, edges)
             if block.cell < 0:
                 busy -= 1
     return stepped

@@ -22,7 +22,7 @@ from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.records.batch import solve_by_steps, solve_slender
 from rocking.solver.records.samples import motion_samples, pulse_samples
 from rocking.solver.records.state import body_states, step_state
-from rocking.solver.state import RESPONSE_RECORD, block_cells
+from rocking.solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
 
 Array = NDArray[np.float64]
 
@@ -188,7 +188,7 @@ def solve_bodies(
     stop: StopFlag | None,
     each_side: bool = False,
 ) -> tuple[NDArray[np.void], Array]:
-    """Response records (size,) of bodies under samples, and the largest z on both edges.
+    """Response records (size,) of bodies under samples, and what differs from edge to edge.
 
     Parameters
     ----------
@@ -201,8 +201,8 @@ def solve_bodies(
     stop : StopFlag or None
         Cancels the work.
     each_side : bool
-        Whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size, 2), the
-        right edge first; else the second result has the shape (0, 2).
+        Whether the peaks of each edge are wanted, as they must be where the edges differ: float array
+        (size, EDGE_COLUMNS); else the second result has no rows.
 
     Raises
     ------
@@ -210,16 +210,16 @@ def solve_bodies(
         If `stop` was set.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
-    records, sides = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, 2))
+    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
     if by_steps.any() and not by_steps.all():
         for kind in (by_steps, ~by_steps):
             records[kind] = solve_bodies(samples, cells[kind], threads, stop)[0]
-        return records, sides
+        return records, edges
     if cells.size and by_steps[0]:
 
         def fill(part: slice, flag: NDArray[np.uint8]) -> None:
             blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])
-            solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], sides[part])
+            solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], edges[part])
 
     else:
 
@@ -230,4 +230,4 @@ def solve_bodies(
     fewest = max(MIN_CHUNK, MIN_CHUNK * 2000 // samples.shape[1])
     chunk_size = min(max(math.ceil(cells.size / cores), fewest), max(MAX_CHUNK, fewest))
     fill_chunks(fill, cells.size, chunk_size, cores, stop)
-    return records, sides
+    return records, edges
