@@ -7,6 +7,7 @@ from .boundary.amplitude import critical_amplitude as critical_amplitude
 from .boundary.tracing import overturning_boundary as overturning_boundary
 from .dimensional.block import Block as Block
 from .dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
+from .dimensional.rigid_body import RigidBody as RigidBody
 from .errors import DatasetError as DatasetError
 from .errors import InvalidArgumentError as InvalidArgumentError
 from .errors import OutsideCubeError as OutsideCubeError

@@ -295,7 +295,7 @@ def _interval(low: float, high: float, closed: str, unit: str) -> str:
 
 
 def broadcast(
-    given: Mapping[str, ArrayLike | None], checked: Sequence[NDArray[np.float64]]
+    given: Mapping[str, ArrayLike | Quantity | None], checked: Sequence[NDArray[np.float64]]
 ) -> list[NDArray[np.float64]]:
     """The `checked` arrays of some arguments, broadcast against each other.
 

@@ -11,6 +11,8 @@ import math
 import re
 from typing import Any, Protocol
 
+from numpy.typing import ArrayLike
+
 from rocking.constants import STANDARD_GRAVITY
 
 
@@ -23,6 +25,8 @@ class Quantity(Protocol):
 
 Scalar = float | str | Quantity
 """A number in the SI unit, a text such as "40 cm", or a quantity."""
+Values = ArrayLike | Quantity
+"""The same, or an array."""
 
 UNITS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048},

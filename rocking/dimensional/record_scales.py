@@ -119,10 +119,17 @@ def scale_thresholds(
         return ScaleThresholds(np.empty(0), np.empty(0, dtype=np.bool_), (uplift, uplift))
     scales = scanned(uplift, top)
     solve = _solver(record, block, restitution_of(block, restitution), stop)
-    overturned = solve(scales)
+    return ScaleThresholds(*outcome_changes(solve, scales), (uplift, top))
+
+
+def outcome_changes(overturns: Callable[[Array], NDArray[np.bool_]], values: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Every change of outcome between ascending values, bisected, and whether it overturns above; arrays (changes,)."""
+    overturned = overturns(values)
     edges = np.flatnonzero(overturned[1:] != overturned[:-1])
-    found = [_bisected(solve, float(scales[k]), float(scales[k + 1]), bool(overturned[k + 1])) for k in edges.tolist()]
-    return ScaleThresholds(np.array(found, dtype=np.float64), overturned[edges + 1], (uplift, top))
+    found = [
+        _bisected(overturns, float(values[k]), float(values[k + 1]), bool(overturned[k + 1])) for k in edges.tolist()
+    ]
+    return np.array(found, dtype=np.float64), overturned[edges + 1]
 
 
 def overturning_scale(

@@ -136,6 +136,21 @@ class BodyMotion(ABC):
         shown = (rotation != 0.0) | (tau <= record["uplift_time"])
         return int(np.flatnonzero(shown).max(initial=0)) + 1
 
+    def history(self, grid: Floats) -> tuple[Record, Floats, Floats, Floats, Floats]:
+        """The record with the response, times, theta/alpha and its rate there, and the times of impacts.
+
+        The times are those of `grid`, which is ascending, the uplift, the impacts and the end of the ground motion, up
+        to the horizon or `sample_count` of them.
+        """
+        record, impact_times = self.events()
+        events = [0.0, self.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
+        tau = np.concatenate([grid, impact_times, events])
+        tau = np.unique(tau[tau <= self.horizon])
+        rotation, velocity = self.sample(tau)
+        last = self.sample_count(tau, rotation, record)
+        tau = tau[:last]
+        return record, tau, rotation[:last], velocity[:last], impact_times[impact_times <= tau[-1]]
+
     def _sample_free(self, state: Record, tau: Floats, rotation: Floats, velocity: Floats, impact_times: Floats) -> int:
         """Sample free rocking from the state at the end of the ground motion; the number of impacts written."""
         body: Record = np.zeros(1, BLOCK_STATE)[0]

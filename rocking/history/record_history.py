@@ -77,7 +77,7 @@ def record_history(
     }
     block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     record, impact_times = block.events()
-    grid = _default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
+    grid = default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
     events = [0.0, block.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
     tau = np.concatenate([grid, impact_times, events])
     tau = np.unique(tau[tau <= block.horizon])
@@ -120,7 +120,7 @@ def record_history(
     return history.swap_dims(tau="time")
 
 
-def _default_times(block: SamplesMotion) -> Floats:
+def default_times(block: SamplesMotion) -> Floats:
     """Times of the samples of the motion [tau], continued to the horizon at their step or a larger one."""
     count, interval = block.times.size, float(block.cell["rate"])
     most = max(count, MIN_CONTINUED)

@@ -63,13 +63,7 @@ def time_history(
     samples = integer("samples", samples, 2, 1_000_000)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
     motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
-    record, impact_times = motion.events()  # times of the impacts are among the samples
-    events = [0.0, motion.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
-    tau = np.concatenate([np.linspace(0.0, motion.horizon, samples), impact_times, events])
-    tau = np.unique(tau[tau <= motion.horizon])
-    rotation, velocity = motion.sample(tau)
-    last = motion.sample_count(tau, rotation, record)
-    tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
+    record, tau, rotation, velocity, impact_times = motion.history(np.linspace(0.0, motion.horizon, samples))
     history = xr.Dataset(
         {
             "rotation": ("tau", rotation, {"long_name": "rotation theta/alpha (3.4)", "units": "1"}),

@@ -11,6 +11,7 @@ b_s is the distance of the centre of mass from the edge, h its height and r the 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,6 +69,56 @@ def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gr
         restitution=(square - b * c) / (square + c * c),
         inertia_ratio=radius * radius / about_edge,
     )
+
+
+class AbstractBody(ABC):
+    """What rocks about two edges: everything that responses need to know of it. Attributes broadcast."""
+
+    @property
+    @abstractmethod
+    def right(self) -> Edge:
+        """The edge about which theta is positive."""
+
+    @property
+    @abstractmethod
+    def left(self) -> Edge:
+        """The other one."""
+
+    @property
+    @abstractmethod
+    def gravity(self) -> Array:
+        """g [m/s2]."""
+
+    @property
+    @abstractmethod
+    def top_height(self) -> Array:
+        """Height above the base of the point whose displacement is given [m]."""
+
+    @property
+    @abstractmethod
+    def description(self) -> str:
+        """One body, or several, in words."""
+
+    @property
+    def tilt(self) -> Array:
+        """Angle by which the base is inclined towards the right [rad]; 0 unless a body says otherwise."""
+        return np.zeros(())
+
+    @property
+    def parameters(self) -> dict[str, Array]:
+        """What the body was made from, for exports: arrays by name; nothing unless a body says so."""
+        return {}
+
+    @property
+    def uplift_acceleration(self) -> Array:
+        """Smallest horizontal ground acceleration that starts rocking, g tan(alpha) of the weaker edge [m/s2]."""
+        return np.asarray(self.gravity * np.tan(np.minimum(self.right.alpha, self.left.alpha)))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of an array of bodies, () for one."""
+        edges = [getattr(edge, name) for edge in (self.right, self.left) for name in Edge.__dataclass_fields__]
+        return np.broadcast_shapes(*(np.shape(value) for value in (*edges, self.gravity, self.top_height, self.tilt)))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from rocking.errors import InvalidArgumentError
 from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS
 from rocking.model.outcome import Outcome
 from rocking.model.parameters import FREQUENCY_PARAMETER, GROUPS
+from rocking.units import Quantity
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -127,7 +128,7 @@ class Response(EqualByValue):
         """
         import xarray as xr  # takes longer to load than the solver, and most responses remain arrays
 
-        names = self._dimensions() if dims is None else tuple(dims)
+        names = axis_names(len(self.shape), self.groups, self.dims) if dims is None else tuple(dims)
         if len(names) != len(self.shape):
             raise InvalidArgumentError("dims", dims, f"{len(self.shape)} names")
         variables: dict[str, Any] = {
@@ -154,20 +155,22 @@ class Response(EqualByValue):
     def _repr_html_(self) -> str:
         return f"<p>{escape(repr(self))}</p>{self.to_xarray()._repr_html_()}"
 
-    def _dimensions(self) -> tuple[Hashable, ...]:
-        """Names of the axes: of the labelled arguments, or of the one argument that varies along each."""
-        count = len(self.shape)
-        if len(self.dims) == count:
-            return self.dims
-        varying: list[list[str]] = [[] for _ in range(count)]
-        for name, value in self.groups.items():
-            axes = [axis for axis in range(value.ndim) if value.shape[axis] != 1]
-            for axis in axes:
-                # an argument that varies along several axes is no coordinate of either
-                varying[count - value.ndim + axis] += [name] if len(axes) == 1 else [name, name]
-        return tuple(names[0] if len(names) == 1 else f"dim_{axis}" for axis, names in enumerate(varying))
+
+def axis_names(
+    count: int, arguments: Mapping[str, NDArray[np.float64]], dims: tuple[Hashable, ...]
+) -> tuple[Hashable, ...]:
+    """Names of `count` axes: of the labelled arguments, `dims`, or of the one argument that varies along each."""
+    if len(dims) == count:
+        return dims
+    varying: list[list[str]] = [[] for _ in range(count)]
+    for name, value in arguments.items():
+        axes = [axis for axis in range(value.ndim) if value.shape[axis] != 1]
+        for axis in axes:
+            # an argument that varies along several axes is no coordinate of either
+            varying[count - value.ndim + axis] += [name] if len(axes) == 1 else [name, name]
+    return tuple(names[0] if len(names) == 1 else f"dim_{axis}" for axis, names in enumerate(varying))
 
 
-def dimensions_of(*arguments: ArrayLike | None) -> tuple[Hashable, ...]:
+def dimensions_of(*arguments: ArrayLike | Quantity | None) -> tuple[Hashable, ...]:
     """Names of the dimensions of the labelled argument (xarray) with the most of them; empty if there is none."""
     return max((tuple(getattr(argument, "dims", ())) for argument in arguments), key=len)

@@ -80,7 +80,9 @@ def test_no_requirement_is_stated_twice() -> None:
     assert len(names) == len(set(names))
 
 
-@pytest.mark.parametrize(("folder", "extras"), [("rocking", ("plot", "seismic", "workflow")), ("api", ("service",))])
+@pytest.mark.parametrize(
+    ("folder", "extras"), [("rocking", ("plot", "mesh", "seismic", "workflow")), ("api", ("service",))]
+)
 def test_what_the_package_imports_is_required(folder: str, extras: tuple[str, ...]) -> None:
     distributions = metadata.packages_distributions()
     lines = [*PROJECT["project"]["dependencies"], *(line for extra in extras for line in EXTRAS[extra])]

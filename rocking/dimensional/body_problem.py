@@ -1,0 +1,156 @@
+"""Bodies with two edges under a pulse or a record, in the units of the solver."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import Record as KernelRecord
+from rocking.boundary.search import Solve
+from rocking.constants import STANDARD_GRAVITY
+from rocking.errors import InvalidArgumentError, in_range
+from rocking.excitation.pulses import AbstractPulse
+from rocking.excitation.records.record import Record
+from rocking.excitation.sampled import SampledPulse
+from rocking.history.body_motion import FREE_DURATION, BodyMotion
+from rocking.history.motion import PulseMotion
+from rocking.history.record_motion import SamplesMotion
+from rocking.model.body import AbstractBody
+from rocking.model.checks import check
+from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SMALLEST_ALPHA
+from rocking.solver.bodies import outcome_margin_of, solve_motion
+from rocking.solver.records.record_response import frequency_parameter_range, pulse_rows
+from rocking.solver.records.samples import motion_samples
+from rocking.solver.state import BODY_CELL
+from rocking.units import Values
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyProblem:
+    """Bodies under a ground motion.
+
+    Attributes
+    ----------
+    body : AbstractBody
+        One body or an array of them.
+    motion : AbstractPulse or Record
+        The ground motion.
+    acceleration : float array [m/s2]
+        Largest horizontal acceleration, > 0.
+    period : float array [s]
+        Of a pulse, > 0; 1 for a record.
+    restitution : float array or None
+        Of every impact [-]; None: by angular momentum, 0 where that is negative.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an edge or a ratio of frequencies is out of range.
+    """
+
+    body: AbstractBody
+    motion: AbstractPulse | Record
+    acceleration: Array
+    period: Array
+    restitution: Array | None
+
+    def __post_init__(self) -> None:
+        for name, edge in (("right", self.body.right), ("left", self.body.left)):
+            in_range(f"alpha of the {name} edge", edge.alpha, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
+            in_range(f"restitution of the {name} edge", edge.restitution, -math.inf, 1.0, closed="right")
+        p = self.body.right.frequency_parameter
+        if isinstance(self.motion, Record):
+            in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
+        else:
+            check(FREQUENCY_RATIO, 2.0 * math.pi / (self.period * p))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Broadcast shape of the body and the arguments."""
+        eta = () if self.restitution is None else self.restitution.shape
+        return np.broadcast_shapes(self.body.shape, self.acceleration.shape, self.period.shape, eta)
+
+    @property
+    def cells(self) -> NDArray[np.void]:
+        """The cells `BODY_CELL` of the solver (size,)."""
+        body, right, left = self.body, self.body.right, self.body.left
+        etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
+        p = right.frequency_parameter
+        unit = self.motion.time_step * p if isinstance(self.motion, Record) else 2.0 * math.pi / (self.period * p)
+        vertical = np.zeros(())
+        if isinstance(self.motion, Record) and getattr(self.motion, "vertical", None) is not None:
+            vertical = self.acceleration / self.motion.peak_acceleration * (STANDARD_GRAVITY / body.gravity)
+        columns = {
+            "rate": unit,
+            "vertical": vertical,
+            "alpha": right.alpha,
+            "ratio": left.alpha / right.alpha,
+            "stiffness": (left.frequency_parameter / p) ** 2,
+        }
+        cells = np.zeros(self.shape, BODY_CELL)
+        for name, value in columns.items():
+            cells[name] = value
+        for side, edge in enumerate((right, left)):
+            cells["slenderness"][..., side] = body.gravity * np.tan(edge.alpha) / self.acceleration  # (5.3)
+            cells["eta"][..., side] = np.maximum(etas[side], 0.0)  # departs from (2.4) where that is negative
+        return cells.ravel()
+
+    def solve(self, threads: int | None = None, stop: StopFlag | None = None) -> tuple[NDArray[np.void], Array]:
+        """`rocking.solver.bodies.solve_motion` of `cells`."""
+        return solve_motion(self.motion, self.cells, threads, stop)
+
+    def solver(self, index: int = 0, stop: StopFlag | None = None) -> Solve:
+        """One of the bodies as a `Solve`: slenderness over that of uplift, `rate` of the cell; eta is not read."""
+        cell: KernelRecord = self.cells[index]
+        uplift = cell["slenderness"] / cell["slenderness"].min()
+        vertical = cell["vertical"] * cell["slenderness"].min()  # at uplift
+
+        def solve(slenderness: Array, omega: Array, eta: Array) -> tuple[NDArray[np.void], Array]:
+            cells = np.repeat(cell, eta.size)
+            cells["rate"], cells["slenderness"] = omega, slenderness[:, None] * uplift
+            cells["vertical"] = vertical / slenderness
+            records, edges = solve_motion(self.motion, cells, None, stop)
+            return records, outcome_margin_of(records, edges, cells)
+
+        return solve
+
+    def body_motion(self, duration: float | None = None, stop: StopFlag | None = None) -> BodyMotion:
+        """The motion of one body as a function of time, up to a duration [s] or 8/p after the ground motion."""
+        cell: KernelRecord = self.cells[0]
+        inertia = float(self.body.right.inertia_ratio), float(self.body.left.inertia_ratio)
+        tilt = float(self.body.tilt)
+        p = float(self.body.right.frequency_parameter)
+        motion = self.motion
+        if isinstance(motion, Record):
+            end, rows = p * motion.duration, motion_samples(motion)
+        else:
+            end = (motion.end - motion.start) / float(cell["rate"])
+        horizon = end + FREE_DURATION if duration is None else p * duration
+        if isinstance(motion, SampledPulse):
+            rows = pulse_rows(motion, float(cell["rate"]))
+            cell["rate"] = 1.0 / cell["rate"]
+        elif not isinstance(motion, Record):
+            return PulseMotion(cell, horizon, stop, motion, inertia_ratio=inertia, tilt=tilt)
+        return SamplesMotion(cell, horizon, stop, rows, inertia_ratio=inertia, tilt=tilt)
+
+
+def checked_restitution(restitution: Values) -> Array | None:
+    """The coefficient of restitution: None for "momentum", else float array.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For any other text, and numbers outside [0, 1].
+    """
+    if isinstance(restitution, str) and restitution == "momentum":
+        return None
+    try:
+        return check(RESTITUTION, restitution)
+    except InvalidArgumentError as error:
+        raise InvalidArgumentError("restitution", error.value, f"momentum, or {error.allowed}") from None

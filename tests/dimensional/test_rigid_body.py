@@ -1,0 +1,318 @@
+"""Bodies with two edges: against the block, symmetries, Newton's law, outlines and meshes, searches from both sides."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+import trimesh
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rocking
+from rocking.constants import STANDARD_GRAVITY
+from rocking.dimensional.body_problem import BodyProblem
+from rocking.errors import InvalidArgumentError
+from rocking.model.body import polygon_properties
+from rocking.solver.bodies import outcome_margin_of
+from tests.solver.records.tables import record
+
+BODY = rocking.RigidBody(0.12, 0.18, 0.4)
+MOTION = {"peak_acceleration": 4.0, "period": 0.6}
+TRIANGLE = rocking.SampledPulse([0.0, 1.0, -0.7, 0.0])
+
+
+@pytest.mark.parametrize("motion", ["sine", "-ricker", "c2", TRIANGLE])
+def test_equal_edges_are_the_block(motion):
+    block, body = rocking.Block(0.15, 0.5), rocking.RigidBody(0.15, 0.15, 0.5)
+    for strength, period in ((2.0, 0.5), (3.2, 0.4), (5.0, 0.6), (8.0, 0.9), (6.0, 0.3)):
+        one = block.response(motion, peak_acceleration=strength, period=period)
+        other = body.response(motion, peak_acceleration=strength, period=period)
+        assert other.outcome == one.outcome
+        assert other.impacts == one.impacts
+        assert float(other.rotation) == pytest.approx(one.rotation, rel=1e-13, nan_ok=True)
+        assert float(other.displacement) == pytest.approx(one.displacement, rel=1e-13, nan_ok=True)
+    assert [one.value for one in body.thresholds(motion, period=0.6).changes] == pytest.approx(
+        [one.value for one in block.response(motion, **MOTION).thresholds], rel=1e-9
+    )
+
+
+def test_equal_edges_are_the_block_under_a_record():
+    block, body, motion = rocking.Block(0.15, 0.5), rocking.RigidBody(0.15, 0.15, 0.5), record("napa_HNE", 0.005)
+    scales = np.array([0.5, 1.0, 2.0, 4.0])
+    found = body.response(motion, scale=scales)
+    for k, scale in enumerate(scales):
+        one = block.response(motion, scale=scale)
+        assert found.outcome[k] == one.outcome
+        assert found.rotation[k] == pytest.approx(one.rotation, rel=1e-13, nan_ok=True)
+    np.testing.assert_allclose(body.thresholds(motion).value, block.response(motion).thresholds.scale, rtol=1e-12)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    st.floats(0.05, 0.3),
+    st.floats(0.05, 0.3),
+    st.floats(0.3, 1.5),
+    st.floats(0.5, 12.0),
+    st.floats(0.15, 2.0),
+    st.floats(-0.05, 0.05),
+    st.sampled_from(["sine", "cosine", "c1", "ricker"]),
+)
+def test_exchanged_edges_under_the_opposite_motion(left, right, height, strength, period, tilt, name):
+    motion = {"peak_acceleration": strength, "period": period}
+    there = rocking.RigidBody(left, right, height).tilted(tilt).response(name, **motion)
+    back = rocking.RigidBody(right, left, height).tilted(-tilt).response("-" + name, **motion)
+    margin = abs(float(outcome_margin_of(*there.problem.solve(), there.problem.cells)[0]))
+    if there.outcome == rocking.Outcome.NO_UPLIFT or margin > 1e-6:
+        assert (there.outcome, there.edge) == (back.outcome, -back.edge)
+        scale = float(np.nan_to_num(there.rotation))
+        for one, other in ((there.rotation_left, back.rotation_right), (there.rotation_right, back.rotation_left)):
+            assert float(one) == pytest.approx(float(other), rel=1e-6, abs=1e-9 * scale, nan_ok=True)
+
+
+@pytest.mark.parametrize("motion", ["sine", TRIANGLE, "record"])
+def test_history_has_the_peaks_of_the_response(motion):
+    arguments = {"scale": 1.5} if motion == "record" else MOTION
+    made = record("napa_HNE", 0.005) if motion == "record" else motion
+    found = BODY.response(made, **arguments)
+    assert found.outcome == rocking.Outcome.SAFE
+    history = BODY.history(made, **arguments, samples=20_000, contact=True)
+    rotation = history["rotation"].values
+    assert rotation.max() == pytest.approx(float(found.rotation_right), rel=1e-5)
+    assert -rotation.min() == pytest.approx(float(found.rotation_left), rel=1e-5)
+    assert (np.sign(rotation) == history["edge"].values)[rotation != 0.0].all()
+    assert history.attrs["outcome"] == "SAFE"
+    first = float(history["time"].values[np.flatnonzero(rotation)[0]])
+    assert first == pytest.approx(float(found.uplift_time), abs=2e-3)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.04])
+def test_reactions_move_the_centre_of_mass(tilt):
+    """Newton's law: second differences of the positions of the centre of mass give the reactions."""
+    body = BODY.tilted(tilt)
+    history = body.history("sine", peak_acceleration=5.0, period=0.7, samples=40_001, contact=True)
+    rotation, time = history["rotation"].values, history["time"].values
+    p = {1: (0.18, tilt), -1: (0.12, tilt)}
+    checked = 0
+    for sign, (b, inclination) in p.items():
+        radius, alpha = math.hypot(b, 0.4), math.atan2(b, 0.4) - sign * inclination
+        lean = alpha - np.abs(rotation)
+        x, y = -sign * radius * np.sin(lean), radius * np.cos(lean)
+        for k in range(200, time.size - 200, 131):
+            part = slice(k - 1, k + 2)
+            step = np.diff(time[part])
+            if not (history["edge"].values[k - 2 : k + 3] == sign).all() or abs(step[0] / step[1] - 1.0) > 1e-6:
+                continue
+            ax, ay = (np.diff(values[part], 2)[0] / step[0] ** 2 for values in (x, y))
+            ground = float(history["ground_acceleration"][k])
+            horizontal, vertical = (ground + ax) / STANDARD_GRAVITY, 1.0 + ay / STANDARD_GRAVITY
+            cosine, sine = math.cos(inclination), math.sin(inclination)
+            along, normal = horizontal * cosine - vertical * sine, horizontal * sine + vertical * cosine
+            assert float(history["horizontal_reaction"][k]) == pytest.approx(along, abs=2e-4)
+            assert float(history["normal_reaction"][k]) == pytest.approx(normal, abs=2e-4)
+            if normal > 0.2:
+                assert float(history["friction_demand"][k]) == pytest.approx(abs(along) / normal, abs=2e-3)
+            checked += 1
+    assert checked > 60
+
+
+def test_an_inclined_body_uplifts_at_other_accelerations():
+    body = BODY.tilted("3 deg")
+    right, left = math.atan2(0.18, 0.4) - math.radians(3), math.atan2(0.12, 0.4) + math.radians(3)
+    assert float(body.right.alpha) == pytest.approx(right)
+    assert float(body.left.alpha) == pytest.approx(left)
+    for name, alpha in (("-rectangular", right), ("rectangular", left)):
+        uplift = STANDARD_GRAVITY * math.tan(alpha)
+        outcomes = body.response(name, peak_acceleration=uplift * np.array([0.999, 1.001]), period=0.2).outcome
+        assert outcomes[0] == rocking.Outcome.NO_UPLIFT != outcomes[1]
+    with pytest.raises(InvalidArgumentError, match=r"less than 16\.7 degrees: the body falls over"):
+        BODY.tilted("-20 deg")
+
+
+def test_angular_momentum_gives_the_restitution_of_each_edge():
+    body = rocking.RigidBody(0.1, 0.2, 0.5, 0.3)
+    assert float(body.right.restitution) == pytest.approx((0.09 + 0.25 - 0.02) / (0.09 + 0.25 + 0.01))
+    assert float(body.left.restitution) == pytest.approx((0.09 + 0.25 - 0.02) / (0.09 + 0.25 + 0.04))
+    wide = rocking.RigidBody(0.9, 0.8, 0.4, 0.3)
+    found = wide.response("sine", peak_acceleration=30.0, period=1.0)
+    assert any("restitution of impacts that leave the right edge is negative" in text for text in found.warnings)
+
+
+def test_outcome_margin_is_positive_where_bodies_overturn():
+    found = BODY.response("sine", peak_acceleration=np.linspace(3, 20, 400), period=np.linspace(0.2, 2.0, 30)[:, None])
+    records, edges = found.problem.solve()
+    margin = outcome_margin_of(records, edges, found.problem.cells)
+    rocks = found.outcome.ravel() > rocking.Outcome.NO_UPLIFT
+    assert rocks.sum() > 5000
+    np.testing.assert_array_equal((margin > 0.0)[rocks], found.overturned.ravel()[rocks])
+
+
+@pytest.mark.parametrize("period", [0.4, 0.8, 1.3])
+def test_thresholds_are_confirmed_from_both_sides(period):
+    found = BODY.thresholds("sine", period=period)
+    assert found.changes
+    for one in found.changes:
+        below, above = BODY.response(
+            "sine", peak_acceleration=one.value * (1 + np.array([-1e-7, 1e-7])), period=period
+        ).overturned
+        assert (bool(below), bool(above)) == (not one.overturns_above, one.overturns_above)
+    strengths = np.linspace(2.0, float(found.lowest) * (1 - 1e-9), 2000)
+    assert not BODY.response("sine", peak_acceleration=strengths, period=period).overturned.any()
+
+
+def test_thresholds_of_an_array_are_those_of_its_bodies():
+    bodies = rocking.RigidBody([0.1, 0.12, 0.4], 0.18, 0.4)
+    found = bodies.thresholds("sine", period=0.8)
+    for k, left in enumerate([0.1, 0.12, 0.4]):
+        one = rocking.RigidBody(left, 0.18, 0.4).thresholds("sine", period=0.8)
+        np.testing.assert_array_equal(found.value[k][~np.isnan(found.value[k])], one.value)
+    assert found.lowest.shape == (3,)
+    record_found = bodies.thresholds(record("napa_HNE", 0.005), highest=6.0)
+    assert record_found.value.shape[0] == 3
+    assert (record_found.searched[:, 1] == 6.0).all()
+
+
+def test_boundary_points_separate_outcomes():
+    curves = BODY.boundary("sine", period=(0.3, 2.0))
+    strength, period = curves["peak_acceleration"].values, curves["period"].values
+    inside = (curves["slenderness"].values > 0.05) & (curves["slenderness"].values < 0.98)
+    pick = np.flatnonzero(inside)[::37]
+    assert pick.size > 15
+    around = np.array([-1e-6, 1e-6])
+    found = BODY.response("sine", peak_acceleration=strength[pick, None] * (1 + around), period=period[pick, None])
+    sides = np.stack([found.outcome, found.impacts])
+    changed = (sides[..., 0] != sides[..., 1]).any(axis=0)
+    turned = BODY.response("sine", peak_acceleration=strength[pick, None], period=period[pick, None] * (1 + around))
+    changed |= (
+        np.stack([turned.outcome, turned.impacts])[..., 0] != np.stack([turned.outcome, turned.impacts])[..., 1]
+    ).any(axis=0)
+    assert changed.mean() > 0.95
+
+
+def test_spectra_are_responses():
+    periods = np.array([0.3, 0.6, 0.9])
+    by_period = BODY.spectrum("sine", peak_acceleration=4.0, period=periods)
+    np.testing.assert_array_equal(
+        by_period["rotation"], BODY.response("sine", peak_acceleration=4.0, period=periods).rotation
+    )
+    sizes, motion = np.array([1.0, 2.0, 5.0]), record("napa_HNE", 0.005)
+    by_size = BODY.spectrum(motion, scale=2.0, size=sizes)
+    assert by_size["rotation"].dims == ("size",)
+    for k, size in enumerate(sizes):
+        one = rocking.RigidBody(0.12 * size, 0.18 * size, 0.4 * size).response(motion, scale=2.0)
+        assert float(by_size["rotation"][k]) == pytest.approx(float(one.rotation), rel=1e-9, nan_ok=True)
+
+
+def test_arrays_of_bodies_broadcast_with_labels():
+    widths = xr.DataArray([0.2, 0.3], dims="object", coords={"object": ["vase", "bust"]})
+    found = rocking.RigidBody(0.1, 0.15, 0.5).response(
+        "sine", peak_acceleration=xr.DataArray([2.0, 4.0, 6.0], dims="strength"), period=0.5
+    )
+    assert found.to_xarray()["rotation"].dims == ("strength",)
+    bodies = rocking.RigidBody(widths.values, 0.15, 0.5)
+    many = bodies.response("sine", peak_acceleration=np.array([[2.0], [4.0], [6.0]]), period=0.5)
+    assert many.shape == (3, 2)
+    for i, strength in enumerate((2.0, 4.0, 6.0)):
+        for k, left in enumerate((0.2, 0.3)):
+            one = rocking.RigidBody(left, 0.15, 0.5).response("sine", peak_acceleration=strength, period=0.5)
+            assert many.rotation[i, k] == one.rotation or (np.isnan(many.rotation[i, k]) and one.overturned)
+    table = many.to_pandas()
+    assert len(table) == 6
+    assert {"rotation_left", "rotation_right", "edge"} <= set(table)
+    assert pickle.loads(pickle.dumps(many)) == many
+    with pytest.raises(InvalidArgumentError, match="a response of one body under one motion"):
+        _ = many.contact
+
+
+def test_text_says_what_happened():
+    assert "rocks and comes to rest: peak rotation" in repr(BODY.response("sine", **MOTION))
+    overturned = BODY.response("sine", peak_acceleration=9.0, period=1.0)
+    assert f"about the {'right' if overturned.edge > 0 else 'left'} edge" in repr(overturned)
+    assert "it overturns from a peak acceleration of" in overturned.margin
+    assert repr(BODY) == "<rocking.RigidBody: body on edges 0.12 m left and 0.18 m right of its mass at 0.4 m>"
+
+
+def test_a_rectangular_outline_is_the_uniform_body():
+    outline = rocking.RigidBody.from_polygon([(1.0, 2.0), (1.3, 2.0), (1.3, 2.8), (1.0, 2.8)])
+    plain = rocking.RigidBody(0.15, 0.15, 0.4)
+    for one, other in zip(outline.parameters.values(), (0.15, 0.15, 0.4, float(plain.gyration), 0.8), strict=False):
+        assert float(one) == pytest.approx(other, rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_outline_of_a_triangle_by_its_closed_forms(order):
+    """A right triangle with legs b, h: centroid at thirds, polar moment of area (b^2 + h^2) b h/36."""
+    b, h = 0.3, 0.9
+    found = polygon_properties([(0.0, 0.0), (b, 0.0), (0.0, h)][::order])
+    assert (found.left, found.right, found.height) == pytest.approx((b / 3, 2 * b / 3, h / 3), rel=1e-12)
+    assert found.gyration == pytest.approx(math.sqrt((b * b + h * h) / 18), rel=1e-12)
+    assert found.top == pytest.approx(h, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "text"),
+    [
+        ([(0, 0), (1, 1), (1, 0), (0, 1)], "encloses an area"),
+        ([(0, 0), (2, 2), (2, 0), (0, 1)], "does not cross itself"),
+        ([(0, 0), (1, 0)], "at least three pairs"),
+        ([(0, 0), (1, 1), (0, 2), (-1, 1)], "stands"),
+        ([(0, 0), (0.1, 0), (3, 1), (2.9, 1)], "stands"),
+    ],
+)
+def test_outlines_that_are_no_bodies_are_refused(vertices, text):
+    with pytest.raises(InvalidArgumentError, match=text):
+        rocking.RigidBody.from_polygon(vertices)
+
+
+def test_a_mesh_of_a_box_is_the_uniform_body(tmp_path):
+    box = trimesh.creation.box(extents=[0.4, 0.3, 1.2])
+    box.apply_translation([3.0, -2.0, 0.7])
+    box.export(tmp_path / "box.stl")
+    for direction, width in ((0.0, 0.4), ("90 deg", 0.3)):
+        body = rocking.RigidBody.from_mesh(tmp_path / "box.stl", direction)
+        plain = rocking.RigidBody(width / 2, width / 2, 0.6)
+        for edge, other in ((body.right, plain.right), (body.left, plain.left)):
+            for name in ("alpha", "frequency_parameter", "restitution"):
+                assert float(getattr(edge, name)) == pytest.approx(float(getattr(other, name)), rel=1e-6)
+        assert float(body.top_height) == pytest.approx(1.2, rel=1e-6)
+    assert float(rocking.RigidBody.from_mesh(tmp_path / "box.stl", unit="cm").height) == pytest.approx(0.006, rel=1e-6)
+
+
+def test_a_mesh_that_is_not_closed_is_doubted(tmp_path):
+    box = trimesh.creation.box(extents=[0.4, 0.3, 1.2])
+    box.update_faces(np.arange(len(box.faces)) > 0)
+    box.export(tmp_path / "open.ply")
+    with pytest.warns(UserWarning, match="open.ply is not closed"):
+        rocking.RigidBody.from_mesh(tmp_path / "open.ply")
+    (tmp_path / "text.stl").write_text("no mesh")
+    for name in ("missing.stl", "text.stl"):
+        with pytest.raises(InvalidArgumentError, match="a mesh that"):
+            rocking.RigidBody.from_mesh(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"peak_acceleration": 3.0}, "`period` = None"),
+        ({"period": 1.0}, "`peak_acceleration` = None"),
+        ({**MOTION, "scale": 2.0}, "`scale` = 2.0"),
+        ({**MOTION, "restitution": "housner"}, "momentum, or"),
+        ({**MOTION, "restitution": 1.2}, "`restitution` = 1.2"),
+        ({"peak_acceleration": -3.0, "period": 1.0}, "`peak_acceleration` = -3"),
+        ({"peak_acceleration": [1.0, 2.0], "period": [1.0, 2.0, 3.0]}, "shapes that broadcast"),
+    ],
+)
+def test_arguments_are_checked(arguments, text):
+    with pytest.raises(InvalidArgumentError, match=text):
+        BODY.response("sine", **arguments)
+
+
+def test_texts_and_lengths_are_checked():
+    assert rocking.RigidBody("12 cm", "18 cm", "40 cm") == BODY
+    for arguments in ((0.0, 1.0, 1.0), (1.0, math.nan, 1.0), (1.0, 1.0, -1.0), (1.0, 1.0, 1.0, 0.0)):
+        with pytest.raises(InvalidArgumentError):
+            rocking.RigidBody(*arguments)
+    with pytest.raises(InvalidArgumentError, match="`size` = None"):
+        BODY.spectrum(record("napa_HNE", 0.005))
+    assert isinstance(BODY.response("sine", **MOTION).problem, BodyProblem)
