@@ -2,8 +2,7 @@
 A body of one's own
 ===================
 
-A kind of body states its two edges. It then has responses, histories, thresholds and boundaries. Here a uniform block
-whose corners are crushed, so that it turns about points inside its base.
+A kind of body states its two edges, and has all responses. Here a block that turns about points inside its base.
 """
 
 from dataclasses import dataclass

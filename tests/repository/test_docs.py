@@ -33,6 +33,7 @@ PRINTED = {
     "fragility": ["median 5.40 m/s2"],
     "large_rotations": ["6.06624767, 7.45218141"],
     "map_with_boundaries": ["400 never uplift"],
+    "own_body": [],
     "own_pulse": ["2.02417318"],
     "record": ["45 changes of the outcome", "overturns above 1.13384"],
     "spectrum": ["rotation", "0.04483"],
