@@ -114,7 +114,10 @@ def sample_record(
     impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """One block from rest to its final outcome, sampled at the times `tau` during the motion.
+    """One body from rest to its final outcome, sampled at the times `tau` during the motion.
+
+    Each flight of the event loop is repeated from a copy of the state at its start and evaluated at the times inside
+    it, by the same pieces or steps.
 
     Parameters
     ----------

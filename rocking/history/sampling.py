@@ -104,12 +104,17 @@ def sample_pulse(
     impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
+    """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps.
+
+    The event loop of the solver follows one flight after the other; each is then repeated from its start and evaluated
+    at the times inside it. So a history has the events of the response, and samples do not change them.
+    """
     set_body(flight, cell, False)
     omega = cell.rate
     init_state(flight, omega)
     pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
-    filled, written, going = 0, 0, flight.interval_count > 0
+    filled, written = 0, 0  # times that lie before the end of the flight, impacts
+    going = flight.interval_count > 0  # whether the last flight ended in an impact
     while going and not is_stopped(stop):
         flight.length = math.nan
         going = advance_by_arc(flight) if steps is None else advance(flight, steps)
@@ -211,6 +216,9 @@ def sample_free_rocking(
     stop: FloatArray,
 ) -> int:
     """Continue from the state that the solver left at the end of the pulse.
+
+    Without ground motion z has one maximum in a flight, after which it falls to the next impact: each Taylor step holds
+    at most one impact, which `impact_in_step` finds. The restitution ends the motion at `REST_VELOCITY`.
 
     Parameters
     ----------

@@ -63,27 +63,56 @@ def series_root(flight: Record, order: int) -> float:
 
 
 @kernel
+def expand_at(flight: Record, h: float, order: int) -> tuple[float, float, float, float, float]:
+    """Expand the flight in a series about time `h`, or about its start where that series reaches `h`.
+
+    An expansion far from the start loses the first part of a flight by cancellation; at the start q is known without.
+    Returns the centre of the series, the distance from it at which the search for a zero of `order` begins, and z, w
+    and z'' at `h`.
+    """
+    if h <= SERIES_RADIUS / flight.max_rate:
+        expand_series(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
+        return 0.0, h, rotation(flight, h), velocity(flight, h), acceleration(flight, h)
+    set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
+    z, w = arc_state(flight, h, flight.cosine1, flight.sine1)
+    expand_series(flight, z, w, restoring_acceleration(flight, flight.cosine1), flight.cosine1, flight.sine1)
+    return h, series_root(flight, order), z, w, 2.0 * flight.coef[2]
+
+
+@kernel
+def halley_step(flight: Record, order: int, delta: float) -> tuple[float, float]:
+    """Halley's step from the distance `delta` to the zero of the local series of z (order 0), w (1) or z'' (2).
+
+    Returns the step and its relative correction of Newton's step: the error that remains is proportional to the cube of
+    the step, times the square of that correction over the step near a double zero.
+    """
+    z, w, second = rotation(flight, delta), velocity(flight, delta), acceleration(flight, delta)
+    third = jerk(flight, delta)
+    if order == 0:
+        value, slope, curve = z, w, second
+    elif order == 1:
+        value, slope, curve = w, second, third
+    else:
+        value, slope, curve = second, third, 0.0  # only the sign of w is used
+    step = -value / slope
+    correction = 0.5 * curve / slope * step
+    return step - correction * step, correction
+
+
+@kernel
 def locate_root(
     flight: Record, order: int, falling: bool, lo: float, hi: float, guess: float
 ) -> tuple[float, float, float]:
     """The only zero between times `lo` and `hi` of z (order 0), w (1) or z'' (2), decreasing if `falling`.
 
-    Exact arc, then Halley's method on the local series. The bracket shrinks with every arc, so the search converges.
+    An exact arc to the guess, then Halley's method on the local series. The sign at each arc shrinks the bracket, and
+    every other arc bisects it once the local steps do not converge within eight: the search ends, whatever the guess.
     Returns the time after the start of the flight, and z and w there.
     """
     h = guess
     reach = SERIES_RADIUS / flight.max_rate
     for attempt in range(200):
-        if h <= reach:  # the series at the start is accurate: q is known there without cancellation
-            expand_series(flight, 0.0, flight.w0, flight.q0, flight.cosine0, flight.sine0)
-            centre, delta = 0.0, h
-            z, w, second = rotation(flight, h), velocity(flight, h), acceleration(flight, h)
-        else:
-            set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
-            z, w = arc_state(flight, h, flight.cosine1, flight.sine1)
-            expand_series(flight, z, w, restoring_acceleration(flight, flight.cosine1), flight.cosine1, flight.sine1)
-            centre, delta = h, series_root(flight, order)
-            second = 2.0 * flight.coef[2]
+        centre, delta, z, w, second = expand_at(flight, h, order)
         value = z if order == 0 else (w if order == 1 else second)
         if (value > 0.0) == falling:
             lo = h
@@ -92,27 +121,16 @@ def locate_root(
         for _ in range(6):
             if not abs(delta) <= reach:
                 break
-            near_z, near_w, second = rotation(flight, delta), velocity(flight, delta), acceleration(flight, delta)
-            third = jerk(flight, delta)
-            if order == 0:
-                value, slope, curve = near_z, near_w, second
-            elif order == 1:
-                value, slope, curve = near_w, second, third
-            else:
-                value, slope, curve = second, third, 0.0  # only the sign of w is used
-            step = -value / slope
-            curvature_ratio = 0.5 * curve / slope * step
-            step -= curvature_ratio * step
-            if abs(step) <= 2e-5 * min(reach, centre + delta) and abs(
-                step
-            ) * curvature_ratio * curvature_ratio <= 1e-16 * (centre + delta):
-                # the remaining error is proportional to the cube of the step, times the square of
-                # curvature_ratio/step near a double zero: below rounding
+            step, correction = halley_step(flight, order, delta)
+            small = abs(step) <= 2e-5 * min(reach, centre + delta)
+            if small and abs(step) * correction * correction <= 1e-16 * (centre + delta):  # the error is below rounding
                 root = centre + delta + step
                 if centre > 0.0 and root <= reach:
                     delta += step
-                    break  # an expansion far from the start loses the first part of a flight by cancellation
+                    break  # again with the series at the start
                 if lo - 4e-16 * hi <= root <= hi + 4e-16 * hi:
+                    second, third = acceleration(flight, delta), jerk(flight, delta)
+                    near_z, near_w = rotation(flight, delta), velocity(flight, delta)
                     rotated = near_z + step * (near_w + step * (0.5 * second + step * third / 6.0))
                     return root, rotated, near_w + step * (second + 0.5 * step * third)
                 break

@@ -11,6 +11,12 @@ The parts of the pulse are visited in their order, all cells at once; a cell ign
   the right end is not computed before it is needed. Otherwise z <= 0 at the right end means an impact; if z turns
   inside, its tangents exclude a zero, else the cell is left to the general solver.
 - z + w > 1 + a at the right end of a restored part: overturning is certain, see `rocking.solver.arcs.events`.
+
+Worked example: the sine, 1/a = 0.6, omega = 2. The first flight starts at the uplift, phi = 0.644 (f = 0.6), about the
+left edge. On the parts to pi/2 and to the cut at phi = 2.498 (f = 0.6 again) q <= 0 and w >= 0 at the left end: no
+event, and neither state is computed. The part to 3 pi/2 is restored: z = 0.226 and w = -0.933 at its right end, and
+w = 0.460 at its left end, which is computed now: one peak, which is kept for later, and no impact. On the last part, to
+2 pi, z < 0 at the right end: one impact, which is located at phi = 5.099 with w = -1.416, and the peak with it.
 """
 
 from __future__ import annotations
@@ -101,6 +107,7 @@ def follow_part(
         Whether the part ends with the pulse.
     """
     zero, one = splat(0.0), splat(1.0)
+    # 1. Cells whose flight has a length on this part, and those for which an event is possible on it
     phase = load(group.columns, PHASE)
     followed, known = load(group.followed, 0) > 0.0, load(group.known, 0) > 0.0
     left_h, left_z, left_w = load(group.left_h, 0), load(group.left_z, 0), load(group.left_w, 0)
@@ -109,11 +116,12 @@ def follow_part(
     inside = ahead & (h > left_h)
     h = select(inside, h, left_h)
     falling_back = inside & known & (left_w < 0.0)
-    needed = inside if restored else falling_back
-    if not last and not any_lane(needed):
+    if not last and not any_lane(inside if restored else falling_back):
+        # destabilised and rising, all of them: no event, and the state at the right end is not needed yet
         store(group.known, 0, select(inside, zero, load(group.known, 0)))
         store(group.left_h, 0, h)
         return
+    # 2. Their state at the right end; at the end of the pulse that of the others too, which was left open
     if end > 0:
         set_end_angles(pulse, group, end)
     else:
@@ -121,68 +129,24 @@ def follow_part(
     computed = inside | (ahead & ~known) if last else inside
     z, w = states_at(pulse, group, select(computed, h, splat(FAR)))
     q = restoring_acceleration(pulse, group)
-    ended = load(group.ended, 0)
-    # a cell that starts later, or for which the part is empty, keeps its state; at the end of the pulse it is needed
+    # a cell that starts later, or for which the part is empty, keeps its state
     z, w = select(computed, z, left_z), select(computed, w, left_w)
-    undecided = fill_mask(False)
+    # 3. Events on the part
     if restored:
-        limit = one if last else 1.0 + load(group.a, 0)
-        escapes = inside & (z > 0.0) & (z + w >= limit)
+        escapes = inside & (z > 0.0) & (z + w >= (one if last else 1.0 + load(group.a, 0)))
         if not last:
             escapes = escapes & before_cut
-        ended = select(escapes, splat(float(PULSE_END)), ended)
-        inside = inside & ~escapes
-        unknown = inside & ~known & (w < 0.0)
-        left_q = load(group.left_q, 0)
-        if any_lane(unknown):
-            set_angles(pulse, group, phase + load(group.columns, OMEGA) * left_h)
-            at_left_z, at_left_w = states_at(pulse, group, select(unknown, left_h, splat(FAR)))
-            left_z, left_w = select(unknown, at_left_z, left_z), select(unknown, at_left_w, left_w)
-            left_q = select(unknown, restoring_acceleration(pulse, group), left_q)
-            known = known | unknown
-        left_slope, slope = left_z - left_q, z - q
-        duration = h - left_h
-        if rising:
-            turns = (left_w > 0.0) & (w >= 0.0) & (left_slope < 0.0) & (slope > 0.0)
-        else:
-            turns = (left_w <= 0.0) & (w < 0.0) & (left_slope > 0.0) & (slope < 0.0)
-        undecided = inside & known & turns & ~are_apart(left_w, left_slope, w, slope, duration)
-        if any_lane(undecided):
-            up = 1.0 if rising else -1.0
-            undecided, dips = find_dips(
-                pulse, group, up, undecided, left_h, left_w * up, left_slope * up, h, w * up, slope * up
-            )
-            undecided = undecided | dips
-        peaks = inside & known & (left_w > 0.0) & (w < 0.0)
-        hits = inside & (z <= 0.0)
-        undecided = undecided | (hits & (w >= 0.0))
-        if any_lane(peaks):
-            if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
-                flush_peaks(pulse, group, peaks)
-            guess = left_h + hermite_roots(left_w, left_slope, w, slope, duration)
-            store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
-            store(group.peak_low, 0, select(peaks, left_h, load(group.peak_low, 0)))
-            store(group.peak_high, 0, select(peaks, h, load(group.peak_high, 0)))
-            store(group.peak_guess, 0, select(peaks, guess, load(group.peak_guess, 0)))
-        store(group.impact_after_peak, 0, select(hits, select(peaks, one, zero), load(group.impact_after_peak, 0)))
+        hits, undecided, left_z, left_w = restored_events(
+            pulse, group, rising, inside & ~escapes, known, left_h, left_z, left_w, h, z, w, q
+        )
     else:
-        hits = falling_back & (z <= 0.0)
-        turns = falling_back & (z > 0.0) & (w > 0.0)
-        undecided = turns & ~are_apart(left_z, left_w, z, w, h - left_h)
-        if any_lane(undecided):
-            undecided, dips = find_dips(pulse, group, 0.0, undecided, left_h, left_z, left_w, h, z, w)
-            hits = hits | dips
-        store(group.impact_after_peak, 0, select(hits, zero, load(group.impact_after_peak, 0)))
         escapes = fill_mask(False)
+        hits, undecided = destabilised_events(pulse, group, falling_back, left_h, left_z, left_w, h, z, w)
     if any_lane(hits):
-        store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
-        store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
-        store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
-        at_end = hits & (z <= 0.0)  # otherwise at the dip
-        store(group.impact_high, 0, select(at_end, h, load(group.impact_high, 0)))
-        store(group.impact_high_z, 0, select(at_end, z, load(group.impact_high_z, 0)))
-        store(group.impact_high_w, 0, select(at_end, w, load(group.impact_high_w, 0)))
-        ended = select(hits, splat(float(IMPACT)), ended)
+        bracket_impacts(group, hits, left_h, left_z, left_w, h, z, w)
+    # 4. How each flight goes on
+    ended = select(escapes, splat(float(PULSE_END)), load(group.ended, 0))
+    ended = select(hits, splat(float(IMPACT)), ended)
     store(group.undecided, 0, select(undecided, one, load(group.undecided, 0)))
     stays = followed & ~hits & ~undecided & ~escapes
     if last:
@@ -200,6 +164,114 @@ def follow_part(
     store(group.left_z, 0, z)
     store(group.left_w, 0, w)
     store(group.left_q, 0, select(inside, q, load(group.left_q, 0)))
+
+
+@specialised_kernel
+def restored_events(
+    pulse: Record,
+    group: Record,
+    rising: bool,
+    inside: Any,
+    known: Any,
+    left_h: SimdVector,
+    left_z: SimdVector,
+    left_w: SimdVector,
+    h: SimdVector,
+    z: SimdVector,
+    w: SimdVector,
+    q: SimdVector,
+) -> Any:
+    """Impacts and peaks on a part with q >= 0, from the states at its ends; `left_*` where it is `known`.
+
+    Returns the masks of the cells with an impact, which is where z <= 0 at the right end, and of those left undecided;
+    then z and w at the left end, computed where it was left open and w < 0 at the right end: without a fall there is
+    neither a peak nor an impact, whatever the state at the left end was. The peak of a cell is kept as pending, with
+    its bracket and first guess.
+    """
+    one, zero = splat(1.0), splat(0.0)
+    left_q = load(group.left_q, 0)
+    unknown = inside & ~known & (w < 0.0)
+    if any_lane(unknown):
+        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * left_h)
+        at_left_z, at_left_w = states_at(pulse, group, select(unknown, left_h, splat(FAR)))
+        left_z, left_w = select(unknown, at_left_z, left_z), select(unknown, at_left_w, left_w)
+        left_q = select(unknown, restoring_acceleration(pulse, group), left_q)
+        known = known | unknown
+    left_slope, slope = left_z - left_q, z - q  # of w
+    duration = h - left_h
+    # two more zeros of w are possible where it has one sign at both ends and turns inside
+    if rising:
+        turns = (left_w > 0.0) & (w >= 0.0) & (left_slope < 0.0) & (slope > 0.0)
+    else:
+        turns = (left_w <= 0.0) & (w < 0.0) & (left_slope > 0.0) & (slope < 0.0)
+    undecided = inside & known & turns & ~are_apart(left_w, left_slope, w, slope, duration)
+    if any_lane(undecided):
+        up = 1.0 if rising else -1.0
+        undecided, dips = find_dips(
+            pulse, group, up, undecided, left_h, left_w * up, left_slope * up, h, w * up, slope * up
+        )
+        undecided = undecided | dips
+    peaks = inside & known & (left_w > 0.0) & (w < 0.0)
+    hits = inside & (z <= 0.0)
+    undecided = undecided | (hits & (w >= 0.0))  # rounding: z rises through zero
+    if any_lane(peaks):
+        if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
+            flush_peaks(pulse, group, peaks)
+        guess = left_h + hermite_roots(left_w, left_slope, w, slope, duration)
+        store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
+        store(group.peak_low, 0, select(peaks, left_h, load(group.peak_low, 0)))
+        store(group.peak_high, 0, select(peaks, h, load(group.peak_high, 0)))
+        store(group.peak_guess, 0, select(peaks, guess, load(group.peak_guess, 0)))
+    store(group.impact_after_peak, 0, select(hits, select(peaks, one, zero), load(group.impact_after_peak, 0)))
+    return hits, undecided, left_z, left_w
+
+
+@kernel
+def destabilised_events(
+    pulse: Record,
+    group: Record,
+    falling_back: Any,
+    left_h: SimdVector,
+    left_z: SimdVector,
+    left_w: SimdVector,
+    h: SimdVector,
+    z: SimdVector,
+    w: SimdVector,
+) -> Any:
+    """Impacts on a part with q <= 0 of the cells with w < 0 at its left end; there is no peak inside.
+
+    z is convex while it is positive: z <= 0 at the right end is an impact, and so is z <= 0 at a minimum inside, where
+    w changes its sign. Returns the masks of the cells with an impact and of those left undecided.
+    """
+    hits = falling_back & (z <= 0.0)
+    turns = falling_back & (z > 0.0) & (w > 0.0)
+    undecided = turns & ~are_apart(left_z, left_w, z, w, h - left_h)
+    if any_lane(undecided):
+        undecided, dips = find_dips(pulse, group, 0.0, undecided, left_h, left_z, left_w, h, z, w)
+        hits = hits | dips
+    store(group.impact_after_peak, 0, select(hits, splat(0.0), load(group.impact_after_peak, 0)))
+    return hits, undecided
+
+
+@kernel
+def bracket_impacts(
+    group: Record,
+    hits: Any,
+    left_h: SimdVector,
+    left_z: SimdVector,
+    left_w: SimdVector,
+    h: SimdVector,
+    z: SimdVector,
+    w: SimdVector,
+) -> None:
+    """Set the bracket of the impact: the part, or its left end and the dip that `find_dips` has set."""
+    store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
+    store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
+    store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
+    at_end = hits & (z <= 0.0)  # otherwise at the dip
+    store(group.impact_high, 0, select(at_end, h, load(group.impact_high, 0)))
+    store(group.impact_high_z, 0, select(at_end, z, load(group.impact_high_z, 0)))
+    store(group.impact_high_w, 0, select(at_end, w, load(group.impact_high_w, 0)))
 
 
 @kernel
