@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.tracing import overturning_boundary
 from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
-from rocking.dimensional.record_scales import checked_scale
+from rocking.dimensional.record_groups import checked_scale, record_groups
 from rocking.errors import InvalidArgumentError, in_range, positive
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
@@ -118,21 +118,19 @@ def block_record_history(
     Returns
     -------
     xarray.Dataset
-        As of `block_history`, with the coordinate tau(time) [-] beside time(time) [s].
+        As of `block_history`, with the coordinate tau(time) [-] beside time(time) [s], and vertical_acceleration(time)
+        [m/s2] for a record that has it.
 
     Raises
     ------
     InvalidArgumentError
         If a value is out of range.
     """
-    factor = checked_scale(scale)
+    factor = checked_scale(scale, record, block)
     eta = restitution_of(block, restitution)
     found = record_history(
         record,
-        frequency_parameter=block.frequency_parameter,
-        slenderness=block.uplift_acceleration / (factor * record.peak_acceleration),
-        restitution=eta,
-        alpha=block.equation_alpha,
+        **record_groups(record, block, factor, eta),
         duration=duration,
         samples=samples,
         contact=contact,
@@ -148,10 +146,12 @@ def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
         "rotation": (block.alpha, "rad", "rotation theta"),
         "angular_velocity": (block.alpha * block.frequency_parameter, "rad s-1", "velocity theta'"),
         "ground_acceleration": (block.uplift_acceleration, "m s-2", "ground acceleration"),
+        "vertical_acceleration": (block.gravity, "m s-2", "vertical ground acceleration, upwards"),
     }
     scaled = {
         name: (history[name].dims, scale * history[name].values, {"units": unit, "long_name": meaning})
         for name, (scale, unit, meaning) in scales.items()
+        if name in history
     }
     moved = block.top_height * np.sin(scaled["rotation"][1])
     scaled["top_displacement"] = history["rotation"].dims, moved, {"units": "m", "long_name": "top corner displacement"}

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking.dimensional.assessment import SEARCH_SECONDS
 from rocking.dimensional.block_warnings import NOT_FOUND, warnings_of_block, warnings_of_changes
+from rocking.dimensional.record_groups import HIGHEST_SCALE, uplift_scale
 from rocking.dimensional.record_problem import RecordProblem
-from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, scale_thresholds
+from rocking.dimensional.record_scales import ScaleThresholds, scale_thresholds
 from rocking.excitation.records.record import TIME_STEP, Record
+from rocking.excitation.records.vertical import highest_vertical_scale
 from rocking.history.contact import ContactExtremes, contact_extremes
 from rocking.history.record_motion import build_record_motion
 from rocking.model.outcome import Outcome
@@ -45,10 +47,10 @@ class RecordAssessment:
         The response in groups, arrays of shape ().
     resampled : Response or None
         The response to the record interpolated band-limited at an eighth of its step; None for a record that would be
-        too long, or its step too small.
+        too long, or its step too small, or its vertical acceleration reach -g.
     amplification : float
-        Relative change of the peak rotation per relative change of the amplitude [-]; infinite if the outcome changes
-        within 1e-9 of the amplitude, nan if the block overturns or does not uplift.
+        Relative change of the peak rotation per relative change of the horizontal amplitude [-]; infinite if the
+        outcome changes within 1e-9 of the amplitude, nan if the block overturns or does not uplift.
     contact : ContactExtremes
         Extremes of the contact forces during the motion.
     searched : bool
@@ -174,13 +176,13 @@ def assess_record(
     refined = None
     step = record.time_step / REFINEMENT
     if record.samples * REFINEMENT <= MAX_RESAMPLED and step >= TIME_STEP[0]:
-        refined = problem.solve(record.resampled(step), stop=flag)
+        finer = record.resampled(step)
+        if problem.scale < highest_vertical_scale(finer, block.gravity):
+            refined = problem.solve(finer, stop=flag)
     contact = contact_extremes(build_record_motion(record, **groups, stop=flag))
     searched = None
     if thresholds:
-        highest = min(
-            max(10.0 * block.uplift_acceleration / record.peak_acceleration, 2.0 * problem.scale), HIGHEST_SCALE
-        )
+        highest = min(max(10.0 * uplift_scale(record, block), 2.0 * problem.scale), HIGHEST_SCALE)
 
         def search(part: StopFlag) -> ScaleThresholds:
             return scale_thresholds(record, block, restitution=groups["restitution"], highest=highest, stop=part)
@@ -191,7 +193,7 @@ def assess_record(
         response=response,
         resampled=refined,
         amplification=float(record_amplification(record, **groups, stop=flag)),
-        contact=contact if block.contact_is_known else contact.without_forces(),
+        contact=contact if block.contact_is_known and record.vertical is None else contact.without_forces(),
         searched=thresholds,
         thresholds=searched,
     )

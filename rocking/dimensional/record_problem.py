@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypedDict
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import is_housner, restitution_of
-from rocking.dimensional.record_scales import checked_scale
+from rocking.dimensional.record_groups import RecordGroups, checked_scale, record_groups
 from rocking.excitation.records.record import Record
 from rocking.model.block import AbstractBlock
 from rocking.model.response import Response
@@ -15,18 +14,9 @@ from rocking.solver.records.record_response import record_response
 from rocking.units import Scalar
 
 
-class RecordGroups(TypedDict):
-    """Keyword arguments of `record_response`."""
-
-    frequency_parameter: float
-    slenderness: float
-    restitution: float
-    alpha: float
-
-
 @dataclass(frozen=True, init=False)
 class RecordProblem:
-    """A block under a record times a factor.
+    """A block under a record times a factor, which multiplies both components.
 
     Parameters
     ----------
@@ -42,7 +32,7 @@ class RecordProblem:
     Raises
     ------
     InvalidArgumentError
-        If a value is out of range.
+        If a value is out of range, or the vertical acceleration times the factor reaches -g.
     """
 
     block: AbstractBlock
@@ -57,14 +47,14 @@ class RecordProblem:
         checked = {
             "block": block,
             "record": record,
-            "scale": checked_scale(scale),
+            "scale": checked_scale(scale, record, block),
             "restitution": "housner" if is_housner(restitution) else eta,
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)  # a frozen dataclass
 
     @property
-    def groups(self) -> RecordGroups:
+    def groups(self) -> RecordGroups[float]:
         """The groups under the scaled record."""
         return self._groups_under(self.record)
 
@@ -73,11 +63,5 @@ class RecordProblem:
         chosen = self.record if motion is None else motion
         return record_response(chosen, **self._groups_under(chosen), stop=stop)
 
-    def _groups_under(self, motion: Record) -> RecordGroups:
-        block = self.block
-        return {
-            "frequency_parameter": block.frequency_parameter,
-            "slenderness": block.uplift_acceleration / (self.scale * motion.peak_acceleration),
-            "restitution": restitution_of(block, self.restitution),
-            "alpha": block.equation_alpha,
-        }
+    def _groups_under(self, motion: Record) -> RecordGroups[float]:
+        return record_groups(motion, self.block, self.scale, restitution_of(self.block, self.restitution))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
+from rocking.dimensional.record_groups import HIGHEST_SCALE, record_groups, search_range
 from rocking.dimensional.threshold import RELATIVE_ERROR, Threshold, threshold_text
 from rocking.equality import EqualByValue
 from rocking.errors import number
@@ -26,9 +27,6 @@ SCAN_RATIO = 1.002
 
 SCALE_TOLERANCE = RELATIVE_ERROR
 """Relative width to which a change of outcome is bisected [-]."""
-
-HIGHEST_SCALE = 1e6
-"""Largest factor of a record [-]."""
 
 _PARTS = 16
 """Scales between the two ends of an interval that is bisected, solved by one call."""
@@ -49,11 +47,14 @@ class ScaleThresholds(EqualByValue):
         True where the block overturns just above and survives just below.
     searched : (float, float)
         Lowest and highest scale searched [-].
+    ends_in_flight : bool
+        Whether the search ended at the scale at which the vertical acceleration reaches -g.
     """
 
     scale: Array
     overturns_above: NDArray[np.bool_]
     searched: tuple[float, float]
+    ends_in_flight: bool = False
 
     @property
     def changes(self) -> tuple[Threshold, ...]:
@@ -64,22 +65,12 @@ class ScaleThresholds(EqualByValue):
     def sentence(self) -> str:
         """From which factor of the record the block overturns, and how often the outcome changes above it, in words."""
         top = threshold_text(self.searched[1])
+        end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
         if not self.scale.size:
-            return f"no factor of the record up to {top} was found to overturn it"
+            return f"no factor of the record up to {top} was found to overturn it{end}"
         first, *others = self.changes
         more = f"; above that the outcome changes {len(others)} more times up to {top} times" if others else ""
-        return f"it overturns from {first.text()} times the record{more}"
-
-
-def checked_scale(scale: Scalar) -> float:
-    """The factor of a record [-].
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is not one number in (0, 1e6].
-    """
-    return number("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
+        return f"it overturns from {first.text()} times the record{more}{end}"
 
 
 def scale_thresholds(
@@ -93,7 +84,8 @@ def scale_thresholds(
     """Every scale of a record at which the outcome for a block changes, by (2.2).
 
     Scales that differ by 0.2 % are solved from that of uplift on, and each pair between which the outcome changes is
-    bisected. A range of one outcome that is narrower can be missed.
+    bisected. A range of one outcome that is narrower can be missed. Both components of the record are scaled; the
+    search ends below the scale at which the vertical acceleration reaches -g.
 
     Parameters
     ----------
@@ -113,13 +105,11 @@ def scale_thresholds(
     InvalidArgumentError
         For an argument out of range.
     """
-    uplift = block.uplift_acceleration / record.peak_acceleration
-    top = 10.0 * uplift if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
+    uplift, top, flies = search_range(record, block, _checked_highest(highest))
     if top <= uplift:
-        return ScaleThresholds(np.empty(0), np.empty(0, dtype=np.bool_), (uplift, uplift))
-    scales = scanned(uplift, top)
-    solve = _solver(record, block, restitution_of(block, restitution), stop)
-    return ScaleThresholds(*outcome_changes(solve, scales), (uplift, top))
+        return ScaleThresholds(np.empty(0), np.empty(0, dtype=np.bool_), (uplift, uplift), flies)
+    overturns = _solver(record, block, restitution_of(block, restitution), stop)
+    return ScaleThresholds(*outcome_changes(overturns, scanned(uplift, top)), (uplift, top), flies)
 
 
 def outcome_changes(overturns: Callable[[Array], NDArray[np.bool_]], values: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -144,9 +134,12 @@ def overturning_scale(
 
     The first of `scale_thresholds`, which has the same arguments, in less time.
     """
-    uplift = block.uplift_acceleration / record.peak_acceleration
-    top = 10.0 * uplift if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
+    uplift, top, _ = search_range(record, block, _checked_highest(highest))
     return lowest_overturning(_solver(record, block, restitution_of(block, restitution), stop), scanned(uplift, top))
+
+
+def _checked_highest(highest: Scalar | None) -> float | None:
+    return None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
 
 
 def lowest_overturning(overturns: Callable[[Array], NDArray[np.bool_]], values: Array) -> float:
@@ -169,17 +162,9 @@ def _solver(
     record: Record, block: AbstractBlock, eta: float, stop: StopFlag | None
 ) -> Callable[[Array], NDArray[np.bool_]]:
     """Whether the block overturns, as a function of the scales."""
-    uplift = block.uplift_acceleration / record.peak_acceleration
 
     def overturns(scales: Array) -> NDArray[np.bool_]:
-        return record_response(
-            record,
-            frequency_parameter=block.frequency_parameter,
-            slenderness=uplift / scales,
-            restitution=eta,
-            alpha=block.equation_alpha,
-            stop=stop,
-        ).overturned
+        return record_response(record, **record_groups(record, block, scales, eta), stop=stop).overturned
 
     return overturns
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import integer, number
+from rocking.errors import InvalidArgumentError, integer, number
 from rocking.excitation.records.record import Record
 from rocking.history.body_motion import Floats, overturned
 from rocking.history.contact import add_contact
@@ -29,6 +29,7 @@ def record_history(
     slenderness: Scalar,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    vertical_scale: Scalar | None = 1.0,
     duration: Scalar | None = None,
     samples: int | None = None,
     contact: bool = False,
@@ -38,7 +39,7 @@ def record_history(
 
     Parameters
     ----------
-    motion, frequency_parameter, slenderness, restitution, alpha
+    motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale
         As for `record_response`; numbers.
     duration : float, optional
         Duration [s], > 0. By default the motion and 8/p after it; if the block overturns, until |theta|/alpha = 4 or
@@ -48,7 +49,8 @@ def record_history(
         most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of the motion
         are added.
     contact : bool
-        Whether to add the reactions of the ground and the friction demand (docs/contact.md).
+        Whether to add the reactions of the ground and the friction demand (docs/contact.md); not known under a record
+        with a vertical component.
     stop : StopFlag, optional
         Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -57,7 +59,8 @@ def record_history(
     xarray.Dataset
         time(time) [s] from the first sample, and tau(time) = p t [-]; rotation(time): theta/alpha [-];
         angular_velocity(time): theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(time): u [-],
-        over g tan(alpha); impact_time(impact) [s]. Attributes: the arguments, outcome, overturned, peak_rotation,
+        over g tan(alpha); vertical_acceleration(time) [-], over g and upwards, for a record that has it;
+        impact_time(impact) [s]. Attributes: the arguments, outcome, overturned, peak_rotation,
         impacts. With `contact`, the variables and attributes of `rocking.history.contact.add_contact`.
 
     Raises
@@ -74,8 +77,11 @@ def record_history(
         "slenderness": slenderness,
         "restitution": restitution,
         "alpha": alpha,
+        "vertical_scale": vertical_scale,
     }
     block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
+    if contact and motion.vertical is not None:
+        raise InvalidArgumentError("contact", contact, "False for a record with a vertical component: not known")
     record, impact_times = block.events()
     grid = default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
     events = [0.0, block.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
@@ -115,6 +121,10 @@ def record_history(
             "motion_end": motion.duration,
         },
     )
+    if motion.vertical is not None:
+        upwards = {"long_name": "vertical ground acceleration over g, upwards", "units": "1"}
+        history["vertical_acceleration"] = "tau", block.vertical_acceleration(tau), upwards
+        history.attrs["vertical_scale"] = float(block.cell["vertical"])
     if contact:
         history = add_contact(history, block, impact_times)
     return history.swap_dims(tau="time")

@@ -10,6 +10,7 @@ from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record as KernelRecord
 from rocking.errors import number, positive
 from rocking.excitation.records.record import Record
+from rocking.excitation.records.vertical import check_one_vertical_scale
 from rocking.history.body_motion import FREE_DURATION, BodyMotion, Floats
 from rocking.history.record_sampling import sample_record
 from rocking.model.checks import check_number, check_one_alpha
@@ -83,6 +84,7 @@ def build_record_motion(
     slenderness: Scalar,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    vertical_scale: Scalar | None = 1.0,
     duration: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> SamplesMotion:
@@ -90,5 +92,7 @@ def build_record_motion(
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
     s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
     angle = check_one_alpha(alpha)
+    vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")
-    return SamplesMotion(block_cell(p * motion.time_step, s, eta, angle), horizon, stop, motion_samples(motion))
+    cell = block_cell(p * motion.time_step, s, eta, angle, vertical)
+    return SamplesMotion(cell, horizon, stop, motion_samples(motion))

@@ -180,7 +180,7 @@ def copy_start(block: Record, start: Record) -> None:
             block.ratio[side],
             block.stiffness[side],
         )
-    start.alpha, start.h, start.each_side = block.alpha, block.h, 0
+    start.alpha, start.h, start.vertical, start.each_side = block.alpha, block.h, block.vertical, 0
     start.interval, start.s, start.w0 = block.interval, block.s, block.w0
     set_sign(start, block.sign)
     start.starts_at_uplift, start.at_rest = block.starts_at_uplift, 0

@@ -252,18 +252,23 @@ STEP_STATE = _steps_layout()
 
 
 def block_cells(
-    rate: NDArray[np.float64], slenderness: NDArray[np.float64], eta: NDArray[np.float64], alpha: NDArray[np.float64]
+    rate: NDArray[np.float64],
+    slenderness: NDArray[np.float64],
+    eta: NDArray[np.float64],
+    alpha: NDArray[np.float64],
+    vertical: NDArray[np.float64] | float = 0.0,
 ) -> NDArray[np.void]:
     """Cells `BODY_CELL` (size,) of blocks with equal edges, from arrays (size,)."""
     cells = np.empty(rate.size, BODY_CELL)
-    cells["rate"], cells["alpha"], cells["vertical"], cells["ratio"], cells["stiffness"] = rate, alpha, 0.0, 1.0, 1.0
+    cells["rate"], cells["alpha"], cells["ratio"], cells["stiffness"] = rate, alpha, 1.0, 1.0
+    cells["vertical"] = vertical
     cells["slenderness"], cells["eta"] = slenderness[:, None], eta[:, None]
     return cells
 
 
-def block_cell(rate: float, slenderness: float, eta: float, alpha: float) -> Record:
+def block_cell(rate: float, slenderness: float, eta: float, alpha: float, vertical: float = 0.0) -> Record:
     """The cell of one block."""
-    return block_cells(*(np.array([value]) for value in (rate, slenderness, eta, alpha)))[0]
+    return block_cells(*(np.array([value]) for value in (rate, slenderness, eta, alpha, vertical)))[0]
 
 
 RESPONSE_RECORD = record_dtype(RESPONSE_FIELDS)

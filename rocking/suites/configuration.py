@@ -89,7 +89,7 @@ class RecordFiles:
         motion = read_record(path, unit=self.unit, time_step=self.time_step, component=self.component)
         corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
         about = path.stem, corrected.source, corrected.remarks
-        return Record(corrected.acceleration, corrected.time_step, "m/s2", *about)
+        return Record(corrected.acceleration, corrected.time_step, "m/s2", *about, vertical=corrected.vertical)
 
 
 @dataclass(frozen=True, eq=False)

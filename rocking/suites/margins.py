@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking.dimensional.record_groups import record_groups, uplift_scale
 from rocking.dimensional.record_scales import SCAN_RATIO, lowest_overturning, scanned
 from rocking.excitation.records.record import Record
 from rocking.solver.records.record_response import record_response
@@ -62,23 +65,20 @@ def _mildest(
     """
     block, scales = suite.blocks[number], suite.measure.scales_amplitude
     own = suite.measure.of(record, block)
-    uplift = block.uplift_acceleration / record.peak_acceleration
+    eta = float(suite.restitution[number])
 
     def overturns(severity: Array) -> NDArray[np.bool_]:
-        return record_response(
-            record,
-            frequency_parameter=block.frequency_parameter * (1.0 if scales else severity),
-            slenderness=uplift / (severity if scales else 1.0),
-            restitution=suite.restitution[number],
-            alpha=block.equation_alpha,
-            threads=threads,
-            stop=stop,
-        ).overturned
+        groups: dict[str, Any] = {**record_groups(record, block, severity if scales else np.ones(1), eta)}
+        if not scales:
+            groups["frequency_parameter"] = block.frequency_parameter * severity
+        return record_response(record, **groups, threads=threads, stop=stop).overturned
 
     severities = suite.levels / own if scales else (own / suite.levels)[::-1]
     in_order = overturned if scales else overturned[::-1]
     last = float(severities[in_order.argmax() if in_order.any() else -1])
-    found = lowest_overturning(overturns, scanned(uplift if scales else float(severities[0]), last))
+    found = lowest_overturning(
+        overturns, scanned(uplift_scale(record, block) if scales else float(severities[0]), last)
+    )
     if in_order.any() and np.isnan(found):  # the level lies within a rounding of a change of outcome
         found = last
     return own * found if scales else own / found

@@ -13,9 +13,11 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking.constants import STANDARD_GRAVITY
 from rocking.dimensional.problem import restitution_of
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.records.record import Record
+from rocking.excitation.records.vertical import flight_text
 from rocking.model.block import AbstractBlock
 from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.model.response import Response
@@ -87,7 +89,8 @@ def check_suite(
     Raises
     ------
     InvalidArgumentError
-        If there is no record or no block, the levels do not ascend, or a value is not allowed.
+        If there is no record or no block, the levels do not ascend, a value is not allowed, or at a level the vertical
+        acceleration of a record reaches -g.
     """
     chosen = measure_of(measure)
     motions = (records,) if isinstance(records, Record) else tuple(records)
@@ -103,7 +106,26 @@ def check_suite(
         if not math.isfinite(chosen.of(motion, bodies[0])):
             raise InvalidArgumentError("records", motion, f"records with a finite {chosen.meaning}")
     eta = np.array([restitution_of(body, restitution) for body in bodies])
-    return Suite(motions, bodies, levels, chosen, eta)
+    suite = Suite(motions, bodies, levels, chosen, eta)
+    for motion in motions:
+        check_levels(suite, motion)
+    return suite
+
+
+def check_levels(suite: Suite, record: Record) -> None:
+    """Refuse levels at which the vertical acceleration of a record reaches -g.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For the first of them, with the time.
+    """
+    for block, scale in zip(suite.blocks, problems_of(suite, record)[0], strict=True):
+        for level, factor in zip(suite.levels.tolist(), scale.tolist(), strict=True):
+            text = flight_text(record, factor, block.gravity)
+            if text is not None:
+                allowed = f"levels at which the factor of {record.name or 'a record'} is {text}"
+                raise InvalidArgumentError("intensity", level, allowed)
 
 
 def different_names(names: Sequence[str]) -> list[str]:
@@ -171,6 +193,7 @@ def responses_to(
         record,
         frequency_parameter=frequency,
         slenderness=slenderness_of(suite, record, scale),
+        vertical_scale=vertical_scale_of(suite, record, scale),
         restitution=restitution[:, None],
         alpha=np.array([block.equation_alpha for block in suite.blocks])[:, None],
         threads=threads,
@@ -182,6 +205,12 @@ def slenderness_of(suite: Suite, record: Record, scale: Array) -> Array:
     """g tan(alpha)/PGA [-] of the blocks under a record times `scale`, (blocks, levels)."""
     uplift = np.array([block.uplift_acceleration for block in suite.blocks])[:, None]
     return np.asarray(uplift / (scale * record.peak_acceleration))
+
+
+def vertical_scale_of(suite: Suite, record: Record, scale: Array) -> Array | None:
+    """`vertical_scale` of `record_response` for the blocks under a record times `scale`, (blocks, levels)."""
+    gravity = np.array([block.gravity for block in suite.blocks])[:, None]
+    return None if record.vertical is None else np.asarray(scale * (STANDARD_GRAVITY / gravity))
 
 
 def described_outcomes(suite: Suite, values: dict[str, NDArray[Any]]) -> xr.Dataset:

@@ -29,6 +29,7 @@ from rocking.suites.fits import binomial_interval
 from rocking.suites.outcomes import (
     DIMENSIONS,
     Suite,
+    check_levels,
     check_suite,
     described_outcomes,
     problems_of,
@@ -81,14 +82,14 @@ def suite_sensitivity(
     xarray.Dataset
         Over (block, intensity, record): `peak_rotation`, `overturned`, `outcome` and `scale` as `rocking.fragility`
         gives them; `friction_demand`, the largest abs(H)/N [-], infinite if the block would lift off, nan for an
-        `EquivalentBlock`, whose contact forces are not known; `overturned_low_restitution`,
-        `overturned_high_restitution` and `overturned_resampled`. Over (block, intensity): `exceedances`, the number of
-        records that overturn the block, their `fraction` with its Clopper-Pearson interval `fraction_lower`,
-        `fraction_upper`; for each of the three changes the fraction, such as `fraction_resampled`, and the number of
-        records whose outcome is another one, such as `changed_resampled`; `records_changed_by_sampling`, which names
-        them; `friction_demand_median` and `friction_demand_largest` over the records. Coordinates `restitution`,
-        `restitution_low` and `restitution_high` over block, `resampled_time_step` [s] over record. One block, not in a
-        sequence, gives a result without the dimension `block`.
+        `EquivalentBlock` and under records with a vertical component, whose contact forces are not known;
+        `overturned_low_restitution`, `overturned_high_restitution` and `overturned_resampled`. Over (block, intensity):
+        `exceedances`, the number of records that overturn the block, their `fraction` with its Clopper-Pearson interval
+        `fraction_lower`, `fraction_upper`; for each of the three changes the fraction, such as `fraction_resampled`,
+        and the number of records whose outcome is another one, such as `changed_resampled`;
+        `records_changed_by_sampling`, which names them; `friction_demand_median` and `friction_demand_largest` over the
+        records. Coordinates `restitution`, `restitution_low` and `restitution_high` over block, `resampled_time_step`
+        [s] over record. One block, not in a sequence, gives a result without the dimension `block`.
 
     Raises
     ------
@@ -118,6 +119,7 @@ def sensitivity_outcomes(
     for k, record in enumerate(suite.records):
         scale, frequency = problems_of(suite, record)
         resampled = record.resampled(record.time_step / REFINEMENT)
+        check_levels(suite, resampled)
         kinds = (record, suite.restitution), (record, low), (record, high), (resampled, suite.restitution)
         as_given, *others = (
             responses_to(suite, motion, scale, frequency, eta, threads=threads, stop=stop) for motion, eta in kinds
@@ -181,6 +183,8 @@ def sensitivity_of_outcomes(outcomes: xr.Dataset, confidence: float) -> xr.Datas
 def _friction_demands(suite: Suite, record: Record, scale: Array, frequency: Array, stop: StopFlag | None) -> Array:
     """The largest friction demand of each block at each level, (blocks, levels)."""
     found = np.full(scale.shape, np.nan)
+    if record.vertical is not None:  # the forces are not known then
+        return found
     slenderness = slenderness_of(suite, record, scale)
     for k, (block, eta) in enumerate(zip(suite.blocks, suite.restitution.tolist(), strict=True)):
         if not block.contact_is_known:

@@ -116,7 +116,7 @@ def test_scales_are_those_of_the_library(client, motion):
     expected = rocking.record_response(
         motion,
         frequency_parameter=block.frequency_parameter,
-        slenderness=uplift / scale,
+        slenderness=block.uplift_acceleration / (scale * motion.peak_acceleration),
         restitution=block.inelastic_restitution,
         alpha=block.alpha,
     )

@@ -20,6 +20,7 @@ BLOCK = rocking.Block(0.2, 0.8)
 FRAME = EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5)
 TIME = np.arange(0.0, 3.0, 0.01)
 RECORD = rocking.Record(3.0 * np.sin(6.0 * TIME), 0.01, "m/s2")
+UPWARDS = rocking.Record(RECORD.acceleration, 0.01, "m/s2", vertical=0.1 * RECORD.acceleration)
 PROBLEM = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
 OF_RECORD = {"frequency_parameter": 3.0, "slenderness": 0.4, "restitution": 0.85, "alpha": 0.2}
 PULSE = {"excitation": "sine", "peak_acceleration": 4.0, "period": 0.5, "restitution": 0.9}
@@ -114,7 +115,9 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "peak_response": (rocking.peak_response, [{"pulse": "sine", "tolerance": 1e-6, "threads": 1} | PROBLEM]),
     "read_record": (rocking.read_record, [{"path": __file__, "time_step": 0.01}]),
     "record_amplification": (rocking.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
-    "record_history": (rocking.record_history, [{"motion": RECORD, "duration": 5.0, "samples": 10} | OF_RECORD]),
+    "record_history": (
+        rocking.record_history, [{"motion": UPWARDS, "vertical_scale": 1.0, "duration": 5.0, "samples": 10} | OF_RECORD]
+    ),
     "record_response": (rocking.record_response, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
     "suite_sensitivity": (rocking.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
     "time_history": (rocking.time_history, [{"pulse": "sine", "duration": 5.0, "samples": 10} | PROBLEM]),
@@ -134,7 +137,7 @@ RESULTS = {"PulseFit", "orientation.Quantity", "Block.top_displacement", "Equiva
 
 OPTIONAL = {
     "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
-    "restitution", "scale",
+    "restitution", "scale", "vertical_scale",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 

@@ -42,6 +42,11 @@ def test_units_are_converted_to_si(unit: str, factor: float) -> None:
         ({"time_step": -0.01}, "time_step"),
         ({"time_step": [0.01, 0.02]}, "one number"),
         ({"unit": "m/s"}, "unit"),
+        ({"vertical": [0.0, 1.0, 2.0]}, r"shape \(3,\).* 2 samples"),
+        ({"vertical": 0.5}, "one value for each"),
+        ({"vertical": [0.0, math.inf]}, "vertical"),
+        ({"vertical": [0.0, 1e9]}, "vertical"),
+        ({"vertical": "up"}, "vertical"),
     ],
 )
 def test_invalid_arguments_are_named(arguments: dict, named: str) -> None:
@@ -72,6 +77,46 @@ def test_digest_and_equality_depend_on_samples_and_step_only() -> None:
     assert hash(record) == hash(same)
     assert record.digest == hashlib.sha256(np.array([0.01, 0.0, 1.0, 0.5], "<f8").tobytes()).hexdigest()
     assert record != rocking.Record([0.0, 1.0, 0.5], 0.02, unit="m/s2")
+
+
+def test_a_vertical_component_belongs_to_the_record() -> None:
+    upwards = np.array([0.1, -0.2, 0.0])
+    record = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=upwards)
+    upwards[0] = 5.0
+    np.testing.assert_allclose(record.vertical, np.array([0.1, -0.2, 0.0]) * STANDARD_GRAVITY, rtol=1e-15)
+    assert record.vertical is not None
+    with pytest.raises(ValueError, match="read-only"):
+        record.vertical[0] = 1.0
+    assert record.peak_vertical_acceleration == pytest.approx(0.2 * STANDARD_GRAVITY)
+    assert repr(record) == "<rocking.Record: 3 samples at 0.01 s, PGA 1 g, with vertical, 0.2 g>"
+    plain = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g")
+    assert plain.vertical is None
+    assert plain.peak_vertical_acceleration == 0.0
+    others = [
+        plain,
+        rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=np.zeros(3)),
+        rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=[0.1, -0.2, 0.01]),
+        rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"),
+    ]
+    assert len({record.digest, *(other.digest for other in others)}) == 5
+    assert record == rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=[0.1, -0.2, 0.0], name="other")
+    assert record != plain
+    assert record.arias_intensity == plain.arias_intensity
+
+
+def test_processing_treats_both_components_alike() -> None:
+    horizontal = sine_record()
+    a = horizontal.acceleration
+    record = rocking.Record(a, horizontal.time_step, "m/s2", vertical=-2.0 * a + 0.1)
+    alone = rocking.Record(-2.0 * a + 0.1, horizontal.time_step, "m/s2")
+    for process in (
+        lambda motion: motion.resampled(0.002),
+        lambda motion: motion.baseline_corrected(order=2),
+    ):
+        found = process(record)
+        np.testing.assert_array_equal(found.acceleration, process(horizontal).acceleration)
+        np.testing.assert_array_equal(found.vertical, process(alone).acceleration)
+        assert process(horizontal).vertical is None
 
 
 def test_measures_of_a_sine() -> None:

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import rocking
 from rocking._numba.cancellation import StopFlag
+from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import InvalidArgumentError, StoppedError
 from tests.solver.records.tables import record
 
@@ -24,6 +25,39 @@ def test_the_peak_is_that_of_the_response(alpha: float | None) -> None:
     assert float(np.abs(history.rotation).max()) == pytest.approx(float(response.peak_rotation), rel=1e-6)
     assert history.attrs["impacts"] == response.impacts
     assert history.attrs["outcome"] == "SAFE"
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_a_vertical_component_enters_the_equation(alpha: float | None) -> None:
+    """Every flight, by the work of the ground and of gravity between samples; the peak is that of the response."""
+    motion = rocking.Record(MOTION.acceleration, 0.005, "m/s2", vertical=0.7 * np.roll(MOTION.acceleration, 40))
+    groups = BLOCK | {"slenderness": 0.6, "alpha": alpha, "vertical_scale": 1.3}
+    history = rocking.record_history(motion, **groups, samples=100_000)
+    response = rocking.record_response(motion, **groups)
+    assert history.attrs["peak_rotation"] == pytest.approx(float(response.peak_rotation), rel=1e-11)
+    assert float(np.abs(history.rotation).max()) == pytest.approx(float(response.peak_rotation), rel=1e-6)
+    assert history.attrs["vertical_scale"] == 1.3
+    expected = np.interp(history.time, motion.times, 1.3 * motion.vertical / STANDARD_GRAVITY, right=0.0)
+    np.testing.assert_allclose(history.vertical_acceleration, expected, rtol=1e-9, atol=1e-12)
+    theta, rate, tau = history.rotation.values, history.angular_velocity.values, history.tau.values
+    u, pressing, sign = history.ground_acceleration.values, 1.0 + history.vertical_acceleration.values, np.sign(theta)
+    if alpha is None:
+        acceleration = pressing * (theta - sign) - u
+    else:
+        lean = alpha * (sign - theta)
+        acceleration = (-pressing * np.sin(lean) - u * math.tan(alpha) * np.cos(lean)) / alpha
+    free = (sign[1:] == sign[:-1]) & (sign[1:] != 0.0) & ~np.isin(tau[1:], history.impact_time * 2.2)
+    step = np.diff(tau)
+    trapezium = 0.5 * step * (acceleration[1:] + acceleration[:-1])
+    wrong = np.abs(np.diff(rate) - trapezium)[free & (step > 1e-5)]
+    assert wrong.size > 1000
+    assert wrong.max() < 1e-6
+
+
+def test_contact_forces_with_a_vertical_component_are_refused() -> None:
+    motion = rocking.Record(MOTION.acceleration, 0.005, "m/s2", vertical=0.1 * MOTION.acceleration)
+    with pytest.raises(InvalidArgumentError, match="contact"):
+        rocking.record_history(motion, **BLOCK, contact=True)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BaseModel, Field
 
 from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.record_scales import HIGHEST_SCALE
+from rocking.dimensional.record_groups import HIGHEST_SCALE
 from rocking.errors import in_range, one_of
 from rocking.excitation.records.processing import MAX_BASELINE_ORDER
 from rocking.excitation.records.record import TIME_STEP, UNITS
@@ -228,9 +228,16 @@ class RecordResponse(BaseModel):
     friction_at_uplift: float = Field(
         description="coefficient of friction below which it slides instead of rocking [-]"
     )
-    friction_demand: float | None = Field(description="the same through the whole motion [-]; null: it lifts off")
-    friction_at_impact: float = Field(description="horizontal over vertical impulse at its impacts [-]")
-    smallest_normal_reaction: float = Field(description="over its weight [-]; 0 and below: it lifts off")
+    friction_demand: float | None = Field(
+        description="the same through the whole motion [-]; null: it lifts off, or the forces are not known, as under "
+        "a record with a vertical component"
+    )
+    friction_at_impact: float | None = Field(
+        description="horizontal over vertical impulse at its impacts [-]; null: not known"
+    )
+    smallest_normal_reaction: float | None = Field(
+        description="over its weight [-]; 0 and below: it lifts off; null: not known"
+    )
     pulse: FittedPulse | None = Field(None, description="null unless requested")
     warnings: list[str] = Field(description="where the answer is in doubt")
     metadata: Metadata = METADATA_FIELD

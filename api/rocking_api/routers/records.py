@@ -11,11 +11,13 @@ from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import restitution_of
+from rocking.dimensional.record_groups import checked_scale, record_groups, search_range
 from rocking.dimensional.record_response import respond_to_record
-from rocking.dimensional.record_scales import HIGHEST_SCALE, ScaleThresholds, scale_thresholds
+from rocking.dimensional.record_scales import ScaleThresholds, scale_thresholds
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.records.readers.read_record import parse_record
 from rocking.excitation.records.record import Record
+from rocking.excitation.records.vertical import reject_flight
 from rocking.history.record_history import record_history
 from rocking.model.block import Block
 from rocking.model.outcome import Outcome
@@ -170,8 +172,8 @@ def _response(service: Service, params: RecordResponseParams, record: Record, st
         thresholds=None if changes is None else _thresholds(changes, record),
         friction_at_uplift=block.half_width / block.half_height,
         friction_demand=finite(contact.largest_friction_demand),
-        friction_at_impact=contact.impulse_ratio,
-        smallest_normal_reaction=contact.smallest_normal_reaction,
+        friction_at_impact=finite(contact.impulse_ratio),
+        smallest_normal_reaction=finite(contact.smallest_normal_reaction),
         pulse=_fitted(fit_pulse(record, blocks=block, stop=stop)) if params.fit else None,
         warnings=assessment.warnings,
     )
@@ -181,10 +183,9 @@ def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopF
     block = Block(params.half_width, params.half_height, params.gravity)
     motion = record_history(
         record,
-        frequency_parameter=block.frequency_parameter,
-        slenderness=block.uplift_acceleration / (params.scale * record.peak_acceleration),
-        restitution=restitution_of(block, params.restitution),
-        alpha=block.alpha,
+        **record_groups(
+            record, block, checked_scale(params.scale, record, block), restitution_of(block, params.restitution)
+        ),
         samples=params.samples,
         contact=params.contact,
         stop=stop,
@@ -207,20 +208,14 @@ def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopF
 def _scales(params: RecordScalesParams, record: Record, form: str, stop: StopFlag) -> Response:
     block = Block(params.half_width, params.half_height, params.gravity)
     eta = restitution_of(block, params.restitution)
-    uplift = block.uplift_acceleration / record.peak_acceleration
+    uplift, highest, _ = search_range(record, block, None)
     low = uplift if params.scale_min is None else params.scale_min
-    high = min(10.0 * uplift, HIGHEST_SCALE) if params.scale_max is None else params.scale_max
+    high = highest if params.scale_max is None else params.scale_max
     if not low < high:
         raise InvalidArgumentError("scale_max", high, f"above scale_min, {low:g} [-]")
+    reject_flight("scale_max", record, high, block.gravity)
     scale = np.geomspace(low, high, params.points)
-    found = record_response(
-        record,
-        frequency_parameter=block.frequency_parameter,
-        slenderness=uplift / scale,
-        restitution=eta,
-        alpha=block.alpha,
-        stop=stop,
-    )
+    found = record_response(record, **record_groups(record, block, scale, eta), stop=stop)
     columns: dict[str, Any] = {
         "scale": scale.tolist(),
         "peak_acceleration": (scale * record.peak_acceleration).tolist(),

@@ -1,9 +1,12 @@
-"""A recorded ground motion: uniformly sampled acceleration, linear between the samples, zero after the last."""
+"""A recorded ground motion: uniformly sampled acceleration, horizontal and, where it is known, vertical.
+
+It is linear between the samples and zero after the last.
+"""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import final
@@ -36,6 +39,8 @@ MAX_DURATION = 1e5
 class Record:
     """A recorded ground acceleration. Records are immutable; equal samples and steps make equal records.
 
+    Velocity, displacement and the measures of intensity are those of the horizontal component.
+
     Parameters
     ----------
     acceleration : array_like (samples,)
@@ -51,11 +56,15 @@ class Record:
         Where the record comes from, such as file, network or citation.
     remarks : sequence of str
         What the reader of the file found in doubt; every response to the record repeats it among its warnings.
+    vertical : array_like (samples,), optional
+        Vertical acceleration at the same times in the same unit, upwards positive; it may be zero.
 
     Attributes
     ----------
     acceleration : float64 array (samples,)
         In m/s2, read-only.
+    vertical : float64 array (samples,) or None
+        Likewise.
 
     Raises
     ------
@@ -68,6 +77,7 @@ class Record:
     name: str
     source: str
     remarks: tuple[str, ...]
+    vertical: NDArray[np.float64] | None
 
     def __init__(
         self,
@@ -77,6 +87,7 @@ class Record:
         name: str = "",
         source: str = "",
         remarks: Sequence[str] = (),
+        vertical: ArrayLike | None = None,
     ) -> None:
         factor = UNITS[one_of("unit", unit, UNITS)]
         limit = MAX_ACCELERATION / factor
@@ -89,18 +100,28 @@ class Record:
         if (samples.size - 1) * step > MAX_DURATION:
             allowed = f"a duration of at most {MAX_DURATION:g} s, with {samples.size} samples"
             raise InvalidArgumentError("time_step", step, allowed)
-        scaled = samples * factor  # a new array, which the caller cannot change
-        scaled.flags.writeable = False
+        upwards = None if vertical is None else in_range("vertical", vertical, -limit, limit, unit=unit)
+        if upwards is not None and upwards.shape != samples.shape:
+            allowed = f"one value for each of the {samples.size} samples of the horizontal acceleration"
+            raise InvalidArgumentError("vertical", f"shape {upwards.shape}", allowed)
         about = {"name": name, "source": source, "remarks": tuple(remarks)}
-        given = {"acceleration": scaled, "time_step": step, **about}
+        components = {"acceleration": samples * factor}  # new arrays, which the caller cannot change
+        if upwards is not None:
+            components["vertical"] = upwards * factor
+        for component in components.values():
+            component.flags.writeable = False
+        given = {"vertical": None, **components, "time_step": step, **about}
         for key, value in given.items():
             object.__setattr__(self, key, value)
 
     def __repr__(self) -> str:
-        """Name, length, step and peak acceleration."""
+        """Name, length, step and peak accelerations."""
         name = f" {self.name}" if self.name else ""
         peak = self.peak_acceleration / STANDARD_GRAVITY
-        return f"<rocking.Record{name}: {self.samples} samples at {self.time_step:g} s, PGA {peak:.4g} g>"
+        vertical = ""
+        if self.vertical is not None:
+            vertical = f", with vertical, {self.peak_vertical_acceleration / STANDARD_GRAVITY:.4g} g"
+        return f"<rocking.Record{name}: {self.samples} samples at {self.time_step:g} s, PGA {peak:.4g} g{vertical}>"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Record) and self.digest == other.digest
@@ -125,14 +146,24 @@ class Record:
 
     @cached_property
     def digest(self) -> str:
-        """The sha256 of the step and the samples in m/s2 as little-endian float64, hexadecimal."""
-        values = np.concatenate([[self.time_step], self.acceleration])
-        return hashlib.sha256(values.astype("<f8").tobytes()).hexdigest()
+        """The sha256 of the step and the samples in m/s2 as little-endian float64, hexadecimal.
+
+        The samples of a vertical component follow after the eight bytes "vertical", a number that no sample has.
+        """
+        found = hashlib.sha256(np.concatenate([[self.time_step], self.acceleration]).astype("<f8").tobytes())
+        if self.vertical is not None:
+            found.update(b"vertical" + self.vertical.astype("<f8").tobytes())
+        return found.hexdigest()
 
     @cached_property
     def peak_acceleration(self) -> float:
         """PGA, the largest absolute acceleration [m/s2]."""
         return float(np.abs(self.acceleration).max())
+
+    @property
+    def peak_vertical_acceleration(self) -> float:
+        """The largest absolute vertical acceleration [m/s2], 0 without a vertical component."""
+        return 0.0 if self.vertical is None else float(np.abs(self.vertical).max())
 
     @cached_property
     def velocity(self) -> NDArray[np.float64]:
@@ -186,7 +217,7 @@ class Record:
         return measures.mean_period(self.acceleration, self.time_step)
 
     def baseline_corrected(self, *, order: int = 1) -> Record:
-        """The record without the drift of its velocity.
+        """The record without the drift of its velocity; the same for its vertical component.
 
         The velocity is fitted by a polynomial of degree `order` + 1 that is zero at the first sample; its derivative, a
         polynomial of degree `order`, is subtracted from the acceleration.
@@ -201,8 +232,11 @@ class Record:
         InvalidArgumentError
             If `order` is out of range, or the record has too few samples for it.
         """
-        kept = baseline(self.acceleration, self.velocity, self.duration, order)
-        return self._processed(kept, self.time_step, f"baseline of order {order} removed")
+
+        def corrected(a: NDArray[np.float64]) -> NDArray[np.float64]:
+            return baseline(a, measures.velocity(a, self.time_step), self.duration, order)
+
+        return self._processed(corrected, self.time_step, f"baseline of order {order} removed")
 
     def resampled(self, time_step: Scalar) -> Record:
         """The record at another step, by band-limited interpolation with anti-aliasing.
@@ -222,10 +256,17 @@ class Record:
             If the step is not such a fraction, or the samples would be fewer than 2 or too many.
         """
         step = number("time_step", time_step, *TIME_STEP, unit="s")
-        samples = resample(self.acceleration, self.time_step, step)
-        return self._processed(samples, step, f"resampled from {self.time_step:g} s, band-limited")
 
-    def _processed(self, acceleration: NDArray[np.float64], time_step: float, what: str) -> Record:
-        """The record with other samples [m/s2]; its source says what was done."""
+        def resampled(a: NDArray[np.float64]) -> NDArray[np.float64]:
+            return resample(a, self.time_step, step)
+
+        return self._processed(resampled, step, f"resampled from {self.time_step:g} s, band-limited")
+
+    def _processed(
+        self, process: Callable[[NDArray[np.float64]], NDArray[np.float64]], time_step: float, what: str
+    ) -> Record:
+        """The record with other samples of both components [m/s2]; its source says what was done."""
         source = f"{self.source}; {what}" if self.source else what
-        return Record(acceleration, time_step, "m/s2", self.name, source, self.remarks)
+        vertical = None if self.vertical is None else process(self.vertical)
+        about = self.name, source, self.remarks
+        return Record(process(self.acceleration), time_step, "m/s2", *about, vertical=vertical)

@@ -23,17 +23,18 @@ def record_amplification(
     slenderness: ArrayLike,
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
+    vertical_scale: ArrayLike | None = 1.0,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> NDArray[np.float64]:
-    """Relative change of the peak rotation per relative change of the amplitude of the motion [-].
+    """Relative change of the peak rotation per relative change of the amplitude of the horizontal motion [-].
 
     By a central difference with amplitudes changed by 1e-9, which costs two more responses. A value A says that samples
-    known to n digits leave n - log10(A) digits of the peak.
+    known to n digits leave n - log10(A) digits of the peak. A vertical component is not changed.
 
     Parameters
     ----------
-    motion, frequency_parameter, slenderness, restitution, alpha, threads, stop
+    motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale, threads, stop
         As for `record_response`.
 
     Returns
@@ -52,9 +53,12 @@ def record_amplification(
         "slenderness": slenderness,
         "restitution": restitution,
         "alpha": alpha,
+        "vertical_scale": vertical_scale,
     }
-    groups = broadcast(given, check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha))
-    p, s, eta, angle = groups
+    groups = broadcast(
+        given, check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale)
+    )
+    p, s, eta, angle, vertical = groups
     less, more = (
         record_response(
             motion,
@@ -62,6 +66,7 @@ def record_amplification(
             slenderness=s / (1.0 + change),
             restitution=eta,
             alpha=angle,
+            vertical_scale=None if motion.vertical is None else vertical,
             threads=threads,
             stop=stop,
         )

@@ -13,6 +13,7 @@ from rocking._numba.compilation import contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import InvalidArgumentError, broadcast, in_range, integer
 from rocking.excitation.records.record import Record
+from rocking.excitation.records.vertical import check_vertical_scale
 from rocking.excitation.sampled import SampledPulse
 from rocking.model.checks import check, check_alpha
 from rocking.model.fields import RESPONSE_FIELDS
@@ -44,12 +45,14 @@ def record_response(
     slenderness: ArrayLike,
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
+    vertical_scale: ArrayLike | None = 1.0,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response:
     """Peak rotation and final outcome of blocks under a recorded motion, exact to rounding. The arguments broadcast.
 
-    The motion is linear between its samples and zero after the last; the block rests at the first.
+    The motion is linear between its samples and zero after the last; the block rests at the first. A vertical component
+    adds to gravity: (2.2) or (3.1) with g + w for g in the restoring moment.
 
     Parameters
     ----------
@@ -58,12 +61,15 @@ def record_response(
     frequency_parameter : array_like
         p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step of the motion.
     slenderness : array_like
-        g tan(alpha)/PGA [-], [1e-12, inf), with the peak acceleration PGA of the motion; no uplift from 1 on. To scale
-        the motion by a factor, divide by it.
+        g tan(alpha)/PGA [-], [1e-12, inf), with the peak acceleration PGA of the motion; without a vertical component
+        no uplift from 1 on. To scale the horizontal component by a factor, divide by it.
     restitution : array_like
         Coefficient of restitution eta [-], [0, 1].
     alpha : array_like, optional
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
+    vertical_scale : array_like, optional
+        Factor of the vertical component [-], [0, 1e6]. In units of g = 9.80665 m/s2: under another gravity, multiply by
+        the ratio. 1 or None for a record without one.
     threads : int, optional
         Number of threads, >= 1; by default all cores.
     stop : StopFlag, optional
@@ -79,7 +85,8 @@ def record_response(
     ------
     InvalidArgumentError
         If `motion` is not a record; for an argument that is out of range, not finite, not a real number or masked;
-        shapes that do not broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
+        where the vertical acceleration reaches -g, with the time; shapes that do not broadcast; labelled arguments
+        (xarray, pandas) whose dimensions or indexes differ.
     StoppedError
         If `stop` was set.
     """
@@ -89,18 +96,22 @@ def record_response(
         "slenderness": slenderness,
         "restitution": restitution,
         "alpha": alpha,
+        "vertical_scale": vertical_scale,
     }
-    checked = check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha)
+    checked = check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale)
     groups = broadcast(given, checked)
     shape = groups[0].shape
-    p, s, eta, angle = (contiguous_array(group).ravel() for group in groups)
-    cells = block_cells(p * motion.time_step, s, eta, angle)
+    p, s, eta, angle, vertical = (contiguous_array(group).ravel() for group in groups)
+    cells = block_cells(p * motion.time_step, s, eta, angle, vertical)
     records, _ = solve_bodies(motion_samples(motion), cells, cores, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
+    named = dict(zip(given, checked, strict=True))
+    if motion.vertical is None:
+        del named["vertical_scale"]
     return Response(
         **found,
         pulse=motion.name,
-        groups=dict(zip(given, checked, strict=True)),
+        groups=named,
         dims=dimensions_of(*given.values()),
     )
 
@@ -111,19 +122,24 @@ def check_record_groups(
     slenderness: ArrayLike,
     restitution: ArrayLike,
     alpha: ArrayLike | None,
-) -> tuple[Array, Array, Array, Array]:
+    vertical_scale: ArrayLike | None,
+) -> tuple[Array, Array, Array, Array, Array]:
     """The groups of a response under a record as float64 arrays of their own shapes; alpha = None is 0.
+
+    The factor of the vertical component is 0 for a record without one.
 
     Raises
     ------
     InvalidArgumentError
         If `motion` is not a record, or a value is out of range.
     """
+    limits = frequency_parameter_range(motion)
     return (
-        in_range("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s"),
+        in_range("frequency_parameter", frequency_parameter, *limits, unit="rad/s"),
         check(SLENDERNESS, slenderness),
         check(RESTITUTION, restitution),
         check_alpha(alpha),
+        check_vertical_scale(motion, vertical_scale),
     )
 
 

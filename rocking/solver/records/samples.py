@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking.constants import STANDARD_GRAVITY
 from rocking.excitation.records.record import Record as RecordedMotion
 from rocking.excitation.sampled import SampledPulse
 
@@ -63,7 +64,8 @@ def sample_rows(
 @lru_cache(maxsize=16)
 def motion_samples(motion: RecordedMotion) -> NDArray[np.float64]:
     """`sample_rows` of a record, whose unit of time is its time step; shared by all callers."""
-    return sample_rows(motion.acceleration / motion.peak_acceleration)
+    vertical = None if motion.vertical is None else motion.vertical / STANDARD_GRAVITY
+    return sample_rows(motion.acceleration / motion.peak_acceleration, None, vertical)
 
 
 @lru_cache(maxsize=16)

@@ -1,0 +1,124 @@
+"""Blocks in metres under records with a vertical component: gravity, scales, searches, structures."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking.constants import STANDARD_GRAVITY
+from rocking.dimensional.record_groups import record_groups, uplift_scale
+from rocking.dimensional.record_scales import overturning_scale, scale_thresholds
+from rocking.errors import InvalidArgumentError
+from tests.solver.records.tables import samples
+from tests.suites.motions import noise
+
+PART = slice(700, 2700)
+HORIZONTAL, VERTICAL = samples("napa_HNE")[PART], samples("napa_HNN")[PART]
+MOTION = rocking.Record(HORIZONTAL, 0.005, "g", vertical=VERTICAL, name="napa")
+BLOCK = rocking.Block(0.1, 0.5)
+
+
+@pytest.mark.parametrize("scale", [0.85, 0.9, 1.0])
+def test_a_constant_vertical_acceleration_is_another_gravity(scale: float) -> None:
+    """Times the scale: c g times the scale adds to gravity."""
+    f, c = np.append(HORIZONTAL, np.zeros(4000)), 0.5
+    lifted = rocking.Record(f, 0.005, "g", vertical=np.full(f.size, c))
+    heavier = rocking.Block(0.1, 0.5, gravity=STANDARD_GRAVITY * (1.0 + scale * c))
+    found = BLOCK.response(lifted, scale=scale, thresholds=False)
+    other = heavier.response(rocking.Record(f, 0.005, "g"), scale=scale, thresholds=False)
+    assert found.outcome == other.outcome == rocking.Outcome.SAFE
+    assert found.rotation == pytest.approx(other.rotation, rel=1e-11)
+    history = BLOCK.history(lifted, scale=scale)
+    inside = history.time < lifted.duration
+    np.testing.assert_allclose(history.vertical_acceleration[inside], scale * c * STANDARD_GRAVITY, rtol=1e-12)
+    assert history.vertical_acceleration.attrs["units"] == "m s-2"
+
+
+def test_the_scale_multiplies_both_components_under_any_gravity() -> None:
+    moon = rocking.Block(0.1, 0.5, gravity=1.62)
+    motion = rocking.Record(0.1 * HORIZONTAL, 0.005, "g", vertical=0.1 * VERTICAL)
+    twice = rocking.Record(0.2 * HORIZONTAL, 0.005, "g", vertical=0.2 * VERTICAL)
+    found, other = moon.response(motion, scale=2.0), moon.response(twice)
+    assert found.outcome == other.outcome
+    assert found.peak_rotation == pytest.approx(other.peak_rotation, rel=1e-10, nan_ok=True)
+    assert found.thresholds is not None
+    assert other.thresholds is not None
+    np.testing.assert_allclose(found.thresholds.scale, 2.0 * other.thresholds.scale, rtol=1e-5)
+    # lengths and accelerations divided by the same number leave the ratios
+    earth = rocking.Block(0.1 * STANDARD_GRAVITY / 1.62, 0.5 * STANDARD_GRAVITY / 1.62)
+    k = 0.1 * STANDARD_GRAVITY / 1.62
+    scaled = rocking.Record(k * HORIZONTAL, 0.005, "g", vertical=k * VERTICAL)
+    assert earth.response(scaled, scale=2.0).peak_rotation == pytest.approx(found.peak_rotation, rel=1e-9, nan_ok=True)
+
+
+def test_uplift_depends_on_both_components() -> None:
+    scale = uplift_scale(MOTION, BLOCK)
+    for factor, outcome in ((1.0 - 1e-9, rocking.Outcome.NO_UPLIFT), (1.0 + 1e-6, rocking.Outcome.SAFE)):
+        assert BLOCK.response(MOTION, scale=scale * factor, thresholds=False).outcome == outcome
+    held = rocking.Record([0.0, 1.0, 0.0], 0.1, "g", vertical=[1.0, 10.0, 1.0])
+    assert uplift_scale(held, BLOCK) == 1e6
+    found = scale_thresholds(held, BLOCK)
+    assert found.scale.size == 0
+    assert math.isnan(overturning_scale(held, BLOCK))
+
+
+def test_a_search_ends_where_the_body_would_fly() -> None:
+    record = noise(1)
+    motion = rocking.Record(record.acceleration, record.time_step, "m/s2", vertical=-3.0 * record.acceleration)
+    limit = -STANDARD_GRAVITY / float(motion.vertical.min())
+    heavy = rocking.Block(2.0, 4.0)
+    found = scale_thresholds(motion, heavy)
+    assert found.ends_in_flight
+    assert limit * (1.0 - 1e-8) < found.searched[1] < limit
+    assert found.sentence.endswith("times on its vertical acceleration reaches -g")
+    response = heavy.response(motion, scale=0.9 * limit)
+    assert response.margin == found.sentence
+    assert not scale_thresholds(motion, heavy, highest=0.5 * limit).ends_in_flight
+    with pytest.raises(InvalidArgumentError, match=r"`scale` = .* -g at .* s"):
+        heavy.response(motion, scale=1.01 * limit)
+    with pytest.raises(InvalidArgumentError, match="`scale`"):
+        heavy.history(motion, scale=1.01 * limit)
+
+
+def test_thresholds_are_those_of_the_responses() -> None:
+    record = noise(2)
+    motion = rocking.Record(
+        record.acceleration, record.time_step, "m/s2", vertical=0.6 * np.roll(record.acceleration, 9)
+    )
+    found = scale_thresholds(motion, BLOCK)
+    assert found.scale.size
+    assert overturning_scale(motion, BLOCK) == found.scale[0]
+    without = scale_thresholds(record, BLOCK).scale[0]
+    assert abs(found.scale[0] / without - 1.0) > 1e-3
+    for scale in found.scale.tolist():
+        assert BLOCK.response(motion, scale=scale, thresholds=False).overturned
+        near = scale * np.linspace(1.0 - 1e-6, 1.0 + 1e-6, 2001)  # ranges near a threshold can be narrow
+        groups = record_groups(motion, BLOCK, near, BLOCK.inelastic_restitution)
+        assert not rocking.record_response(motion, **groups).overturned.all()
+
+
+def test_structures_take_the_vertical_component() -> None:
+    """Bodies by (2.2) as their block; a mechanism by the linear equation as a slender block of its groups."""
+    body = rocking.EquivalentBlock(BLOCK.alpha, BLOCK.frequency_parameter, restitution=BLOCK.inelastic_restitution)
+    found, block = (one.response(MOTION, scale=0.7, thresholds=False) for one in (body, BLOCK))
+    assert found.peak_rotation == pytest.approx(block.peak_rotation, rel=1e-9, nan_ok=True)
+    linear = rocking.EquivalentBlock(0.3, 3.0, restitution=0.9, uplift_acceleration=2.5)
+    mechanism = linear.response(MOTION, scale=1.2)
+    slender = rocking.record_response(
+        MOTION,
+        frequency_parameter=3.0,
+        slenderness=2.5 / (1.2 * MOTION.peak_acceleration),
+        restitution=0.9,
+        vertical_scale=1.2,
+    )
+    assert mechanism.outcome == slender.outcome
+    assert mechanism.peak_rotation == pytest.approx(float(slender.peak_rotation), rel=1e-12, nan_ok=True)
+    assert mechanism.thresholds is not None
+
+
+def test_contact_forces_are_not_stated() -> None:
+    found = BLOCK.response(MOTION, scale=0.6)
+    assert math.isnan(found.assessment.contact.largest_friction_demand)
+    assert not any("slide" in text or "lifts" in text for text in found.warnings)
+    assert found.rocking_model_applies

@@ -1,0 +1,63 @@
+"""Suites of records with a vertical component: both components are scaled to each level, flight is refused."""
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking.constants import STANDARD_GRAVITY
+from rocking.dimensional.record_scales import overturning_scale
+from rocking.errors import InvalidArgumentError
+from rocking.suites.margins import with_margins
+from rocking.suites.outcomes import check_suite, suite_outcomes
+from tests.suites.motions import noise
+
+BLOCKS = [rocking.Block(0.1, 0.5), rocking.Block(0.1, 0.5, gravity=3.7)]
+LEVELS = np.array([1.0, 2.0, 3.0, 4.0])
+
+
+def with_vertical(seed: int, share: float = 0.5) -> rocking.Record:
+    record = noise(seed)
+    a = record.acceleration
+    return rocking.Record(a, record.time_step, "m/s2", name=f"noise {seed}", vertical=share * np.roll(a, 7))
+
+
+@pytest.mark.parametrize("measure", ["pga", "frequency_ratio"])
+def test_outcomes_are_those_of_the_single_blocks(measure: str) -> None:
+    records = [with_vertical(1), noise(2)]
+    found = rocking.fragility(records, BLOCKS, intensity=LEVELS, measure=measure)
+    for k, block in enumerate(BLOCKS):
+        for n, level in enumerate(LEVELS):
+            for m, record in enumerate(records):
+                scale, body = float(found["scale"][k, n, m]), block
+                if measure == "frequency_ratio":
+                    own = 2.0 * np.pi / (record.mean_period * block.frequency_parameter)
+                    size = block.half_diagonal * (level / own) ** 2
+                    body = rocking.Block.from_slenderness_angle(block.alpha, size, gravity=block.gravity)
+                eta = block.inelastic_restitution
+                alone = body.response(record, scale=scale, restitution=eta, thresholds=False)
+                assert bool(found["overturned"][k, n, m]) == alone.overturned
+                peak = float(found["peak_rotation"][k, n, m])
+                assert peak == pytest.approx(alone.peak_rotation, rel=1e-6, nan_ok=True)
+
+
+def test_the_mildest_intensity_is_that_of_the_scale() -> None:
+    record = with_vertical(3)
+    suite = check_suite(record, BLOCKS[:1], [20.0], "pga", "housner")
+    found = with_margins(suite_outcomes(suite), suite)
+    scale = overturning_scale(record, BLOCKS[0])
+    assert float(found["overturning_intensity"][0, 0]) == pytest.approx(scale * record.peak_acceleration, rel=1e-6)
+
+
+def test_a_level_at_which_a_body_would_fly_is_refused() -> None:
+    record = with_vertical(1, share=-1.0)
+    flies = STANDARD_GRAVITY / -float(record.vertical.min()) * record.peak_acceleration
+    rocking.fragility(record, BLOCKS[0], intensity=[1.0, 0.999 * flies])
+    with pytest.raises(InvalidArgumentError, match=r"`intensity` = .* factor of noise 1 is below .* -g at .* s"):
+        rocking.fragility(record, BLOCKS[0], intensity=[1.0, 1.001 * flies])
+    with pytest.raises(InvalidArgumentError, match="`intensity`"):
+        rocking.suite_sensitivity(record, BLOCKS[0], intensity=[1.001 * flies])
+
+
+def test_friction_demand_with_a_vertical_component_is_not_stated() -> None:
+    found = rocking.suite_sensitivity([with_vertical(1), noise(2)], BLOCKS[0], intensity=[2.0])
+    assert np.isnan(found["friction_demand"].values[0]).tolist() == [True, False]
