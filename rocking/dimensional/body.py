@@ -14,7 +14,7 @@ from rocking.boundary.tracing import trace_curves
 from rocking.dimensional.body_problem import BodyProblem, checked_restitution
 from rocking.dimensional.body_response import BodyResponse, respond_bodies
 from rocking.dimensional.body_thresholds import BodyThresholds, thresholds_of
-from rocking.dimensional.record_scales import HIGHEST_SCALE
+from rocking.dimensional.record_groups import HIGHEST_SCALE
 from rocking.errors import InvalidArgumentError, broadcast, in_range, integer, positive
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.excitation.records.record import Record

@@ -15,6 +15,7 @@ from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
+from rocking.excitation.records.vertical import reject_flight
 from rocking.excitation.sampled import SampledPulse
 from rocking.history.body_motion import FREE_DURATION, BodyMotion
 from rocking.history.motion import PulseMotion
@@ -67,6 +68,7 @@ class BodyProblem:
         p = self.body.right.frequency_parameter
         if isinstance(self.motion, Record):
             in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
+            reject_flight("scale", self.motion, float(self.vertical_scale.max(initial=0.0)))
         else:
             check(FREQUENCY_RATIO, 2.0 * math.pi / (self.period * p))
 
@@ -77,18 +79,22 @@ class BodyProblem:
         return np.broadcast_shapes(self.body.shape, self.acceleration.shape, self.period.shape, eta)
 
     @property
+    def vertical_scale(self) -> Array:
+        """Factor of the vertical component of a record, over the standard gravity [-]; 0 without one."""
+        if not isinstance(self.motion, Record) or self.motion.vertical is None:
+            return np.zeros(())
+        return np.asarray(self.acceleration / self.motion.peak_acceleration * (STANDARD_GRAVITY / self.body.gravity))
+
+    @property
     def cells(self) -> NDArray[np.void]:
         """The cells `BODY_CELL` of the solver (size,)."""
         body, right, left = self.body, self.body.right, self.body.left
         etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
         p = right.frequency_parameter
         unit = self.motion.time_step * p if isinstance(self.motion, Record) else 2.0 * math.pi / (self.period * p)
-        vertical = np.zeros(())
-        if isinstance(self.motion, Record) and getattr(self.motion, "vertical", None) is not None:
-            vertical = self.acceleration / self.motion.peak_acceleration * (STANDARD_GRAVITY / body.gravity)
         columns = {
             "rate": unit,
-            "vertical": vertical,
+            "vertical": self.vertical_scale,
             "alpha": right.alpha,
             "ratio": left.alpha / right.alpha,
             "stiffness": (left.frequency_parameter / p) ** 2,

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import Record as KernelRecord
 from rocking.boundary.amplitude import amplitude_changes
+from rocking.constants import STANDARD_GRAVITY
 from rocking.dimensional.body_problem import BodyProblem
+from rocking.dimensional.record_groups import HIGHEST_SCALE
 from rocking.dimensional.record_scales import outcome_changes, scanned
 from rocking.dimensional.threshold import Threshold, threshold_text
 from rocking.equality import EqualByValue
 from rocking.excitation.records.record import Record
+from rocking.excitation.records.vertical import highest_vertical_scale
 from rocking.model.outcome import Outcome
 
 Array = NDArray[np.float64]
@@ -100,11 +104,18 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
     StoppedError
         If `stop` was set.
     """
-    by_record = isinstance(problem.motion, Record)
-    unit = problem.motion.peak_acceleration if isinstance(problem.motion, Record) else 1.0
-    shape = problem.shape
+    motion, shape = problem.motion, problem.shape
+    by_record = isinstance(motion, Record)
+    unit = motion.peak_acceleration if isinstance(motion, Record) else 1.0
+    strength = float(problem.acceleration.ravel()[0] / unit) if problem.acceleration.size else math.nan
+    problem = replace(problem, acceleration=np.full(shape, unit))  # of the strength 1
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / unit
+    if isinstance(motion, Record) and motion.vertical is not None:
+        uplift = np.array([uplift_scale(motion, motion.vertical, cell) for cell in problem.cells])
     top = uplift * HIGHEST[by_record] if highest is None else np.full(uplift.size, highest)
+    if isinstance(motion, Record):
+        gravity = np.broadcast_to(problem.body.gravity, shape).ravel() / STANDARD_GRAVITY
+        top = np.minimum(top, highest_vertical_scale(motion) * gravity)
     found = [
         _record_changes(problem, k, uplift[k], top[k], stop)
         if by_record
@@ -115,10 +126,21 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
     value, above = np.full((uplift.size, most), math.nan), np.zeros((uplift.size, most), dtype=np.bool_)
     for k, (values, up) in enumerate(found):
         value[k, : values.size], above[k, : values.size] = values, up
-    strength = float(problem.acceleration.ravel()[0] / unit) if problem.acceleration.size else math.nan
     given = (strength, "factor of the record", "") if by_record else (strength, "peak acceleration", " m/s2")
     searched = np.stack([uplift, np.maximum(uplift, top)], axis=-1)
     return BodyThresholds(value.reshape(*shape, most), above.reshape(*shape, most), searched.reshape(*shape, 2), given)
+
+
+def uplift_scale(record: Record, vertical: Array, cell: KernelRecord) -> float:
+    """Smallest factor at which a body uplifts under a record with a vertical component [m/s2]; `cell` at factor 1 [-].
+
+    Uplift of an edge is where the horizontal acceleration over g tan(alpha_s) of the other reaches 1 + w/g
+    (`rocking.model.body`): at a sample, since all of them are linear between samples.
+    """
+    resisted = cell["slenderness"] * record.peak_acceleration  # g tan(alpha_s)
+    horizontal = np.maximum(record.acceleration / resisted[1], -record.acceleration / resisted[0])
+    excess = float((horizontal - cell["vertical"] * vertical / STANDARD_GRAVITY).max())
+    return 1.0 / max(excess, 1.0 / HIGHEST_SCALE)
 
 
 def _pulse_changes(
@@ -138,11 +160,11 @@ def _record_changes(
 ) -> tuple[Array, NDArray[np.bool_]]:
     if highest <= uplift:
         return np.empty(0), np.empty(0, dtype=np.bool_)
-    solve = problem.solver(k, stop)
-    rate = problem.cells["rate"][k]
+    solve, cell = problem.solver(k, stop), problem.cells[k]
+    rate, slenderness = float(cell["rate"]), float(cell["slenderness"].min())
 
     def overturns(scales: Array) -> NDArray[np.bool_]:
-        records, _ = solve(uplift / scales, np.full(scales.size, rate), np.zeros(scales.size))
+        records, _ = solve(slenderness / scales, np.full(scales.size, rate), np.zeros(scales.size))
         return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
 
     return outcome_changes(overturns, scanned(uplift, highest))

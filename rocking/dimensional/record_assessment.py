@@ -193,7 +193,7 @@ def assess_record(
         response=response,
         resampled=refined,
         amplification=float(record_amplification(record, **groups, stop=flag)),
-        contact=contact if block.contact_is_known and record.vertical is None else contact.without_forces(),
+        contact=contact if block.contact_is_known else contact.without_forces(),
         searched=thresholds,
         thresholds=searched,
     )

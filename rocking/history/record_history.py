@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, integer, number
+from rocking.errors import integer, number
 from rocking.excitation.records.record import Record
 from rocking.history.body_motion import Floats, overturned
 from rocking.history.contact import add_contact
@@ -49,8 +49,7 @@ def record_history(
         most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of the motion
         are added.
     contact : bool
-        Whether to add the reactions of the ground and the friction demand (docs/contact.md); not known under a record
-        with a vertical component.
+        Whether to add the reactions of the ground and the friction demand (docs/contact.md).
     stop : StopFlag, optional
         Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -80,17 +79,8 @@ def record_history(
         "vertical_scale": vertical_scale,
     }
     block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
-    if contact and motion.vertical is not None:
-        raise InvalidArgumentError("contact", contact, "False for a record with a vertical component: not known")
-    record, impact_times = block.events()
     grid = default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
-    events = [0.0, block.pulse_end, float(np.nan_to_num(record["uplift_time"]))]
-    tau = np.concatenate([grid, impact_times, events])
-    tau = np.unique(tau[tau <= block.horizon])
-    rotation, velocity = block.sample(tau)
-    last = block.sample_count(tau, rotation, record)
-    tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
-    impact_times = impact_times[impact_times <= tau[-1]]
+    record, tau, rotation, velocity, impact_times = block.history(grid)
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
     history = xr.Dataset(
         {

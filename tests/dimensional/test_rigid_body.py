@@ -1,5 +1,6 @@
 """Bodies with two edges: against the block, symmetries, Newton's law, outlines and meshes, searches from both sides."""
 
+import csv
 import math
 import pickle
 
@@ -16,7 +17,7 @@ from rocking.dimensional.body_problem import BodyProblem
 from rocking.errors import InvalidArgumentError
 from rocking.model.body import polygon_properties
 from rocking.solver.bodies import outcome_margin_of
-from tests.solver.records.tables import record
+from tests.solver.records.tables import TABLE, record, samples
 
 BODY = rocking.RigidBody(0.12, 0.18, 0.4)
 MOTION = {"peak_acceleration": 4.0, "period": 0.6}
@@ -316,3 +317,69 @@ def test_texts_and_lengths_are_checked():
     with pytest.raises(InvalidArgumentError, match="`size` = None"):
         BODY.spectrum(record("napa_HNE", 0.005))
     assert isinstance(BODY.response("sine", **MOTION).problem, BodyProblem)
+
+
+ROWS = list(csv.DictReader((TABLE.parent / "bodies.csv").read_text(encoding="utf-8").splitlines()))
+
+
+@pytest.mark.parametrize("row", ROWS[::4], ids=[str(k) for k in range(0, len(ROWS), 4)])
+def test_reference_cases_through_records(row):
+    """Cases of the reference table; the unit of its records makes errors of a few roundings more."""
+    part = slice(*map(int, row["n"].split(":")))
+    vertical = float(row["vertical_scale"]) * samples(row["vertical"])[part] if row["vertical"] else None
+    horizontal = float(row["scale"]) * samples(row["record"])[part]
+    motion = rocking.Record(horizontal, float(row["time_step"]), "g", vertical=vertical)
+    body = rocking.RigidBody(*(float(row[name]) for name in ("b_left", "b_right", "height", "gyration")))
+    found = body.response(motion, restitution=float(row["restitution"]) if row["restitution"] else "momentum")
+    assert bool(found.overturned) == (row["overturned"] == "1")
+    if not found.overturned:
+        allowed = 1e-12 * max(1.0, float(row["amplification"]))
+        assert float(found.rotation_right) == pytest.approx(float(row["peak_right"]), rel=allowed)
+        assert float(found.rotation_left) == pytest.approx(float(row["peak_left"]), rel=allowed)
+
+
+def test_equal_edges_with_vertical_motion_are_the_block():
+    wave = samples("napa_HNE")[700:3000]
+    motion = rocking.Record(wave, 0.005, "g", vertical=0.6 * samples("napa_HNN")[700:3000])
+    block, body = rocking.Block(0.15, 0.5), rocking.RigidBody(0.15, 0.15, 0.5)
+    one, other = block.response(motion, scale=1.2), body.response(motion, scale=1.2)
+    assert other.outcome == one.outcome == rocking.Outcome.SAFE
+    assert float(other.rotation) == pytest.approx(one.rotation, rel=1e-12)
+    np.testing.assert_allclose(other.thresholds.value, one.thresholds.scale, rtol=1e-9)
+    assert other.thresholds.searched[0] == pytest.approx(one.thresholds.searched[0], rel=1e-12)
+    for name in ("largest_friction_demand", "smallest_normal_reaction", "impulse_ratio"):
+        assert getattr(other.contact, name) == pytest.approx(getattr(one.assessment.contact, name), rel=1e-9)
+    with pytest.raises(InvalidArgumentError, match="so that the body would fly"):
+        body.response(motion, scale=100.0)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.03])
+def test_reactions_with_vertical_motion(tilt):
+    """Newton's law by second differences, as without vertical motion."""
+    wave = samples("napa_HNE")[700:3000]
+    motion = rocking.Record(wave, 0.005, "g", vertical=0.6 * samples("napa_HNN")[700:3000])
+    body = rocking.RigidBody(0.12, 0.18, 0.9).tilted(tilt)
+    history = body.history(motion, scale=1.5, contact=True, duration=8.0, samples=100_001)
+    rotation, times = history["rotation"].values, history["time"].values
+    checked = 0
+    for sign, b in ((1, 0.18), (-1, 0.12)):
+        radius, alpha = math.hypot(b, 0.9), math.atan2(b, 0.9) - sign * tilt
+        lean = alpha - np.abs(rotation)
+        x, y = -sign * radius * np.sin(lean), radius * np.cos(lean)
+        for k in range(200, times.size - 200, 431):
+            part = slice(k - 1, k + 2)
+            step = np.diff(times[part])
+            offset = times[k] / 0.005 - round(times[k] / 0.005)
+            if not (history["edge"].values[k - 3 : k + 4] == sign).all() or abs(step[0] / step[1] - 1.0) > 1e-6:
+                continue
+            if abs(offset) < 0.05:
+                continue  # a kink of the ground acceleration
+            ax, ay = (np.diff(values[part], 2)[0] / step[0] ** 2 for values in (x, y))
+            horizontal = (float(history["ground_acceleration"][k]) + ax) / STANDARD_GRAVITY
+            vertical = 1.0 + (float(history["vertical_acceleration"][k]) + ay) / STANDARD_GRAVITY
+            along = horizontal * math.cos(tilt) - vertical * math.sin(tilt)
+            normal = horizontal * math.sin(tilt) + vertical * math.cos(tilt)
+            assert float(history["horizontal_reaction"][k]) == pytest.approx(along, abs=1e-3)
+            assert float(history["normal_reaction"][k]) == pytest.approx(normal, abs=1e-3)
+            checked += 1
+    assert checked > 30

@@ -115,10 +115,3 @@ def test_structures_take_the_vertical_component() -> None:
     assert mechanism.outcome == slender.outcome
     assert mechanism.peak_rotation == pytest.approx(float(slender.peak_rotation), rel=1e-12, nan_ok=True)
     assert mechanism.thresholds is not None
-
-
-def test_contact_forces_are_not_stated() -> None:
-    found = BLOCK.response(MOTION, scale=0.6)
-    assert math.isnan(found.assessment.contact.largest_friction_demand)
-    assert not any("slide" in text or "lifts" in text for text in found.warnings)
-    assert found.rocking_model_applies

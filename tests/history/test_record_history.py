@@ -54,12 +54,6 @@ def test_a_vertical_component_enters_the_equation(alpha: float | None) -> None:
     assert wrong.max() < 1e-6
 
 
-def test_contact_forces_with_a_vertical_component_are_refused() -> None:
-    motion = rocking.Record(MOTION.acceleration, 0.005, "m/s2", vertical=0.1 * MOTION.acceleration)
-    with pytest.raises(InvalidArgumentError, match="contact"):
-        rocking.record_history(motion, **BLOCK, contact=True)
-
-
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_between_impacts_the_motion_satisfies_the_equation(alpha: float | None) -> None:
     """The first long flight, integrated by scipy with a step at each sample."""
