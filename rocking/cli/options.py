@@ -97,6 +97,9 @@ class RecordOptions(SizeOptions):
     ] = None
     time_step: Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")] = None
     component: Annotated[str | None, typer.Option(help="Column or trace of a file with several.")] = None
+    vertical: Annotated[
+        str | None, typer.Option(help="File of the vertical component, upwards, or its column or trace in the file.")
+    ] = None
     baseline_order: Annotated[
         int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
     ] = None

@@ -166,7 +166,9 @@ _UNITS = {
     **dict.fromkeys(("top_displacement", "half_width", "half_height", "half_diagonal", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
     **dict.fromkeys(("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "acceleration"), "m/s2"),
-    **dict.fromkeys(("nearest_acceleration", "thresholds", "pulse_peak_acceleration"), "m/s2"),
+    **dict.fromkeys(
+        ("nearest_acceleration", "thresholds", "pulse_peak_acceleration", "peak_vertical_acceleration"), "m/s2"
+    ),
 }
 """Units that the text output names beside a value or a column; others are dimensionless."""
 

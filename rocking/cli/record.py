@@ -79,7 +79,13 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
 
     block = read_block(options)
     eta: float | Literal["housner"] = "housner" if options.restitution == "housner" else _number_of(options.restitution)
-    motion = read_record(file, unit=options.unit, time_step=options.time_step, component=options.component)
+    motion = read_record(
+        file,
+        unit=options.unit,
+        time_step=options.time_step,
+        component=options.component,
+        vertical=options.vertical,
+    )
     if options.baseline_order is not None:
         motion = motion.baseline_corrected(order=options.baseline_order)
     return motion, block, eta
@@ -116,6 +122,7 @@ def _solved(
         "samples": motion.samples,
         "time_step": motion.time_step,
         "peak_acceleration": motion.peak_acceleration,
+        "peak_vertical_acceleration": None if motion.vertical is None else motion.peak_vertical_acceleration,
         "peak_velocity": motion.peak_velocity,
         "peak_displacement": motion.peak_displacement,
         "arias_intensity": motion.arias_intensity,

@@ -40,7 +40,7 @@ DEFAULTS: dict[str, Any] = {
 }
 """Values of keys that a configuration may leave out."""
 
-STATED_BY_FILES: dict[str, Any] = dict.fromkeys(("unit", "time_step", "component", "baseline_order"))
+STATED_BY_FILES: dict[str, Any] = dict.fromkeys(("unit", "time_step", "component", "vertical", "baseline_order"))
 """The same in its section `records`."""
 
 MAX_POINTS = 10_000
@@ -59,6 +59,7 @@ class RecordFiles:
     unit: str | None
     time_step: float | None
     component: str | None
+    vertical: str | None
     baseline_order: int | None
 
     def paths(self) -> list[Path]:
@@ -86,7 +87,9 @@ class RecordFiles:
         InvalidArgumentError, RecordFileError
             As `rocking.read_record`.
         """
-        motion = read_record(path, unit=self.unit, time_step=self.time_step, component=self.component)
+        motion = read_record(
+            path, unit=self.unit, time_step=self.time_step, component=self.component, vertical=self.vertical
+        )
         corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
         about = path.stem, corrected.source, corrected.remarks
         return Record(corrected.acceleration, corrected.time_step, "m/s2", *about, vertical=corrected.vertical)
@@ -226,6 +229,7 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         None if given["unit"] is None else one_of("records.unit", given["unit"], UNITS),
         None if step is None else number("records.time_step", step, *TIME_STEP, unit="s"),
         None if given["component"] is None else str(given["component"]),
+        None if given["vertical"] is None else str(given["vertical"]),
         order,
     )
 

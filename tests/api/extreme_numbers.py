@@ -120,8 +120,8 @@ OPTIONS: dict[str, tuple[float, str]] = {
 """Ordinary values of the options that take a number, and their units."""
 
 TEXTS = {
-    "pulse", "blocks", "json", "csv", "units", "contact", "output", "file", "unit", "component", "thresholds", "fit",
-    "configuration", "table", "host", "results", "help", "version",
+    "pulse", "blocks", "json", "csv", "units", "contact", "output", "file", "unit", "component", "vertical",
+    "thresholds", "fit", "configuration", "table", "host", "results", "help", "version",
 }  # fmt: skip
 """Options and arguments that take none."""
 

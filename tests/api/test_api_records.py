@@ -218,3 +218,48 @@ def test_openapi_describes_the_body(client):
         operation = paths[f"/v1/records/{route}"]["post"]
         assert "text/csv" in operation["requestBody"]["content"]
         assert {"half_width", "half_height", "scale", "unit"} <= {p["name"] for p in operation["parameters"]}
+
+
+def both_columns(motion, share=0.5):
+    a = motion.acceleration
+    rows = np.stack([motion.times, a, share * np.roll(a, 5)], axis=1).tolist()
+    return "t,h_m/s2,up_m/s2\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in rows)
+
+
+def test_the_vertical_component_is_a_column_of_the_body(client, motion):
+    columns = {"component": "h", "vertical": "up"}
+    body = both_columns(motion)
+    both = rocking.Record(motion.acceleration, 0.005, "m/s2", vertical=0.5 * np.roll(motion.acceleration, 5))
+    expected = respond_to_record(rocking.Block(0.25, 1.0), both, scale=1.1)
+    found = post(client, body, **columns, scale=1.1).json()
+    assert found["peak_rotation"] == pytest.approx(float(expected.dimensionless.peak_rotation), rel=1e-9)
+    assert found["margin"] == expected.margin
+    assert found["record"]["peak_vertical_acceleration"] == pytest.approx(both.peak_vertical_acceleration)
+    assert found["record"]["digest"] == both.digest
+    forces = [found[name] for name in ("friction_demand", "friction_at_impact", "smallest_normal_reaction")]
+    assert forces == [None] * 3
+    history = post(client, body, route="history", **columns).json()
+    assert np.abs(history["vertical_acceleration"]).max() == pytest.approx(both.peak_vertical_acceleration / 9.80665)
+    assert post(client, route="history").json()["vertical_acceleration"] is None
+    assert (
+        "vertical_acceleration" in post(client, body, route="history", **columns, format="csv").text.partition("\n")[0]
+    )
+    scales = post(client, body, route="scales", points=20, scale_max=2.0, **columns).json()
+    assert [one["scale"] for one in scales["thresholds"]] == [
+        one["scale"]
+        for one in post(client, body, route="scales", points=5, scale_max=2.0, **columns).json()["thresholds"]
+    ]
+    assert post(client, body, route="pulse", **columns).status_code == 200
+
+
+def test_errors_of_the_vertical_component_name_the_parameter(client, motion):
+    body = both_columns(motion, share=-1.0)
+    columns = {"component": "h", "vertical": "up"}
+    assert_problem(post(client, body, component="h", vertical="z"), 422, "vertical")
+    assert_problem(post(client, vertical="up"), 422, "vertical")
+    assert_problem(post(client, body, **columns, scale=5.0), 422, "scale")
+    assert_problem(post(client, body, route="history", **columns, scale=5.0), 422, "scale")
+    assert_problem(post(client, body, route="history", **columns, contact=True), 422, "contact")
+    assert_problem(post(client, body, route="scales", **columns, scale_max=5.0), 422, "scale_max")
+    by_default = post(client, body, route="scales", **columns).json()
+    assert by_default["scale"][-1] == pytest.approx(9.80665 / motion.acceleration.max())

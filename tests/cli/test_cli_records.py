@@ -243,3 +243,51 @@ def test_a_long_line_of_toml_is_refused(tmp_path):
     path = tmp_path / "a.toml"
     path.write_text("a" + ".a" * 4000 + " = 1\n")
     assert "at most 4096 characters" in refused("fragility", str(path))
+
+
+def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
+    up = str(ROOT / "workflow/motions/napa_HNN.csv")
+    motion = rocking.read_record(NAPA, vertical=up)
+    expected = respond_to_record(rocking.Block(0.25, 1.0), motion, scale=1.1)
+    found = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--vertical", up, "--json"))
+    assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
+    assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
+    without = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
+    assert without["peak_vertical_acceleration"] is None
+    assert without["peak_rotation"] != found["peak_rotation"]
+    path = tmp_path / "both.csv"
+    rows = np.stack([motion.times, motion.acceleration, motion.vertical], axis=1).tolist()
+    path.write_text("t,h_m/s2,up_m/s2\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in rows))
+    columns = "--component", "h", "--vertical", "up"
+    same = json.loads(run("record", str(path), *SIZES, "--scale", "1.1", *columns, "--json"))
+    assert same["peak_rotation"] == found["peak_rotation"]
+
+
+def test_errors_of_the_vertical_component_name_the_option():
+    assert "--vertical" in refused("record", NAPA, *SIZES, "--vertical", "none.at2")
+    up = str(ROOT / "workflow/motions/napa_HNN.csv")
+    said = refused("record", NAPA, *SIZES, "--vertical", up, "--scale", "4")
+    assert "--scale" in said
+    assert "-g at " in said
+
+
+def test_a_suite_names_the_column_of_the_vertical_component(small, tmp_path):
+    folder = tmp_path / "motions"
+    folder.mkdir()
+    for name, shift in (("a", 3), ("b", 9)):
+        motion = rocking.read_record(NAPA)
+        up = 0.5 * np.roll(motion.acceleration, shift)
+        rows = np.stack([motion.times, motion.acceleration, up], axis=1).tolist()
+        text = "".join(f"{t:.3f},{a!r},{w!r}\n" for t, a, w in rows)
+        (folder / f"{name}.csv").write_text("t,h_m/s2,up_m/s2\n" + text)
+    given = json.loads(small.read_text())
+    given["records"] |= {"folder": str(folder), "pattern": "*.csv", "component": "h", "vertical": "up"}
+    records = suite_configuration(given, tmp_path).motions()
+    assert [record.name for record in records] == ["a", "b"]
+    np.testing.assert_allclose(records[1].vertical, 0.5 * np.roll(records[1].acceleration, 9), rtol=1e-12)
+    path = tmp_path / "suite.json"
+    path.write_text(json.dumps(given))
+    with_vertical = json.loads(run("fragility", str(path), "--json"))
+    given["records"] |= {"vertical": None}
+    path.write_text(json.dumps(given))
+    assert with_vertical != json.loads(run("fragility", str(path), "--json"))

@@ -14,7 +14,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, RecordFileError, StoppedError
 from rocking.excitation.records.readers.read_record import parse_record
 from rocking.excitation.records.record import UNITS
-from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, File, at2, esm, pairs, rows
+from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, THREE, File, at2, esm, pairs, rows
 from tests.excitation.record_fuzzer import fuzz
 
 
@@ -132,3 +132,72 @@ def test_mutated_files_are_read_or_refused() -> None:
     dice = random.Random(0)
     read = sum(fuzz(dice) for _ in range(2000))
     assert 50 < read < 1900
+
+
+def test_the_vertical_component_of_a_second_file(tmp_path) -> None:
+    paths = [tmp_path / name for name in ("h.at2", "up.csv")]
+    paths[0].write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
+    paths[1].write_text("unit: gal\ndt: 0.01\n" + "".join(f"{10.0 * k}\n" for k in range(100)))
+    found = rocking.read_record(paths[0], vertical=paths[1])
+    horizontal = rocking.read_record(paths[0])
+    np.testing.assert_array_equal(found.acceleration, horizontal.acceleration)
+    np.testing.assert_allclose(found.vertical, 0.1 * np.arange(100.0), rtol=1e-14)
+    assert found.remarks == horizontal.remarks != ()
+    assert found.name == horizontal.name
+    assert found.source == f"{horizontal.source}; vertical: up, up.csv (columns)"
+    assert found == rocking.read_record(paths[0], vertical=str(paths[1]))
+
+
+def test_remarks_of_both_files_are_kept(tmp_path) -> None:
+    path = tmp_path / "h.at2"
+    path.write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
+    (remark,) = rocking.read_record(path).remarks
+    assert rocking.read_record(path, vertical=path).remarks == (remark, f"vertical component: {remark}")
+
+
+@pytest.mark.parametrize(("count", "done"), [(95, "continued by zeros"), (104, "cut")])
+def test_a_vertical_component_of_another_length_never_changes_the_horizontal_one(count, done, tmp_path) -> None:
+    paths = [tmp_path / name for name in ("h.csv", "up.csv")]
+    for path, size in zip(paths, (100, count), strict=True):
+        path.write_text("unit: m/s2\ndt: 0.01\n" + "".join(f"{1.0 + k}\n" for k in range(size)))
+    found = rocking.read_record(paths[0], vertical=paths[1])
+    assert found.samples == found.vertical.size == 100
+    np.testing.assert_array_equal(found.vertical[:95], 1.0 + np.arange(95))
+    assert found.vertical[95] == (0.0 if count == 95 else 96.0)
+    said = f"the vertical component has {count} samples and the horizontal one 100: it is {done}"
+    assert found.remarks == (said,)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("unit: g\ndt: 0.02\n" + "1\n" * 100, r"`vertical` = 'a time step of 0.02 s' .* 0\.01 s"),
+        ("unit: g\ndt: 0.01\n" + "1\n" * 80, "`vertical` = '80 samples' .* 100"),
+        ("unit: g\ndt: 0.01\n" + "1\n" * 120, "`vertical` = '120 samples' .* 100"),
+        ("unit: g\n" + "1\n" * 100, "up.csv: .*time_step"),
+        ("<html>", "up.csv, line 1"),
+    ],
+)
+def test_a_second_file_that_does_not_belong_is_refused(text: str, said: str, tmp_path) -> None:
+    paths = [tmp_path / name for name in ("h.csv", "up.csv")]
+    paths[0].write_text("unit: g\ndt: 0.01\n" + "1\n" * 100)
+    paths[1].write_text(text)
+    with pytest.raises(InvalidArgumentError, match=said):
+        rocking.read_record(paths[0], vertical=paths[1])
+
+
+def test_the_vertical_component_of_another_column(tmp_path) -> None:
+    path = tmp_path / "motion.csv"
+    path.write_text(THREE)
+    found = rocking.read_record(path, component="NS_g", vertical="ew")
+    np.testing.assert_array_equal(found.vertical, rocking.read_record(path, component="ew").acceleration)
+    assert found == parse_record(THREE.encode(), "motion.csv", component="NS_g", vertical="EW_g")
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a component of motion.csv .*NS_g, EW_g"):
+        rocking.read_record(path, component="NS_g", vertical="up")
+    with pytest.raises(RecordFileError, match="argument `component`"):
+        rocking.read_record(path, vertical="EW_g")
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = .* a file that can be read"):
+        rocking.read_record(path, component="NS_g", vertical=tmp_path / "none.at2")
+    path.write_text(at2())
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):
+        rocking.read_record(path, vertical="up")

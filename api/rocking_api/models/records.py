@@ -58,6 +58,9 @@ class RecordFileParams(Params):
         json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
     )
     component: str | None = Field(None, description="column or trace of a file with several", max_length=200)
+    vertical: str | None = Field(
+        None, description="column or trace of the vertical component, upwards, in the same file", max_length=200
+    )
     baseline_order: int | None = Field(
         None,
         description="degree of the baseline that is removed from the acceleration; absent: none",
@@ -77,7 +80,7 @@ class RecordFileParams(Params):
 
 
 class RecordParams(RecordFileParams):
-    """The same, and a factor of the record."""
+    """The same, and a factor of the record, of both components."""
 
     BOUNDS: ClassVar = {**RecordFileParams.BOUNDS, "scale": (SMALLEST_SCALE, HIGHEST_SCALE)}
 
@@ -145,13 +148,16 @@ class RecordDescription(BaseModel):
     samples: int = Field(description="number of samples [-]")
     time_step: float = Field(description="time step [s]")
     peak_acceleration: float = Field(description="PGA [m/s2]")
+    peak_vertical_acceleration: float | None = Field(
+        description="largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
+    )
     peak_velocity: float = Field(description="PGV [m/s]")
     peak_displacement: float = Field(description="PGD [m]")
     arias_intensity: float = Field(description="Arias intensity [m/s]")
     significant_duration: float = Field(description="between 5 % and 95 % of the Arias intensity [s]")
     mean_period: float | None = Field(description="mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
     final_velocity: float = Field(description="velocity at the last sample, which an offset leaves [m/s]")
-    digest: str = Field(description="sha256 of the time step and the samples")
+    digest: str = Field(description="sha256 of the time step and the samples of all components")
 
 
 _RECORD = Field(description="the record, as read")
@@ -251,6 +257,9 @@ class RecordHistoryResponse(Motion):
     query: RecordHistoryParams = QUERY
     record: RecordDescription = _RECORD
     time: list[float] = Field(description="from the first sample [s]")
+    vertical_acceleration: list[float] | None = Field(
+        None, description="of the ground over g, upwards [-]; null: the record has no vertical component"
+    )
     metadata: Metadata = METADATA_FIELD
 
 

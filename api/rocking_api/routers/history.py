@@ -54,8 +54,8 @@ def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:
 
 def motion_columns(motion: xr.Dataset, time: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """The samples of a motion against its variable of time, and of the reactions, if it has any."""
-    sampled = (time, "rotation", "angular_velocity", "ground_acceleration")
-    columns = {name: motion[name].values.tolist() for name in sampled}
+    sampled = (time, "rotation", "angular_velocity", "ground_acceleration", "vertical_acceleration")
+    columns = {name: motion[name].values.tolist() for name in sampled if name in motion}
     return columns, {name: motion[name].values.tolist() for name in COLUMNS if name in motion}
 
 

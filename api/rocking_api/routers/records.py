@@ -129,12 +129,19 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
 
     def read(stop: StopFlag) -> Record:
         found = parse_record(
-            body, params.name, unit=params.unit, time_step=params.time_step, component=params.component, stop=stop
+            body,
+            params.name,
+            unit=params.unit,
+            time_step=params.time_step,
+            component=params.component,
+            vertical=params.vertical,
+            stop=stop,
         )
         return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)
 
     record = await service.run_parser(read, request, large=True)
-    reservation_of(request).replace(record.acceleration.nbytes)  # the body is released
+    kept = record.acceleration.nbytes * (1 if record.vertical is None else 2)
+    reservation_of(request).replace(kept)  # the body is released
     return record
 
 
@@ -270,6 +277,7 @@ def _description(record: Record) -> RecordDescription:
         samples=record.samples,
         time_step=record.time_step,
         peak_acceleration=record.peak_acceleration,
+        peak_vertical_acceleration=None if record.vertical is None else record.peak_vertical_acceleration,
         peak_velocity=record.peak_velocity,
         peak_displacement=record.peak_displacement,
         arias_intensity=record.arias_intensity,

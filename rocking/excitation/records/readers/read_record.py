@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
+
+import numpy as np
 
 from rocking.errors import InvalidArgumentError, RecordFileError, number, one_of
 from rocking.excitation.records.readers import columns, esm, knet, peer_at2, seismic
@@ -18,6 +20,12 @@ if TYPE_CHECKING:  # loads the compiler
 MAX_BYTES = 200_000_000
 """Largest file that is read [bytes]."""
 
+MAX_SHIFT = 0.02
+"""Largest distance in time of the last samples of two components whose steps differ by rounding, in steps [-]."""
+
+MAX_LENGTH_RATIO = 1.1
+"""Largest ratio of the numbers of samples of two components of one record [-]."""
+
 
 def read_record(
     path: str | PathLike[str],
@@ -25,8 +33,9 @@ def read_record(
     unit: str | None = None,
     time_step: Scalar | None = None,
     component: str | None = None,
+    vertical: str | PathLike[str] | None = None,
 ) -> Record:
-    """Read a recorded ground acceleration from a file.
+    """Read a recorded ground acceleration from a file, or from two where the vertical component has its own.
 
     The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, columns of times and accelerations or of
     accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is corrected or resampled.
@@ -42,21 +51,63 @@ def read_record(
         Time step [s], [1e-6, 10]; likewise.
     component : str, optional
         Name of the column or trace, where the file has several.
+    vertical : str or path, optional
+        File of the vertical component, upwards positive, with one component that starts at the same time; or, where
+        there is no file of this name, its column or trace in the first file. `unit` and `time_step` count for both. A
+        vertical component of another length, by a tenth at most, is cut or continued by zeros, with a remark.
 
     Raises
     ------
     RecordFileError
-        If the file is damaged, ambiguous or of an unknown format: with the line, what was found and what was expected.
+        If a file is damaged, ambiguous or of an unknown format: with the line, what was found and what was expected.
     InvalidArgumentError
-        If the file cannot be read, or an argument is out of range.
+        If a file cannot be read, an argument is out of range, or the components differ in step or length.
     """
-    file = Path(path)
+    content, name = _content("path", path), Path(path).name
+    stated: _Stated = {"unit": unit, "time_step": time_step}
+    if vertical is None or not (isinstance(vertical, PathLike) or Path(vertical).is_file()):
+        return parse_record(content, name, **stated, component=component, vertical=vertical)
+    found = parse_record(content, name, **stated, component=component)
+    return _with_vertical(found, parse_record(_content("vertical", vertical), Path(vertical).name, **stated))
+
+
+class _Stated(TypedDict):
+    """What the caller states of all files."""
+
+    unit: str | None
+    time_step: Scalar | None
+
+
+def _content(parameter: str, path: str | PathLike[str]) -> bytes:
+    """The bytes of a file, one more than is allowed at most."""
     try:
-        with file.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
+        with Path(path).open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
     except OSError as error:
-        raise InvalidArgumentError("path", str(path), f"a file that can be read ({error.strerror})") from None
-    return parse_record(content, file.name, unit=unit, time_step=time_step, component=component)
+        raise InvalidArgumentError(parameter, str(path), f"a file that can be read ({error.strerror})") from None
+
+
+def _with_vertical(found: Record, upwards: Record) -> Record:
+    """A record with another one as its vertical component."""
+    shift = abs(upwards.time_step / found.time_step - 1.0) * min(found.samples, upwards.samples)
+    if shift > MAX_SHIFT:
+        allowed = f"a component with the step of the horizontal one, {found.time_step:g} s"
+        raise InvalidArgumentError("vertical", f"a time step of {upwards.time_step:g} s", allowed)
+    counts = sorted((found.samples, upwards.samples))
+    if counts[1] > MAX_LENGTH_RATIO * counts[0]:
+        allowed = f"about as many samples as the horizontal component, {found.samples}"
+        raise InvalidArgumentError("vertical", f"{upwards.samples} samples", allowed)
+    remarks = [*found.remarks, *(f"vertical component: {remark}" for remark in upwards.remarks)]
+    if upwards.samples != found.samples:
+        done = "cut" if upwards.samples > found.samples else "continued by zeros"
+        remarks.append(
+            f"the vertical component has {upwards.samples} samples and the horizontal one {found.samples}: it is {done}"
+        )
+    samples = np.zeros(found.samples)
+    samples[: upwards.samples] = upwards.acceleration[: found.samples]
+    source = f"{found.source}; vertical: {upwards.name}, {upwards.source}"
+    about = found.name, source, remarks
+    return Record(found.acceleration, found.time_step, "m/s2", *about, vertical=samples)
 
 
 def parse_record(
@@ -66,12 +117,33 @@ def parse_record(
     unit: str | None = None,
     time_step: Scalar | None = None,
     component: str | None = None,
+    vertical: str | None = None,
     stop: StopFlag | None = None,
 ) -> Record:
     """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
 
-    `stop` cancels the work, which then raises `StoppedError`. Other parameters and errors as for `read_record`.
+    `vertical` is a column or trace of this file. `stop` cancels the work, which then raises `StoppedError`. Other
+    parameters and errors as for `read_record`.
     """
+    found = _parsed(content, name, unit, time_step, component, stop)
+    if vertical is None:
+        return found
+    try:
+        upwards = _parsed(content, name, unit, time_step, vertical, stop)
+    except RecordFileError as error:
+        raise InvalidArgumentError("vertical", vertical, f"a component of {name} ({error})") from None
+    return _with_vertical(found, upwards)
+
+
+def _parsed(
+    content: bytes,
+    name: str,
+    unit: str | None,
+    time_step: Scalar | None,
+    component: str | None,
+    stop: StopFlag | None,
+) -> Record:
+    """One component."""
     if unit is not None:
         one_of("unit", unit, UNITS)
     step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
@@ -99,7 +171,7 @@ def _read_text(file: TextFile, unit: str | None, time_step: float | None, compon
     else:
         return columns.read(file, unit, time_step, component)
     if component is not None:
-        raise file.error(None, "a file with one component", "no argument `component`")
+        raise file.error(None, "a file with one component", "no name of a component")
     return found
 
 
