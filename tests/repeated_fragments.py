@@ -31,6 +31,7 @@ from rocking.cli.fragility import read_suite
 from rocking.dimensional.table import read_table
 from rocking.errors import InvalidArgumentError, positive
 from rocking.excitation.records.readers.read_record import parse_record
+from rocking.excitation.sampled import SampledPulse
 from rocking.suites.configuration import suite_configuration
 from tests.api.fuzzer import Sent, exchange
 
@@ -102,6 +103,7 @@ QUERY = [
     "restitution",
 ]
 BODY = ["slenderness", '"slenderness"', '"slenderness":[', "restitution", "null", "{", "[1,", "]", "\\u0041"]
+PULSE = ['"acceleration":', '"time":', '"period":', '"name":', "[1,", "[0,1]", "null", "{", "1e999", "NaN", "9" * 400]
 HEADER = ["text/csv", "application/json", "q=0", "bytes=", "0-", "1-2", "W/", '"a"', "*", ";", ",", "utf-8"]
 
 AT2 = "PEER\nTitle\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= 3, DT= .01\n1 2 3\n"
@@ -130,6 +132,14 @@ def record(text: str) -> None:
     for arguments in ({}, {"unit": "g", "time_step": 0.01}, {"component": "a"}):
         with suppress(InvalidArgumentError):
             parse_record(text.encode(), "x", **arguments)  # type: ignore[arg-type]
+
+
+def pulse(text: str) -> None:
+    """Read a file of a sampled pulse."""
+    with tempfile.TemporaryDirectory() as folder, suppress(InvalidArgumentError):
+        path = Path(folder) / "pulse.csv"
+        path.write_text(text, encoding="utf-8", newline="")
+        SampledPulse.from_file(path)
 
 
 def table(text: str) -> None:
@@ -210,6 +220,8 @@ READERS = {
     "ESM": Reader(record, places(ESM, "0.01", "NDATA: 3", "gal", "1\n2\n3\n"), RECORD),
     "K-NET": Reader(record, places(KNET, "1", "100", "0.03", "1(gal)/1", "gal", "1 2 3"), RECORD),
     "any record": Reader(record, ["@"], RECORD),
+    "pulse in columns": Reader(pulse, ["@", f"@{ROWS}", f"time,a @{ROWS}", f"0,1{ROWS}@\n3,1\n"], RECORD),
+    "pulse in JSON": Reader(pulse, ["{@", '{"acceleration":[@]}', '{"acceleration":[0,1],"time":@}'], PULSE),
     "suite in YAML": Reader(partial(suite_file, suffix="yaml"), ["@", "name: @\n", "hazard: [@]\n"], SUITE, (1_000,)),
     "suite in TOML": Reader(partial(suite_file, suffix="toml"), ["@", "name = @\n", "@ = 1\n", "[@]\n"], SUITE, LINES),
     "suite in JSON": Reader(partial(suite_file, suffix="json"), ["@", '{"name": @}'], SUITE, LINES),

@@ -14,6 +14,7 @@ import typer
 
 from rocking.cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
 from rocking.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
+from rocking.excitation.pulses import AbstractPulse, get_pulse, pulse_names
 from rocking.model.block import Block
 from rocking.model.checks import check_window
 from rocking.model.parameters import FREQUENCY_RATIO
@@ -44,7 +45,7 @@ _SIZES = ("width", "height", "half_width", "half_height")
 class Params:
     """One block under one pulse, as groups; `problem` if it was given with units."""
 
-    pulse: str
+    pulse: AbstractPulse
     slenderness: float
     frequency_ratio: float
     restitution: float
@@ -88,6 +89,29 @@ def _error_text(error: InvalidArgumentError) -> str:
     return f"{place}: {text}" if place else text
 
 
+def read_pulse(text: str) -> AbstractPulse:
+    """The pulse of a name, or else that in a file; a leading minus mirrors either.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the text is neither a name nor a file that holds a pulse.
+    """
+    name = text.removeprefix("-")
+    if name in pulse_names():
+        return get_pulse(text)
+    from rocking.excitation.sampled import SampledPulse
+
+    try:
+        found = SampledPulse.from_file(name)
+    except InvalidArgumentError as error:
+        if error.parameter != "path":
+            raise
+        allowed = f"one of {', '.join(pulse_names())}, or {error.allowed}"
+        raise InvalidArgumentError("pulse", text, allowed) from None
+    return found.mirrored() if text.startswith("-") else found
+
+
 def read_params(options: ProblemOptions) -> Params:
     """A block under a pulse.
 
@@ -102,7 +126,7 @@ def read_params(options: ProblemOptions) -> Params:
                 raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
         angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
         slenderness, ratio = options.slenderness or 0.0, options.frequency_ratio or 0.0
-        return Params(options.pulse, slenderness, ratio, _eta(options.restitution), angle or None)
+        return Params(read_pulse(options.pulse), slenderness, ratio, _eta(options.restitution), angle or None)
     _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
     block = read_block(options)
     return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "pulse_period"))
@@ -122,7 +146,7 @@ def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Pa
         window = check_window(FREQUENCY_RATIO, low, high)
         angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
         eta = _eta(options.restitution)
-        return Params(options.pulse, options.slenderness, window[0], eta, angle or None), window
+        return Params(read_pulse(options.pulse), options.slenderness, window[0], eta, angle or None), window
     _refuse_groups(options, ("slenderness", "alpha"))
     block = read_block(options)
     window = _window(options, block, low, high)
@@ -140,7 +164,7 @@ def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Para
     if not _has_units(options):
         window = check_window(FREQUENCY_RATIO, low, high)
         angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-        return Params(options.pulse, 1.0, window[0], _eta(options.restitution), angle or None), window
+        return Params(read_pulse(options.pulse), 1.0, window[0], _eta(options.restitution), angle or None), window
     _refuse_groups(options, ("alpha",))
     block = read_block(options)
     window = _window(options, block, low, high)
@@ -183,7 +207,7 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidArgumentError("blocks", path, f"a CSV file that can be read: {error}") from None
     given = options.restitution or "housner"
-    return read_table(text, options.pulse, given if given == "housner" else _eta(given))
+    return read_table(text, read_pulse(options.pulse), given if given == "housner" else _eta(given))
 
 
 def read_duration(text: str | None, params: Params) -> float | None:
@@ -219,9 +243,10 @@ def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | 
 
     given = options.restitution or "housner"
     eta = "housner" if given == "housner" else _eta(given)
-    problem = BlockProblem(block, options.pulse, peak_acceleration, period, eta)
+    pulse = read_pulse(options.pulse)
+    problem = BlockProblem(block, pulse, peak_acceleration, period, eta)
     groups: Mapping[str, float] = problem.groups  # type: ignore[assignment]
-    return Params(options.pulse, **groups, problem=problem)
+    return Params(pulse, **groups, problem=problem)
 
 
 def _window(options: WindowOptions, block: Block, low: float, high: float) -> tuple[float, float]:

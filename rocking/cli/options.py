@@ -44,7 +44,13 @@ class SizeOptions:
 class ShapeOptions(SizeOptions):
     """A pulse without amplitude and a block: its slenderness angle, or its size."""
 
-    pulse: Annotated[str, typer.Option(help="Pulse, such as sine; a leading minus mirrors it.")]
+    pulse: Annotated[
+        str,
+        typer.Option(
+            help="Pulse, such as sine, or a file of samples: columns of numbers (accelerations, or times and "
+            "accelerations) or JSON; a leading minus mirrors it."
+        ),
+    ]
     restitution: Annotated[
         str | None,
         typer.Option(

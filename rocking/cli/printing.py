@@ -317,7 +317,7 @@ def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
         curves = add_si_axes(curves, params.problem.block)
         columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
     if form.kind == "json":
-        about = {"pulse": params.pulse, "restitution": params.restitution, "alpha": params.alpha}
+        about = {"pulse": params.pulse.name, "restitution": params.restitution, "alpha": params.alpha}
         print_json(about | columns)
     elif form.kind == "csv":
         print_csv(columns, form)
@@ -333,7 +333,7 @@ def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
 
 
 def _groups(params: Params) -> dict[str, Any]:
-    return {"pulse": params.pulse, **params.groups}
+    return {"pulse": params.pulse.name, **params.groups}
 
 
 def _columns(found: BoundedResponse) -> dict[str, list[Any]]:

@@ -15,6 +15,7 @@ import numpy as np
 from rocking._numba.cancellation import StopFlag
 from rocking.dimensional.problem import BlockProblem
 from rocking.errors import InvalidArgumentError, SeveralArgumentsError, plain_number, positive
+from rocking.excitation.pulses import AbstractPulse
 from rocking.model.block import Block
 from rocking.model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.model.outcome import Outcome
@@ -64,7 +65,7 @@ class BlockTable:
     names: list[str]
 
 
-def read_table(text: str, pulse: str, restitution: float | str = "housner") -> BlockTable:
+def read_table(text: str, pulse: str | AbstractPulse, restitution: float | str = "housner") -> BlockTable:
     """Parse a table of blocks.
 
     Parameters
@@ -73,7 +74,7 @@ def read_table(text: str, pulse: str, restitution: float | str = "housner") -> B
         CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
         may be `half_width` and `half_height`, the period `pulse_period`. Columns may be separated by semicolons;
         numbers have decimal points. Names are kept with their blanks.
-    pulse : str
+    pulse : str or AbstractPulse
         The pulse.
     restitution : float or "housner"
         For rows that state none.
@@ -156,7 +157,9 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     return names, units
 
 
-def _problem(given: Mapping[str, str], units: Mapping[str, str], pulse: str, restitution: float | str) -> BlockProblem:
+def _problem(
+    given: Mapping[str, str], units: Mapping[str, str], pulse: str | AbstractPulse, restitution: float | str
+) -> BlockProblem:
     values = {name: _positive(name, given[name], unit) for name, unit in units.items()}
     b = values["half_width"] if "half_width" in values else 0.5 * values["width"]
     h = values["half_height"] if "half_height" in values else 0.5 * values["height"]

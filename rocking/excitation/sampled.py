@@ -5,12 +5,14 @@ from __future__ import annotations
 import hashlib
 import math
 from functools import cached_property
+from os import PathLike
 from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.errors import InvalidArgumentError, in_range, number
+from rocking.excitation.pulse_file import read_pulse_file
 from rocking.excitation.series import ExcitationSeries, Family
 from rocking.excitation.shapes import AbstractPulse
 
@@ -88,7 +90,8 @@ class SampledPulse(AbstractPulse):
         steps = np.diff(times)
         if not (steps > 0.0).all():
             first = int(np.flatnonzero(~(steps > 0.0))[0])
-            raise InvalidArgumentError("time", times[first + 1], f"ascending times, above {times[first]:g}")
+            allowed = f"ascending times, above {times[first]:g}"
+            raise InvalidArgumentError("time", float(times[first + 1]), allowed, (first + 1,))
         if not (math.isfinite(duration) and steps.min() * MAX_RATIO >= duration):
             raise InvalidArgumentError(
                 "time", f"shortest interval {steps.min():g}", f"at least {MAX_RATIO:g} of them fit"
@@ -104,6 +107,32 @@ class SampledPulse(AbstractPulse):
         fields = {"name": name, "start": 0.0, "end": float(phases[-1]), "stationary": tuple(phases[inner].tolist())}
         for key, value in (fields | {"phases": phases, "values": values}).items():
             object.__setattr__(self, key, value)
+
+    @classmethod
+    def from_file(cls, path: str | PathLike[str], period: float | None = None) -> SampledPulse:
+        """Read a pulse from a file.
+
+        Columns of numbers, separated by commas, semicolons or blanks, with or without a header: accelerations alone, or
+        times and accelerations. Or JSON: an object with the arguments of the class as keys.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, of at most 8 MB; without its ending it names the pulse.
+        period : float, optional
+            T_p in the unit of the times, by default that of a JSON file, else the duration.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the file cannot be read or does not hold a pulse: with the line, what was found and what is allowed.
+        """
+        file = read_pulse_file(path, MAX_SAMPLES)
+        given = file.arguments if period is None else file.arguments | {"period": period}
+        try:
+            return cls(**given)
+        except InvalidArgumentError as error:
+            raise file.error(error) from None
 
     @cached_property
     def digest(self) -> str:

@@ -332,6 +332,64 @@ def test_boundary_in_three_formats():
     assert run("boundary", *arguments).splitlines()[0].split()[:2] == ["curve", "slenderness"]
 
 
+TRIANGLE = rocking.SampledPulse([0.0, 1.0, 0.0], name="triangle")
+
+
+@pytest.fixture
+def triangle(tmp_path):
+    path = tmp_path / "triangle.csv"
+    path.write_text("time [s],acceleration [g]\n0,0\n0.3,0.5\n0.6,0\n")
+    return str(path)
+
+
+def test_every_command_takes_a_pulse_from_a_file(triangle, tmp_path):
+    groups = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+    result = json.loads(run("response", "--pulse", triangle, *GROUPS[2:], "--json"))
+    assert result["pulse"] == "triangle"
+    assert result["peak_rotation"] == peak_response(TRIANGLE, **groups).peak_rotation
+    mirrored = json.loads(run("response", f"--pulse=-{triangle}", *GROUPS[2:], "--json"))
+    assert (mirrored["pulse"], mirrored["peak_rotation"]) == ("-triangle", result["peak_rotation"])
+    history = json.loads(run("history", "--pulse", triangle, *GROUPS[2:], "--json"))
+    assert history["rotation"] == time_history(TRIANGLE, **groups)["rotation"].values.tolist()
+    spectrum = json.loads(run("spectrum", "--pulse", triangle, *GROUPS[2:4], *GROUPS[6:], "--points", "3", "--json"))
+    omega = groups | {"frequency_ratio": spectrum["frequency_ratio"]}
+    overturned = peak_response(TRIANGLE, **omega).overturned
+    assert [peak is None for peak in spectrum["peak_rotation"]] == overturned.tolist()
+    window = {"frequency_ratio": (2.0, 3.0)}
+    ends = ["--frequency-ratio-min", "2", "--frequency-ratio-max", "3"]
+    boundary = json.loads(run("boundary", "--pulse", triangle, *GROUPS[6:], *ends, "--json"))
+    expected = overturning_boundary(TRIANGLE, restitution=0.85, **window)
+    assert boundary["slenderness"] == expected["slenderness"].values.tolist()
+    path = tmp_path / "blocks.csv"
+    path.write_text("width [m],height [m],peak_acceleration [g],period [s]\n0.4,1.6,0.4,0.5\n")
+    (row,) = read_csv(run("response", "--pulse", triangle, "--blocks", str(path)))
+    block = rocking.Block(0.2, 0.8).response(TRIANGLE, peak_acceleration="0.4 g", period=0.5)
+    assert float(row["top_displacement"]) == block.displacement
+    printed = json.loads(run("response", "--pulse", triangle, *UNITS[2:], "--json"))
+    assert printed["pulse_duration"] == 0.5
+
+
+def test_a_name_of_a_pulse_is_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sine").write_text("0\n1\n0\n")
+    (tmp_path / "sin").write_text("0\n1\n0\n")
+    sine = json.loads(run("response", *GROUPS, "--json"))
+    assert sine["pulse"] == "sine"
+    exact = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
+    assert sine["peak_rotation"] == exact.peak_rotation
+    assert json.loads(run("response", "--pulse", "sin", *GROUPS[2:], "--json"))["pulse"] == "sin"
+
+
+def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
+    missing = refused("response", "--pulse", str(tmp_path / "no.csv"), *GROUPS[2:])
+    assert "one of sine" in missing
+    assert "a file that can be read (No such file" in missing
+    (tmp_path / "triangle.csv").write_text("0,0\n1,one\n")
+    damaged = refused("response", "--pulse", triangle, *GROUPS[2:])
+    assert "--pulse" in damaged
+    assert "triangle.csv, line 2: one" in damaged
+
+
 @pytest.mark.parametrize(
     ("arguments", "option", "allowed"),
     [

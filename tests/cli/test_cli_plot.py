@@ -42,6 +42,17 @@ def test_a_picture_in_a_file(command, tmp_path):
     assert max(count for count, _ in colours) < 9_500
 
 
+@pytest.mark.parametrize("name", ["response", "history", "spectrum", "boundary", "map"])
+def test_a_picture_under_a_pulse_in_a_file(name, tmp_path):
+    path, pulse = tmp_path / "picture.png", tmp_path / "triangle.csv"
+    pulse.write_text("0\n1\n0\n")
+    takes = {"response": UNITS, "history": UNITS, "spectrum": [*BLOCK, *AMPLITUDE]}.get(name, BLOCK)
+    ends = ["--period-min", "0.4s", "--period-max", "0.6s"] if name == "boundary" else []
+    given = [str(pulse) if argument == "sine" else argument for argument in takes]
+    assert run("plot", name, *given, *ends, "--output", str(path)) == ""
+    assert path.stat().st_size > 1000
+
+
 def test_a_picture_of_a_motion_does_not_hide_the_warnings(tmp_path):
     """The outcome under this record depends on the interpolation between its samples."""
     block = ["--width", "0.3m", "--height", "1.5m"]

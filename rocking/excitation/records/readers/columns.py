@@ -52,8 +52,7 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     times, certain = _time_column(file, first, names)
     others = [k for k in range(width) if k != times or (component is not None and not certain)]
     chosen = _chosen(file, names_line, [names[k] for k in others], others, component)
-    if re.match(r"vel|dis", names[chosen], re.I) or re.search(r"[(\[](mm|cm|m)(/s)?[)\]]", names[chosen], re.I):
-        raise file.error(names_line, f"the column {names[chosen]}", "a column of accelerations")
+    _check_name(file, names_line, names[chosen])
     in_name, stated_unit = _unit_in_name(names[chosen]), settings.unit
     if in_name and stated_unit and in_name != stated_unit:
         raise file.error(names_line, f"the unit {in_name} in a column name", f"{stated_unit}, as the header says")
@@ -72,6 +71,33 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     stem = file.name.rsplit(".", 1)[0]
     name = stem if component is None else f"{stem} {names[chosen]}"
     return Record(values, step, agreed, name=name, source=f"{file.name} (columns)")
+
+
+def read_samples(file: TextFile, most: int) -> tuple[int, NDArray[np.float64] | None, NDArray[np.float64]]:
+    """Index of the first row, times if there are two columns, and accelerations, in any units; at most `most` rows.
+
+    Raises
+    ------
+    RecordFileError
+        If the file holds anything else.
+    """
+    first = _first_row(file, "one column of accelerations, or two of times and accelerations")
+    separator = _separator(file.head[first])
+    width = len(_fields(file.head[first], separator))
+    if width > 2:
+        raise file.error(first, f"{width} columns", "one column of accelerations, or two of times and accelerations")
+    names_line, names = _column_names(file, first, separator, width)
+    times, _ = _time_column(file, first, names)
+    chosen = 0 if times is None else 1 - times
+    _check_name(file, names_line, names[chosen])
+    columns = _table(file, first, separator, width, [*range(width)], most)
+    return first, None if times is None else columns[times], columns[chosen]
+
+
+def _check_name(file: TextFile, line: int | None, name: str) -> None:
+    """Refuse a column of velocities or displacements, by its name."""
+    if re.match(r"vel|dis", name, re.I) or re.search(r"[(\[](mm|cm|m)(/s)?[)\]]", name, re.I):
+        raise file.error(line, f"the column {name}", "a column of accelerations")
 
 
 def _agreed_step(file: TextFile, first: int, settings: _Settings, measured: float | None, given: float | None) -> float:
@@ -104,24 +130,30 @@ def _is_row(line: str) -> bool:
     return bool(line.strip()) and all(NUMBER.fullmatch(field) for field in fields)
 
 
-def _first_row(file: TextFile) -> int:
+def _first_row(
+    file: TextFile, expected: str = "the header of a known format (AT2, ESM, K-NET), or rows of numbers"
+) -> int:
     """Index of the first row of numbers."""
     for k, line in enumerate(file.head):
         if _is_row(line):
             return k
     shown = next((line.strip() for line in file.head if line.strip()), "blank lines")
-    raise file.error(None, shown, "the header of a known format (AT2, ESM, K-NET), or rows of numbers")
+    raise file.error(None, shown, expected)
 
 
 def _table(
-    file: TextFile, first: int, separator: str | None, width: int, columns: list[int]
+    file: TextFile,
+    first: int,
+    separator: str | None,
+    width: int,
+    columns: list[int],
+    most: int = MAX_SAMPLES,
 ) -> list[NDArray[np.float64]]:
     """Some columns of all rows; each row has the columns of the first."""
     mark = None if separator is None else separator.encode()
-    decimal_comma = separator == ";" and "," in file.head[first]
     found = [array("d") for _ in columns]
     for k, raw in file.rows(first):
-        lines = [line.replace(b",", b".") for line in raw] if decimal_comma else raw
+        lines = [line.replace(b",", b".") for line in raw] if separator == ";" else raw  # decimal commas
         # blank lines between rows of several columns are left out: the times show whether a row is missing
         rows = [line.split(mark) for line in lines if line or width == 1]
         try:
@@ -135,8 +167,8 @@ def _table(
                     numbers += _row(file, j, decoded(line), separator, width, first)
         for values, column in zip(found, columns, strict=True):
             values.extend(numbers[column::width])
-        if len(found[0]) > MAX_SAMPLES:
-            raise file.error(k, f"more than {MAX_SAMPLES} rows", f"at most {MAX_SAMPLES}")
+        if len(found[0]) > most:
+            raise file.error(k, f"more than {most} rows", f"at most {most}")
     return [np.frombuffer(values) for values in found]
 
 

@@ -1,0 +1,91 @@
+"""Files of sampled pulses: columns and JSON, errors with the file and the line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import rocking
+from rocking.errors import InvalidArgumentError
+from rocking.excitation.sampled import MAX_SAMPLES
+
+VALUES, TIMES = [0.0, 1.0, -0.25, 0.0], [0.0, 0.5, 0.75, 2.0]
+TEXTS = {
+    "one column": "0\n1\n-0.25\n0\n",
+    "one column with a header": "acceleration [g]\n0\n1\n-0.25\n0\n\n",
+    "commas": "0,0\n0.5,1\n0.75,-0.25\n2,0\n",
+    "semicolons and decimal commas": "time;acceleration\n0;0\n0,5;1\n0,75;-0,25\n2;0\n",
+    "blanks": "# a pulse\n0 0\n 0.5  1\n\n0.75 -.25\n2 0\n",
+    "the times last": "acc,time\n0,0\n1,0.5\n-0.25,0.75\n0,2\n",
+    "JSON": json.dumps({"acceleration": VALUES, "time": TIMES}),
+    "JSON without times": json.dumps({"acceleration": VALUES, "time": None}),
+    "JSON with a mark": "\ufeff" + json.dumps({"acceleration": VALUES}),
+}
+
+
+def written(folder: Path, text: str, name: str = "ramp.csv") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("form", TEXTS)
+def test_every_form_holds_the_pulse(form: str, tmp_path: Path) -> None:
+    text = TEXTS[form]
+    timed = "0.75" in text or "0,75" in text
+    expected = rocking.SampledPulse(VALUES, TIMES if timed else None, name="ramp")
+    assert rocking.SampledPulse.from_file(written(tmp_path, text)) == expected
+
+
+def test_period_and_name_of_a_file(tmp_path: Path) -> None:
+    path = written(tmp_path, json.dumps({"acceleration": VALUES, "time": TIMES, "period": 4.0, "name": "slow ramp"}))
+    slow = rocking.SampledPulse(VALUES, TIMES, 4.0, "slow ramp")
+    assert rocking.SampledPulse.from_file(path) == slow
+    assert rocking.SampledPulse.from_file(path, period=0.5) == rocking.SampledPulse(VALUES, TIMES, 0.5, "slow ramp")
+    assert rocking.SampledPulse.from_file(str(written(tmp_path, TEXTS["commas"])), 4.0).end == slow.end
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "allowed"),
+    [
+        ("", "ramp.csv: blank lines", "one column of accelerations, or two of times and accelerations"),
+        ("a\nb\n", "ramp.csv: a", "one column"),
+        ("0,1,2\n1,2,3\n", "ramp.csv, line 1: 3 columns", "one column"),
+        ("0,0\n1,x\n", "ramp.csv, line 2: x", "a number"),
+        ("0,0\n1\n", "ramp.csv, line 2: 1 columns", "2, as in line 1"),
+        ("t,a\n0,0\n1,1\n\n0.5,0\n", "ramp.csv, line 5: time 0.5", "ascending times, above 1"),
+        ("1\n2\n1e999\n", "ramp.csv, line 3: acceleration inf", "(-inf, inf)"),
+        ("0,0\n1,nan\n", "ramp.csv, line 2: nan", "a number"),
+        ("0\n0\n", "ramp.csv: acceleration all samples 0", "not zero"),
+        ("5\n", "ramp.csv: acceleration shape (1,)", f"2 to {MAX_SAMPLES} numbers"),
+        ("velocity\n1\n2\n", "ramp.csv, line 1: the column velocity", "a column of accelerations"),
+        ("time\n1\n2\n", "ramp.csv, line 2: a column of times only", "a column of accelerations"),
+        ("1 " * 5000, "ramp.csv, line 1: 1 1", "lines of at most 8192 bytes"),
+        ("1\n" * (MAX_SAMPLES + 1), "rows", f"at most {MAX_SAMPLES}"),
+        ("1" * 9_000_000, "ramp.csv: a larger file", "at most 8000000 bytes"),
+        ('{"acceleration": [0, 1,]}', "ramp.csv, line 1: ", "JSON"),
+        ('{"time": [0, 1]}', "ramp.csv: no key acceleration", "the keys acceleration, time, period, name"),
+        ('{"acceleration": [0, 1], "dt": 1}', "ramp.csv: the key dt", "the keys"),
+        ('{"acceleration": [0, NaN]}', "ramp.csv: acceleration[1] nan", "(-inf, inf)"),
+        ('{"acceleration": [0, "1"]}', "ramp.csv: acceleration ", "real numbers"),
+        ('{"acceleration": [0, 1], "period": "a"}', "ramp.csv: period a", "a number"),
+        ('{"acceleration": [0, 1], "name": ""}', "ramp.csv: name ", "not empty"),
+        ('{"acceleration": ' + "[" * 100_000, "ramp.csv: ", "JSON"),
+        ('{"acceleration": [' + "1" * 5000 + "]}", "ramp.csv: ", "JSON"),
+    ],
+)
+def test_errors_name_the_file_and_the_line(text: str, value: str, allowed: str, tmp_path: Path) -> None:
+    with pytest.raises(InvalidArgumentError) as caught:
+        rocking.SampledPulse.from_file(written(tmp_path, text))
+    assert caught.value.parameter == "pulse"
+    assert value in str(caught.value.value)
+    assert allowed in caught.value.allowed
+    assert len(str(caught.value)) < 400
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InvalidArgumentError, match="a file that can be read") as caught:
+        rocking.SampledPulse.from_file(tmp_path / "none.csv")
+    assert caught.value.parameter == "path"
