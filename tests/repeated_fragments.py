@@ -24,6 +24,8 @@ from rocking_api.app import create_app
 from rocking_api.http.batch import read_batch
 from rocking_api.http.errors import InvalidQueryError, TooLargeError
 from rocking_api.models.blocks import BlockRows
+from rocking_api.models.pulses import with_samples
+from rocking_api.routers.control_map import MapParams
 from rocking_api.settings import Settings
 
 from rocking._numba.cancellation import StopFlag
@@ -198,6 +200,8 @@ def body(text: str, form: str) -> None:
     with suppress(InvalidArgumentError, ValidationError, InvalidQueryError, TooLargeError):
         if form == "blocks":
             BlockRows.model_validate_json(text)
+        elif form == "pulse":
+            with_samples(MapParams).model_validate_json(text)
         else:
             read_batch(text.encode(), form, {}, 10_000, StopFlag())  # type: ignore[arg-type]
 
@@ -237,6 +241,9 @@ READERS = {
     },
     "points in JSON": Reader(partial(body, form="json"), ["@", '{"slenderness":[@]}', '{"slenderness":[@'], BODY),
     "points in CSV": Reader(partial(body, form="csv"), ["@", "slenderness,restitution\n@"], BODY),
+    "samples in JSON": Reader(
+        partial(body, form="pulse"), ["@", '{"pulse":{"acceleration":[@]}}', '{"pulse":{@}}'], [*PULSE, '"pulse":']
+    ),
     "blocks in JSON": Reader(partial(body, form="blocks"), ["@", '{"blocks":[@]}'], BODY),
 }
 """Readers of text, by what they read."""

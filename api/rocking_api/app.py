@@ -10,6 +10,7 @@ from typing import Any
 import anyio
 import anyio.to_thread
 from fastapi import FastAPI
+from pydantic import BaseModel
 from starlette.middleware import Middleware
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
@@ -23,7 +24,7 @@ from rocking_api.http.params_route import FastPath, ParamsRoute
 from rocking_api.http.request_log import RequestLog
 from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.blocks import BlockRows
-from rocking_api.models.params import BatchParams
+from rocking_api.models.pulses import BODIES
 from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
     blocks,
@@ -157,7 +158,8 @@ def _describe_bodies(app: FastAPI) -> None:
     def described() -> dict[str, object]:
         if app.openapi_schema is None:
             schemas = generate()["components"]["schemas"]
-            for model in (Problem, BatchParams, BlockRows):
+            models: list[type[BaseModel]] = [Problem, BlockRows, *sorted(BODIES, key=lambda body: body.__name__)]
+            for model in models:
                 schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
                 schemas.update(schema.pop("$defs", {}))
                 schemas[model.__name__] = schema

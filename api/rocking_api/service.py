@@ -12,20 +12,24 @@ from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
 from rocking._numba.cancellation import StopFlag
+from rocking.errors import InvalidArgumentError
 from rocking.lookup.collection import CubeCollection
 from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
-from rocking_api.http.batch import limited_body
+from rocking_api.http.batch import body_form, limited_body
 from rocking_api.http.dataset_summaries import DatasetSummaries
 from rocking_api.http.memory_budget import MemoryBudget, reservation_of
 from rocking_api.http.metrics import Metrics
+from rocking_api.http.params_route import query_parameters
 from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.params import Params
+from rocking_api.models.pulses import MAX_BODY, with_samples
 from rocking_api.settings import Settings
 from rocking_api.suite_reader import SuiteReader
 
+P = TypeVar("P", bound=Params)
 T = TypeVar("T")
 
 SEARCH_SHARE = 0.2
@@ -83,6 +87,24 @@ class Service:
     async def read_body(self, request: Request, limit: int) -> bytes:
         """The body of a request, of at most `limit` bytes, see `limited_body`."""
         return await limited_body(request, limit, self.settings.arrival_seconds, reservation_of(request), self.turns)
+
+    async def read_params(self, kind: type[P], request: Request) -> P:
+        """The parameters in a JSON body, in which the pulse may be given by samples.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If there are parameters in the query, or the body is no JSON or too large.
+        ValidationError
+            If the body does not fit the model.
+        """
+        body_form(request, ("json",))
+        for name, value in query_parameters(request).items():
+            raise InvalidArgumentError(name, value, "nothing in the query: all parameters are in the body")
+        body = await self.read_body(request, MAX_BODY)
+        params: P = await self.run_io(lambda: with_samples(kind).model_validate_json(body))
+        reservation_of(request).replace(len(body))  # about the size of the samples
+        return params
 
     async def run_parser(self, work: Work[T], request: Request, large: bool) -> T:
         """Parse a body in a thread; large bodies one at a time, until the time limit or the client disconnects."""

@@ -18,7 +18,7 @@ from rocking.datasets.checksum import sha256_of
 from rocking.datasets.cube import decode_dataset
 from rocking.datasets.shared_cache import KnownVersion, SharedCache
 from rocking.errors import DatasetError
-from rocking.excitation.pulses import get_pulse
+from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.lookup.cube import Cube
 from rocking.lookup.cube_slice import CubeSlice, check_slice, decode_slice
 from rocking.lookup.packed_tables import PackedTables
@@ -143,7 +143,7 @@ class CubeCollection:
 
     def response(
         self,
-        pulse: str,
+        pulse: str | AbstractPulse,
         *,
         slenderness: ArrayLike,
         frequency_ratio: ArrayLike,
@@ -158,8 +158,8 @@ class CubeCollection:
 
         Parameters
         ----------
-        pulse : str
-            Name of the pulse.
+        pulse : str or AbstractPulse
+            The pulse, by its name if cubes are to be used.
         slenderness, frequency_ratio, restitution : array_like, broadcasting
             1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
         alpha : array_like, optional
@@ -182,8 +182,8 @@ class CubeCollection:
         DatasetError
             With `method="cube"`, for a damaged cube.
         """
-        get_pulse(pulse)
-        cube = self.cube(pulse, method)
+        as_pulse(pulse)
+        cube = self.cube(pulse, method) if isinstance(pulse, str) else Cube(pulse, np.empty(0), lambda _: None)
         result, used = cube.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop)
         return result, tuple(one.sha256 for one in used)
 

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import InvalidArgumentError, OutsideCubeError, integer, number, one_of
+from rocking.excitation.pulses import AbstractPulse
 from rocking.interpolation.kernel import (
     BLOCK,
     INTERPOLATED,
@@ -57,15 +58,15 @@ class Cube:
 
     Attributes
     ----------
-    pulse : str
-        Name of the pulse.
+    pulse : str or AbstractPulse
+        Name of the pulse; the pulse itself if it is given by samples.
     restitutions : float array
         Restitutions of the cubes, ascending [-].
     slice_at : callable
         Returns the cube of a restitution by its index, read when first needed; None if it cannot be used.
     """
 
-    pulse: str
+    pulse: str | AbstractPulse
     restitutions: Array
     slice_at: Callable[[int], CubeSlice | None]
 
@@ -321,7 +322,7 @@ def _response(found: Found) -> BoundedResponse:
     )
 
 
-def _solve(pulse: str, points: Points, threads: int | None, stop: StopFlag | None) -> BoundedResponse:
+def _solve(pulse: str | AbstractPulse, points: Points, threads: int | None, stop: StopFlag | None) -> BoundedResponse:
     return solve_with_bound(
         pulse,
         slenderness=points.slenderness,

@@ -71,13 +71,14 @@ NUMBERS: dict[str, Any] = {
     "stiffness": 500.0, "restoring": 100.0, "load": 200.0,
     "uplift_acceleration": 2.0, "radius": 4.0, "thickness": 0.6, "embrace": 2.7, "voussoirs": 8,
     "amplitude": 4.0, "time": 0.5, "velocity": 0.5, "rotation": 0.5, "scaled": 0.5, "impact_time": 1.5,
-    "falling": 1.0, "growing": 0.5, "constant": 0.2, "most": 2, "impacts": 1,
+    "phi": [0.5, 7.0], "falling": 1.0, "growing": 0.5, "constant": 0.2, "most": 2, "impacts": 1,
     "start_phase": 1.0, "impact_phase": 3.0, "impact_velocity": 0.5,
     "exponents": {"a_g/g": 1, "alpha": -2}, "largest": 2, "cos_alpha": math.cos(0.3),
 }  # fmt: skip
 """Ordinary values of the parameters of Python by their names."""
 
 WINDOWS: dict[str, Any] = {
+    "rocking.SampledPulse": {"time": [0.0, 1.0, 2.0, 4.0]},
     "rocking.overturning_boundary": {"frequency_ratio": (2.0, 3.0), "slenderness": (0.3, 0.6)},
     "rocking.Block.boundary": {"period": (0.5, 0.6)},
     "rocking.closed_form.overturning_interval": {"amplitude": (2.0, 4.0)},
@@ -99,7 +100,7 @@ OBJECTS: dict[str, Any] = {
 OF_PULSES, OF_RECORDS = ("peak_acceleration", "period"), ("scale",)
 """Numbers of `Block.response` and `Block.history` that belong to one kind of excitation."""
 
-MADE = (rocking.Block, rocking.EquivalentBlock, rocking.Record, Groups, Problem)
+MADE = (rocking.Block, rocking.EquivalentBlock, rocking.Record, rocking.SampledPulse, Groups, Problem)
 """Classes that are made from numbers."""
 
 MEASURES = [name for kind in (rocking.Record, rocking.Block) for name in dir(kind) if not name.startswith("_")]
@@ -135,6 +136,7 @@ VARIANTS = (
 
 MOTION = [round(math.sin(0.5 * k) * math.sin(0.05 * k), 6) for k in range(60)]
 SAMPLES = "acceleration [m/s2]\n" + "".join(f"{4.0 * value:.6f}\n" for value in MOTION)
+PULSE = {"acceleration": [0.0, 1.0, -0.5, 0.0], "time": [0.0, 1.0, 2.0, 4.0], "period": 2.0}
 SUITE: dict[str, Any] = {
     "name": "extreme",
     "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
@@ -173,11 +175,17 @@ ENCODERS: dict[str, Callable[[Any], str]] = {
     "text/plain": lambda body: "".join(f"{body['scale'] * value}\n" for value in MOTION[:20]) + f"{body['last']}\n",
 }
 GROUPS = {"slenderness": [0.4, 0.5], "frequency_ratio": [5.0, 3.0], "restitution": [0.85, 0.9]}
+UNDER_SAMPLES = {"pulse": PULSE, "restitution": 0.85, "alpha_deg": 5.0}
 BODIES: dict[str, dict[str, Any]] = {
     "/v1/response": {
         "application/json": {"pulse": "sine", **GROUPS, "alpha_deg": 5.0, "tolerance": 1e-4},
         "text/csv": GROUPS,
     },
+    "/v1/spectrum": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "points": 20}},
+    "/v1/history": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "frequency_ratio": 3.0, "duration": 20.0}},
+    "/v1/map": {"application/json": UNDER_SAMPLES | {"columns": 4, "rows": 4, "slenderness_min": 0.3}},
+    "/v1/overturning": {"application/json": UNDER_SAMPLES},
+    "/v1/critical_amplitude": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest_amplitude": 10.0}},
     "/v1/blocks/response": {
         "application/json": {"blocks": [BLOCK_COLUMNS | {"restitution": 0.85}]},
         "text/csv": {
@@ -266,6 +274,7 @@ def walk_python(walk: Walk, results: Path) -> None:
         if value in MADE or (inspect.isfunction(value) and value.__module__ != "rocking.errors")
     }
     objects = {"Block": BLOCK, "EquivalentBlock": equivalent, "Record": RECORD, "Cube": cube, "PulseFit": fit}
+    objects["SampledPulse"] = rocking.SampledPulse(**PULSE)
     for name, thing in objects.items():
         members = {key: getattr(thing, key) for key in dir(thing) if key not in UNUSED}
         functions |= {f"rocking.{name}.{key}": value for key, value in members.items() if inspect.ismethod(value)}

@@ -100,6 +100,9 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     fleet = re.search(r"```text\n(name,.*?)```", (DOCS / "howto/fleet.md").read_text(), re.DOTALL)
     assert fleet
     Path("fleet.csv").write_text(fleet[1])
+    hammer = re.search(r"```text\n(time .*?)```", (DOCS / "howto/pulse.md").read_text(), re.DOTALL)
+    assert hammer
+    Path("hammer.csv").write_text(hammer[1])
     pages = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md"))]
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]

@@ -26,7 +26,10 @@ from rocking_api.http.memory_budget import Reservation
 from rocking_api.http.number_columns import GROUPS, Columns, check_columns, cut_arrays, parse_array, parse_csv
 from rocking_api.models.metadata import METADATA_URL
 from rocking_api.models.params import BatchParams, LookupOptions, check_value
+from rocking_api.models.pulses import sampled_pulse, with_samples
 from rocking_api.models.responses import VERSION, columns_of
+
+_BODY, _OPTIONS = with_samples(BatchParams), with_samples(LookupOptions)
 
 TURN_BYTES = 64 * 1024
 """Bytes of a body that arrive without waiting for other bodies.
@@ -172,7 +175,7 @@ def _number(name: str, text: str) -> float:
 
 def _read_json(body: bytes, max_points: int, stop: StopFlag) -> tuple[Columns, LookupOptions]:
     rest, arrays = cut_arrays(body)
-    params = BatchParams.model_validate_json(rest)
+    params = _BODY.model_validate_json(rest)
     columns = {}
     for name in GROUPS:
         value = getattr(params, name)
@@ -180,7 +183,9 @@ def _read_json(body: bytes, max_points: int, stop: StopFlag) -> tuple[Columns, L
             columns[name] = parse_array(name, body, arrays[name], max_points, stop)
         else:
             columns[name] = np.atleast_1d(np.array(value, dtype=np.float64))
-    return columns, LookupOptions(**{name: getattr(params, name) for name in LookupOptions.model_fields})
+    options = {name: getattr(params, name) for name in LookupOptions.model_fields}
+    kind = LookupOptions if sampled_pulse(params) is None else _OPTIONS
+    return columns, kind.model_construct(**options)  # validated
 
 
 def _read_netcdf(body: bytes, max_points: int) -> Columns:

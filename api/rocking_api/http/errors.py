@@ -244,6 +244,12 @@ def _of_validation(
     name = where[0] if where else "body"  # the rest is the position in an array
     if len(place) > 2 and isinstance(place[1], int):  # in an array of objects
         name = f"{name}[{place[1]}].{place[2]}"
+    if where[:2] == ["pulse", "samples"]:  # the second is the tag of the alternative
+        name = "pulse" + "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place[2:])
+        own = context.get("error")
+        if isinstance(own, InvalidArgumentError):
+            name += f".{own.parameter}" + "".join(f"[{index}]" for index in own.index)
+            return _Refusal(str(InvalidArgumentError(name, own.value, own.allowed)), name, own.value, own.allowed)
     if kind == "missing":
         return _Refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
     if kind == "extra_forbidden":

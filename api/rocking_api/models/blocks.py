@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
 from rocking.constants import STANDARD_GRAVITY
 from rocking.errors import in_range
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Method, Params, PulseName, TableFormat, Tolerance, check_value
+from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, PointResponse
 
 RANGES = {
@@ -78,7 +79,7 @@ class BlockParams(Params):
 class BlocksParams(Params):
     """What many blocks in a body have in common."""
 
-    pulse: PulseName
+    pulse: PulseName | None = Field(None, description="pulse, required unless a JSON body holds it", examples=["sine"])
     restitution: HousnerOrNumber = Field(
         "housner", description="eta [-] of the blocks that state none, or housner: (2.4), 0 where that is negative"
     )
@@ -104,12 +105,13 @@ class BlockRows(Params):
     """Many blocks in a JSON body."""
 
     blocks: list[BlockRow] = Field(description="blocks, in the order of the response")
+    pulse: GivenPulse | None = Field(None, description="a pulse by its name, or by samples; absent: that of the query")
 
 
 class BlocksResponse(BaseModel):
     """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
 
-    query: BlocksParams = QUERY
+    query: SerializeAsAny[BlocksParams] = QUERY
     name: list[str] | None = Field(None, description="labels; null without any")
     half_width: list[float] = Field(description="b [m]")
     half_height: list[float] = Field(description="h [m]")

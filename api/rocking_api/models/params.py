@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_names
+from rocking.excitation.pulses import PULSE_NAMES, as_pulse, pulse_names
 from rocking.model import parameters
 from rocking.model.checks import check
 from rocking.model.parameters import RESTITUTION, Parameter
@@ -203,7 +203,7 @@ def alpha_of(alpha_deg: float | None) -> float | None:
 
 
 _CHECKS: dict[str, Callable[[Any], object]] = {
-    "pulse": get_pulse,
+    "pulse": as_pulse,
     "slenderness": partial(check, SLENDERNESS),
     "frequency_ratio": partial(check, FREQUENCY_RATIO),
     "restitution": partial(check, RESTITUTION),

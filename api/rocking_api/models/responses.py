@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, SerializeAsAny
 
 from rocking.model.fields import (
     COLUMN_FIELDS,
@@ -104,7 +104,7 @@ class Curve(BaseModel):
 class OverturningResponse(BaseModel):
     """The boundary curves of a pulse and a restitution."""
 
-    query: OverturningParams = QUERY
+    query: SerializeAsAny[OverturningParams] = QUERY
     curves: list[Curve] = Field(description="boundary curves")
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
@@ -148,7 +148,7 @@ class Motion(BaseModel):
 class HistoryResponse(Motion):
     """A motion under a pulse."""
 
-    query: HistoryParams = QUERY
+    query: SerializeAsAny[HistoryParams] = QUERY
     tau: list[float] = Field(description="time p t from the start of the pulse [-]")
     metadata_url: str = METADATA_URL_FIELD
 

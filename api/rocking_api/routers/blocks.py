@@ -33,6 +33,7 @@ from rocking_api.models.blocks import (
     Threshold,
 )
 from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
+from rocking_api.models.pulses import with_samples
 from rocking_api.models.responses import PointResponse, finite, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -91,19 +92,25 @@ async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request
     form = negotiated_form(request, params.format, _FORMS, default=given)
     params.check()
     body = await service.read_body(request, MAX_BODY)
-    table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)
-    return await service.run_heavy(params, lambda stop: _blocks(service, params, table, form, stop), request)
+    query, table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)
+    return await service.run_heavy(query, lambda stop: _blocks(service, query, table, form, stop), request)
 
 
-def _read_table(body: bytes, given: str, params: BlocksParams) -> BlockTable:
-    """The blocks of a body, each checked."""
-    if given == "csv":
+def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksParams, BlockTable]:
+    """The parameters with the pulse of the body, and its blocks, each checked."""
+    rows = None if given == "csv" else BlockRows.model_validate_json(body)
+    if rows is not None and rows.pulse is not None:
+        if params.pulse is not None:
+            raise InvalidArgumentError("pulse", params.pulse, "either in the query or in the body")
+        params = with_samples(BlocksParams).model_construct(**dict(params) | {"pulse": rows.pulse})
+    if params.pulse is None:
+        raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
+    if rows is None:
         text = body.decode("utf-8-sig", "replace")
         _check_count(text.count("\n"))
         table = read_table(text, params.pulse, params.restitution)
     else:
-        rows = BlockRows.model_validate_json(body).blocks
-        _check_count(len(rows))
+        _check_count(len(rows.blocks))
         problems = [
             BlockProblem(
                 Block(row.half_width, row.half_height),
@@ -112,9 +119,9 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> BlockTable:
                 row.pulse_period,
                 params.restitution if row.restitution is None else row.restitution,
             )
-            for row in rows
+            for row in rows.blocks
         ]
-        names = [row.name for row in rows]
+        names = [row.name for row in rows.blocks]
         table = BlockTable(problems, names if any(names) else [])
     if not table.problems:
         raise InvalidArgumentError("blocks", "none", "at least one block")
@@ -128,7 +135,7 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> BlockTable:
         ):
             low, high, unit = RANGES[name]
             in_range(name, value, low, high, unit=unit)
-    return table
+    return params, table
 
 
 def _check_count(count: int) -> None:

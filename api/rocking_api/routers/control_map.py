@@ -34,6 +34,7 @@ from rocking_api.models.params import (
     Slenderness,
     alpha_of,
 )
+from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import BY_SOLVER, OUTCOMES, QUERY, VERSION_FIELD
 from rocking_api.service import Service, ServiceDep
 
@@ -85,15 +86,31 @@ class MapResponse(BaseModel):
 )
 async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
-    form = negotiated_form(request, params.format)
-    axes = _axes(service, params)
-    answer = await service.run_heavy(params, lambda stop: _map(params, *axes, form, stop), request)
+    answer = await _answer(params, request, service)
     digest = hashlib.sha256(answer.body).hexdigest()
     known = not_modified(request, digest)
     response = answer if known is None else known
     response.headers["ETag"] = f'"{digest}"'
     response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
     return response
+
+
+@router.post(
+    "/map",
+    summary="Outcome and peak rotation over a window, under a pulse given by samples",
+    response_model=MapResponse,
+    responses=CONTENT,
+    openapi_extra=body_of(MapParams),
+)
+async def post_map(request: Request, service: ServiceDep) -> Response:
+    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+    return await _answer(await service.read_params(MapParams, request), request, service)
+
+
+async def _answer(params: MapParams, request: Request, service: Service) -> Response:
+    form = negotiated_form(request, params.format)
+    axes = _axes(service, params)
+    return await service.run_heavy(params, lambda stop: _map(params, *axes, form, stop), request)
 
 
 def _map(

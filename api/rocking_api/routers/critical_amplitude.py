@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, SerializeAsAny
 
 from rocking._numba.cancellation import StopFlag
 from rocking.boundary.amplitude import Thresholds, critical_amplitude
@@ -13,6 +13,7 @@ from rocking.model.response import Outcome
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
+from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD
 from rocking_api.service import ServiceDep
 
@@ -49,7 +50,7 @@ class AmplitudeThreshold(BaseModel):
 class AmplitudeResponse(BaseModel):
     """All amplitudes at which the outcome changes."""
 
-    query: AmplitudeParams = QUERY
+    query: SerializeAsAny[AmplitudeParams] = QUERY
     thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
     largest_safe_amplitude: float | None = Field(
         description="amplitude below which the block does not overturn [-]; null: no overturning was found"
@@ -68,6 +69,16 @@ async def get_critical_amplitude(
     Where a block of restitution 1 overturns after more than 200 impacts, they are accurate to 1e-6.
     """
     return await service.run_heavy(params, lambda stop: _answer(params, stop), request)
+
+
+@router.post(
+    "/critical_amplitude",
+    summary="Amplitudes at which the outcome of a block changes, under a pulse given by samples",
+    openapi_extra=body_of(AmplitudeParams),
+)
+async def post_critical_amplitude(request: Request, service: ServiceDep) -> AmplitudeResponse:
+    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+    return await get_critical_amplitude(await service.read_params(AmplitudeParams, request), request, service)
 
 
 def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:

@@ -14,6 +14,7 @@ from rocking_api.http.encoding import CONTENT, csv_response, json_response, nego
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import HistoryParams, alpha_of
+from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import ContactResponse, HistoryResponse, finite
 from rocking_api.service import ServiceDep
 
@@ -30,6 +31,18 @@ async def get_history(params: Annotated[HistoryParams, Query()], request: Reques
         raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
     form = negotiated_form(request, params.format)
     return await service.run_heavy(params, lambda stop: _history(params, form, stop), request)
+
+
+@router.post(
+    "/history",
+    summary="Motion of one block under a pulse given by samples",
+    response_model=HistoryResponse,
+    responses=CONTENT,
+    openapi_extra=body_of(HistoryParams),
+)
+async def post_history(request: Request, service: ServiceDep) -> Response:
+    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+    return await get_history(await service.read_params(HistoryParams, request), request, service)
 
 
 def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:

@@ -20,6 +20,7 @@ from rocking_api.execution.executor import TimeLimitError
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import OverturningParams, alpha_of
+from rocking_api.models.pulses import body_of, sampled_pulse
 from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
 from rocking_api.service import Service, ServiceDep
 
@@ -49,8 +50,21 @@ async def get_overturning(
         return await service.run_heavy(params, lambda stop: _overturning(service, params, form, stop), request)
     except TimeLimitError as error:
         given = params.model_dump(include={"pulse", "restitution", "alpha_deg"}, exclude_none=True)
-        instead = f"ask for the outcomes on a grid, /v1/map?{urlencode(given)}, or for another restitution"
+        where = f"/v1/map?{urlencode(given)}" if sampled_pulse(params) is None else "POST /v1/map"
+        instead = f"ask for the outcomes on a grid, {where}, or for another restitution"
         raise TimeLimitError(error.seconds, instead) from None
+
+
+@router.post(
+    "/overturning",
+    summary="Boundary curves of a pulse given by samples",
+    response_model=OverturningResponse,
+    responses=CONTENT,
+    openapi_extra=body_of(OverturningParams),
+)
+async def post_overturning(request: Request, service: ServiceDep) -> Response:
+    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+    return await get_overturning(await service.read_params(OverturningParams, request), request, service)
 
 
 def _overturning(service: Service, params: OverturningParams, form: str, stop: StopFlag) -> Response:
@@ -75,6 +89,8 @@ def _overturning(service: Service, params: OverturningParams, form: str, stop: S
 
 def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | None, str | None]:
     """The curves for the parameters from the data set, and its sha256; None if there are none."""
+    if sampled_pulse(params) is not None:
+        return None, None
     # a mirrored pulse overturns the same blocks
     name = f"overturning/{params.pulse.removeprefix('-')}/eta-{params.restitution:.2f}"
     catalogue = service.cubes.catalogue
@@ -97,7 +113,8 @@ def _traced(service: Service, params: OverturningParams, stop: StopFlag) -> xr.D
         For a nearly elastic block, before the time limit of the request.
     """
     pulse, eta, alpha = params.pulse, params.restitution, alpha_of(params.alpha_deg)
-    kept = _kept(pulse, eta, alpha)
+    sampled = sampled_pulse(params)
+    kept = _kept(pulse if sampled is None else (sampled.name, sampled.digest), eta, alpha)
     if not kept:
         seconds = service.settings.max_seconds * (ELASTIC_SHARE if alpha and eta > NEARLY_ELASTIC else 1.0)
         curves = run_with_timeout(
@@ -112,7 +129,7 @@ def _traced(service: Service, params: OverturningParams, stop: StopFlag) -> xr.D
 
 
 @lru_cache(maxsize=MAX_KEPT)
-def _kept(_pulse: str, _restitution: float, _alpha: float | None) -> list[xr.Dataset]:
+def _kept(_pulse: str | tuple[str, str], _restitution: float, _alpha: float | None) -> list[xr.Dataset]:
     """The cache entry of traced curves, empty at first."""
     return []
 
@@ -124,8 +141,8 @@ def _names(curves: xr.Dataset) -> NDArray[np.str_]:
 def _curves(curves: xr.Dataset) -> list[Curve]:
     ends = np.cumsum(curves["row_size"].values)
     parts = zip(
-        np.split(curves["slenderness"].values, ends[:-1]),
-        np.split(curves["frequency_ratio"].values, ends[:-1]),
+        np.split(curves["slenderness"].values, ends)[:-1],
+        np.split(curves["frequency_ratio"].values, ends)[:-1],
         _names(curves).tolist(),
         curves["impacts"].values.tolist(),
         strict=True,

@@ -12,7 +12,8 @@ from rocking_api.http.batch import Batch, batch_response, body_form, read_batch
 from rocking_api.http.encoding import CONTENT, MEDIA_TYPES, Form, negotiated_form
 from rocking_api.http.memory_budget import reservation_of
 from rocking_api.http.params_route import ParamsRoute, query_parameters
-from rocking_api.models.params import ResponseParams
+from rocking_api.models.params import BatchParams, ResponseParams
+from rocking_api.models.pulses import schema_of
 from rocking_api.models.responses import BatchResponse, PointResponse, point_response
 from rocking_api.service import Service, ServiceDep
 
@@ -49,7 +50,7 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
             "required": True,
             "content": {
                 MEDIA_TYPES["json"]: {
-                    "schema": {"$ref": "#/components/schemas/BatchParams"},
+                    "schema": schema_of(BatchParams),
                     "example": {
                         "pulse": "sine",
                         "slenderness": [0.4, 0.2, 1.2],

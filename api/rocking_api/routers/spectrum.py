@@ -16,6 +16,7 @@ from rocking_api.http.encoding import CONTENT, csv_stream, dataset_of, json_resp
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import FREQUENCY_RATIO, SpectrumParams
+from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import SpectrumResponse, columns_of
 from rocking_api.service import Service, ServiceDep
 
@@ -32,6 +33,18 @@ async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Requ
     return await service.run_heavy(
         params, lambda stop: _spectrum(service, params, frequency_ratio, form, stop), request
     )
+
+
+@router.post(
+    "/spectrum",
+    summary="Peak rotation against frequency ratio, under a pulse given by samples",
+    response_model=SpectrumResponse,
+    responses=CONTENT,
+    openapi_extra=body_of(SpectrumParams),
+)
+async def post_spectrum(request: Request, service: ServiceDep) -> Response:
+    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+    return await get_spectrum(await service.read_params(SpectrumParams, request), request, service)
 
 
 def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:

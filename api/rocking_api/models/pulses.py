@@ -1,0 +1,113 @@
+"""A pulse given by samples in a JSON body, in place of a name: the models of bodies derive from those of queries."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Annotated, Any, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    PlainSerializer,
+    Tag,
+    computed_field,
+    create_model,
+)
+
+from rocking.excitation.sampled import SampledPulse
+from rocking_api.models.params import Params, PulseName
+
+P = TypeVar("P", bound=Params)
+
+MAX_SAMPLES = 10_000
+"""Most samples of a pulse over HTTP [-]: some milliseconds for the parser, and for each block."""
+
+MAX_BODY = 500_000
+"""Largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits."""
+
+EXAMPLE = {"acceleration": [0.0, 1.0, 0.0], "name": "triangle"}
+"""A triangle."""
+
+Samples = Annotated[list[float], Field(min_length=2, max_length=MAX_SAMPLES, fail_fast=True)]
+
+
+class PulseSamples(BaseModel):
+    """A pulse of any shape: linear between samples, zero outside, scaled to the peak 1."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    acceleration: Samples = Field(description="ground acceleration at the samples, in any unit")
+    time: Samples | None = Field(None, description="their times, ascending, in any unit; absent: equidistant")
+    period: float | None = Field(
+        None,
+        description="T_p in the unit of the times, which frequency_ratio and pulse_period refer to; absent: the time "
+        "from the first sample to the last",
+    )
+    name: str = Field("sampled", description="name that the response repeats", min_length=1, max_length=200)
+
+
+def _made(samples: PulseSamples) -> SampledPulse:
+    return SampledPulse(**dict(samples))
+
+
+def _tag(value: Any) -> str:
+    return "name" if isinstance(value, str) else "samples"
+
+
+GivenPulse = Annotated[
+    Annotated[PulseName, Tag("name")] | Annotated[PulseSamples, AfterValidator(_made), Tag("samples")],
+    Discriminator(_tag),
+    PlainSerializer(lambda pulse: pulse if isinstance(pulse, str) else pulse.name, return_type=str),
+    Field(description="a pulse by its name, or by samples"),
+]
+
+
+def sampled_pulse(params: Params) -> SampledPulse | None:
+    """The pulse of some parameters if it is given by samples."""
+    pulse = getattr(params, "pulse", None)
+    return pulse if isinstance(pulse, SampledPulse) else None
+
+
+class _WithDigest(Params):
+    """What a response repeats of a pulse given by samples, beside its name."""
+
+    @computed_field(description="sha256 of the samples; null for a pulse by its name")  # type: ignore[prop-decorator]
+    @property
+    def pulse_digest(self) -> str | None:
+        pulse = sampled_pulse(self)
+        return None if pulse is None else pulse.digest
+
+
+@cache
+def with_samples(kind: type[P]) -> type[P]:
+    """The model of a body with the fields of `kind`, whose pulse may be given by samples: a `SampledPulse` then."""
+    bases: Any = (_WithDigest, kind)
+    model: type[P] = create_model(
+        f"{kind.__name__}WithSamples",
+        __base__=bases,
+        __doc__=f"{kind.__doc__} The pulse has a name, or is given by samples.",
+        pulse=(GivenPulse, ...),
+    )
+    return model
+
+
+BODIES: set[type[Params]] = set()
+"""The models of bodies to which the descriptions of routes refer."""
+
+
+def schema_of(kind: type[Params]) -> dict[str, str]:
+    """The reference to the model of a body with the fields of `kind`."""
+    body = with_samples(kind)
+    BODIES.add(body)
+    return {"$ref": f"#/components/schemas/{body.__name__}"}
+
+
+def body_of(kind: type[Params]) -> dict[str, Any]:
+    """The description of a route whose JSON body has the fields of `kind`."""
+    required = {name: field.examples for name, field in kind.model_fields.items() if field.is_required()}
+    example = {name: examples[0] for name, examples in required.items() if examples} | {"pulse": EXAMPLE}
+    content = {"application/json": {"schema": schema_of(kind), "example": example}}
+    return {"requestBody": {"required": True, "content": content}}
