@@ -17,6 +17,7 @@ from pydantic import (
     ConfigDict,
     PlainValidator,
     ValidationError,
+    ValidationInfo,
     create_model,
     model_validator,
 )
@@ -25,6 +26,7 @@ from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import PULSE_NAMES
 from rocking.spectra.bands import HALO_ABOVE, HALO_BELOW, bands
 from rocking.suites.configuration import suite_configuration
+from workflow.pulses import configured_pulse, different
 from workflow.scripts.axes import steps_between
 
 HALO = HALO_BELOW + HALO_ABOVE
@@ -234,12 +236,25 @@ FIGURES = section(
     }
 )
 
+
+def _pulse(value: Any, info: ValidationInfo) -> Any:
+    """A pulse by its name, or made from samples; paths are relative to the context `folder`."""
+    try:
+        return configured_pulse(value, (info.context or {}).get("folder", Path()))
+    except InvalidArgumentError as error:
+        raise ValueError(str(error) if isinstance(value, dict) else f"allowed: {error.allowed}") from None
+
+
+def _by_name(pulses: list[Any]) -> dict[str, Any]:
+    return {**different(pulses)}
+
+
 OPTIONAL = {"tile_rows": integer(1, NODES)}
 """Rows of the spectrum cubes that one job computes; the products do not depend on it."""
 
 DATA_SETS = {
     "title": leaf("a text", lambda value: isinstance(value, str)),
-    "pulses": PULSE_LIST,
+    "pulses": Annotated[several(Annotated[Any, PlainValidator(_pulse)]), AfterValidator(_by_name)],
     "restitution": Annotated[several(ETA, ascending=True), AfterValidator(_two_decimals)],
     "grid": section(
         alpha_deg=Annotated[several(number(0.01, 89, zero=True), ascending=True), AfterValidator(_with_slender_limit)],
@@ -282,7 +297,7 @@ def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
         return
     of_paper = not PAPER.keys().isdisjoint(config)
     try:
-        section(OPTIONAL, **DATA_SETS, **(PAPER if of_paper else {})).model_validate(config)
+        section(OPTIONAL, **DATA_SETS, **(PAPER if of_paper else {})).model_validate(config, context={"folder": folder})
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key, value = ".".join(map(str, first["loc"])) or "configuration", first["input"]
@@ -367,7 +382,7 @@ def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
     """Figures that need data which the configuration does not compute."""
     for figure, pulses in DATA_OF_FIGURES.items():
         values = chosen(config, figure)
-        for pulse in set(pulses) - set(config["pulses"]):
+        for pulse in set(pulses) - {entry for entry in config["pulses"] if isinstance(entry, str)}:
             yield f"pulses = {config['pulses']}: {figure} needs {pulse}"
         for name, given, made in (
             ("restitution", restitutions(config, figure), config["restitution"]),

@@ -66,8 +66,10 @@ def build_cubes(folder: Path, config: dict[str, Any], scales: tuple[float, ...])
         parts.append(folder / f"{PULSE}-{angle:g}.nc")
         nodes = window["nodes_rigid"] if angle else window["nodes"]
         axis = {name: window[name] for name in ("slenderness", "frequency_ratio")}
-        overturning_part.main(pulse=PULSE, restitution=eta, alpha_deg=angle, nodes=nodes, **axis, part=parts[-1])
-    overturning.main(pulse=PULSE, restitution=eta, parts=parts, boundaries=[curves], provenance={})
+        overturning_part.main(
+            pulse=PULSE, samples=[], restitution=eta, alpha_deg=angle, nodes=nodes, **axis, part=parts[-1]
+        )
+    overturning.main(pulse=PULSE, samples=[], restitution=eta, parts=parts, boundaries=[curves], provenance={})
     boundary, angles = read_dataset(curves), [math.radians(angle) for angle in ANGLES]
     for scale in scales:
         plane = axes(config, scale)

@@ -14,13 +14,15 @@ restitution_error     f4   largest error halfway to the next restitution, measur
 alpha_error           f4   largest error halfway to the next angle, measured in the same cells
 ====================  ===  =====================================================================================
 
-with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. Files follow CF-1.11 and
-ACDD-1.3. They contain no time of creation, so equal content gives equal bytes, and a digest of their values.
+with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. A file of a pulse given by
+samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of
+creation, so equal content gives equal bytes, and a digest of their values.
 """
 
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import tempfile
 from collections.abc import Mapping
@@ -34,7 +36,8 @@ from numpy.typing import ArrayLike
 from rocking.datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking.datasets.netcdf import open_netcdf, write_netcdf
 from rocking.errors import DatasetError
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse, pulse_number
+from rocking.excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
+from rocking.excitation.sampled import SampledPulse
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking.model.fields import CUBE_FIELDS
 from rocking.model.parameters import FREQUENCY_RATIO, SLENDERNESS
@@ -53,6 +56,13 @@ AXES: dict[str, dict[str, Any]] = {
     "frequency_ratio": {"units": "1", "long_name": FREQUENCY_RATIO.label, "equation": "3.6"},
 }
 """Attributes of the axes of a spectrum cube."""
+
+SAMPLES = {
+    "pulse_phase": {"units": "rad", "long_name": "phase of a sample of the pulse"},
+    "pulse_shape": {"units": "1", "long_name": "ground acceleration over its peak at a sample of the pulse",
+                    "comment": "linear between the samples"},
+}  # fmt: skip
+"""Coordinates of a data set of a pulse given by samples, with their attributes."""
 
 MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
 """Attributes of every dimensionless variable that a model computed."""
@@ -111,7 +121,7 @@ _GLOBAL = {
 
 
 def build_spectrum_dataset(
-    variables: Mapping[str, ArrayLike], *, pulse: str, restitution: float, axes: Mapping[str, ArrayLike]
+    variables: Mapping[str, ArrayLike], *, pulse: str | SampledPulse, restitution: float, axes: Mapping[str, ArrayLike]
 ) -> xr.Dataset:
     """Assemble a spectrum cube.
 
@@ -119,45 +129,76 @@ def build_spectrum_dataset(
     ----------
     variables : mapping
         The arrays named in `VARIABLES`, each of shape (alpha, slenderness, frequency_ratio).
-    pulse : str
-        Name of the pulse.
+    pulse : str or SampledPulse
+        Name of the pulse, or a pulse given by samples.
     restitution : float
         eta [-], [0, 1].
     axes : mapping
         alpha [rad], slenderness [-] and frequency_ratio [-], ascending.
     """
+    name = as_pulse(pulse).name
     cube = xr.Dataset(
         {
-            name: (DIMENSIONS, np.asarray(variables[name], dtype=dtype), {**MODEL_RESULT, **attributes})
-            for name, (dtype, attributes) in VARIABLES.items()
+            key: (DIMENSIONS, np.asarray(variables[key], dtype=dtype), {**MODEL_RESULT, **attributes})
+            for key, (dtype, attributes) in VARIABLES.items()
         },
-        coords={name: (name, np.asarray(axes[name], dtype="f8"), AXES[name]) for name in DIMENSIONS},
+        coords={key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS},
     )
     return describe(
         cube.assign_coords(scalar_coordinates(pulse, restitution)),
-        title=f"Rocking spectrum of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
+        title=f"Rocking spectrum of the rigid block under the {name} pulse, restitution {restitution:.2f}",
         summary="Peak rotation and outcome of a free-standing rigid block over dimensionless slenderness and frequency "
         "ratio, solved event by event, with the measured error of interpolating between the nodes.",
         history="rocking.spectra.cubes.spectrum",
-        id=f"spectra/{pulse}/eta-{restitution:.2f}",
+        id=f"spectra/{name}/eta-{restitution:.2f}",
     )
 
 
-def scalar_coordinates(pulse: str, restitution: float) -> dict[str, xr.Variable]:
-    """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set."""
-    number, names = pulse_number(pulse), PULSE_NAMES if pulse in PULSE_NAMES else (*PULSE_NAMES, "registered")
+def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[str, xr.Variable]:
+    """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set.
+
+    A pulse given by samples has a flag of its own, its digest in an attribute, and the coordinates `SAMPLES`.
+    """
+    shape = as_pulse(pulse)
+    samples: dict[str, xr.Variable] = {}
+    named = {
+        "long_name": "shape of the ground acceleration",
+        "units": "1",
+        "pulse_name": shape.name,
+        "phase_window": np.array([shape.start, shape.end]),
+    }
+    number, names = pulse_number(shape.name), PULSE_NAMES
+    if isinstance(shape, SampledPulse):
+        number, named["pulse_digest"] = -1, shape.digest
+        arrays = dict(zip(SAMPLES, (shape.phases, shape.values), strict=True))
+        samples = {key: xr.Variable("pulse_sample", arrays[key], about) for key, about in SAMPLES.items()}
+    if number < 0:
+        names = (*names, "sampled" if samples else "registered")
     flags = {
         "flag_values": np.array([pulse_number(name) for name in names], dtype=np.int8),
         "flag_meanings": " ".join(names),
     }
-    shape = get_pulse(pulse)
-    window = np.array([shape.start, shape.end])
-    named = {"long_name": "shape of the ground acceleration", "units": "1", "pulse_name": pulse, "phase_window": window}
     eta = {"long_name": "coefficient of restitution eta", "units": "1", "equation": "2.3"}
     return {
         "pulse": xr.Variable((), np.int8(number), named | flags),
         "restitution": xr.Variable((), np.float64(restitution), eta),
+        **samples,
     }
+
+
+def stored_pulse(dataset: xr.Dataset) -> str | SampledPulse:
+    """The pulse of a data set: its name, or the pulse made again from the stored samples.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the samples are none of a pulse.
+    """
+    name = str(dataset["pulse"].attrs["pulse_name"])
+    if not dataset.variables.keys() >= SAMPLES.keys():
+        return name
+    phases, values = (dataset[key].values for key in SAMPLES)
+    return SampledPulse(values, phases, 2.0 * math.pi, name)
 
 
 def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:

@@ -99,7 +99,9 @@ class SampledPulse(AbstractPulse):
         unit = duration
         if period is not None:
             unit = number("period", period, duration / MAX_RATIO, duration * MAX_RATIO, unit="-")
-        phases = 2.0 * math.pi * ((times - times[0]) / unit)
+        phases = times - times[0]
+        if unit != 2.0 * math.pi:  # phases are their own times: the same pulse again, to the last digit
+            phases = 2.0 * math.pi * (phases / unit)
         values = samples / largest
         for array in (phases, values):
             array.flags.writeable = False

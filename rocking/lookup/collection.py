@@ -220,7 +220,11 @@ class CubeCollection:
     def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
         try:
             cube = decode_slice(file.content(), file.name) if self._tables is None else self._tables.slice_of(file)
-            _check_content(file.name, (cube.pulse, cube.restitution), (pulse, restitution))
+            sampled = None if isinstance(cube.pulse, str) else cube.pulse
+            found = str(cube.pulse) if sampled is None else sampled.name
+            _check_content(file.name, (found, cube.restitution), (pulse, restitution))
+            if sampled is not None and sampled != as_pulse(pulse):
+                raise DatasetError(f"{file.name}: holds other samples than the pulse {pulse}; build it again")
         except DatasetError as error:
             return error
         return cube

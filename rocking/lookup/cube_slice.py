@@ -15,8 +15,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking.datasets.checksum import sha256_of
-from rocking.datasets.cube import AXES, decode_spectrum, read_content
+from rocking.datasets.cube import AXES, decode_spectrum, read_content, stored_pulse
 from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.excitation.sampled import SampledPulse
 from rocking.interpolation.cells import pack_cells
 from rocking.interpolation.stencils import STENCIL_SIZE, Mesh, slice_products
 from rocking.interpolation.strips import strips_of
@@ -34,8 +35,8 @@ class CubeSlice:
 
     Attributes
     ----------
-    pulse : str
-        Name of the pulse.
+    pulse : str or SampledPulse
+        Name of the pulse, or the pulse made again from the samples in the file.
     restitution : float
         eta of this cube [-].
     restitutions : float array
@@ -54,7 +55,7 @@ class CubeSlice:
         What is known of each cell; contiguous, may be read-only.
     """
 
-    pulse: str
+    pulse: str | SampledPulse
     restitution: float
     restitutions: Array
     alpha: Array
@@ -150,9 +151,10 @@ def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
     cube = decode_spectrum(content, path)
     try:
         Mesh.of(cube["slenderness"].values, cube["frequency_ratio"].values)
+        stored_pulse(cube)
     except InvalidArgumentError as error:
         raise DatasetError(f"{path}: {error}; build it again") from error
-    return pulse_of(cube), restitution_of(cube)
+    return str(cube["pulse"].attrs["pulse_name"]), restitution_of(cube)
 
 
 def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
@@ -161,22 +163,17 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
     Raises
     ------
     InvalidArgumentError
-        If an axis has fewer than four nodes.
+        If an axis has fewer than four nodes, or the samples of the pulse are none.
     """
     return CubeSlice.of(
         {name: cube[name].values for name in AXES},
-        pulse=pulse_of(cube),
+        pulse=stored_pulse(cube),
         restitution=restitution_of(cube),
         restitutions=restitutions_of(cube),
         sha256=sha256,
         peaks=strips_of(cube["peak_rotation"].values),
         cells=pack_cells(*(cube[name].values for name in CELL_VARIABLES)),
     )
-
-
-def pulse_of(cube: xr.Dataset) -> str:
-    """Name of the pulse of a spectrum cube."""
-    return str(cube["pulse"].attrs["pulse_name"])
 
 
 def restitution_of(cube: xr.Dataset) -> float:

@@ -18,12 +18,12 @@ import xarray as xr
 
 from rocking.datasets.catalogue import Catalogue, DataFile
 from rocking.datasets.checksum import sha256_of
-from rocking.datasets.cube import AXES, decode_spectrum
+from rocking.datasets.cube import AXES, SAMPLES, decode_spectrum, stored_pulse
 from rocking.datasets.shared_cache import SharedCache
 from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.interpolation.cells import CELL_RECORD, pack_cells
 from rocking.interpolation.strips import STRIP_SIZE, strip_count, strips_of
-from rocking.lookup.cube_slice import CELL_VARIABLES, CubeSlice, pulse_of, restitution_of, restitutions_of, slice_of
+from rocking.lookup.cube_slice import CELL_VARIABLES, CubeSlice, restitution_of, restitutions_of, slice_of
 
 LAYOUT = 2
 """Version of the content of a file of tables; to be increased when `_layout`, `pack_cells` or `CELL_RECORD` change."""
@@ -51,7 +51,9 @@ class PackedTables:
         self._catalogue = catalogue
 
     def slice_of(self, file: DataFile) -> CubeSlice:
-        """A cube over its file of tables, which is made if it is missing or damaged; in memory if that fails.
+        """A cube over its file of tables, which is made if it is missing or damaged.
+
+        In memory if that fails, and where the pulse is given by samples.
 
         Raises
         ------
@@ -76,6 +78,8 @@ class PackedTables:
         cube = decode_spectrum(content, file.name)
         del content
         try:
+            if cube.variables.keys() >= SAMPLES.keys():  # tables have no room for samples
+                return slice_of(cube, sha256)
             path = self._path(file, sha256)
             try:
                 with self._cache.replacing(path, _layout(cube).itemsize) as output:
@@ -111,7 +115,7 @@ def write_tables(file: IO[bytes], cube: xr.Dataset, sha256: str) -> None:
     for name in AXES:
         file.write(np.ascontiguousarray(cube[name].values).data)
     few = {"restitutions": restitutions_of(cube), "restitution": restitution_of(cube)}
-    text = {"pulse": pulse_of(cube), "sha256": sha256}
+    text = {"pulse": stored_pulse(cube), "sha256": sha256}
     for name, value in {**few, **text}.items():
         file.write(np.array(value, layout[name].base).tobytes())
     file.write(_digest(file, file.tell()))

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.datasets.cube import build_spectrum_dataset
+from rocking.excitation.sampled import SampledPulse
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking.model.checks import check, check_alpha
 from rocking.model.outcome_code import SURVIVES, outcome_codes
@@ -63,13 +64,13 @@ BATCH_SIZE = 12
 """Restitutions solved together: most of the saving of a shared first flight, for four times the memory of one."""
 
 
-def spectrum(pulse: str, *, restitution: float, **grid: Any) -> xr.Dataset:
+def spectrum(pulse: str | SampledPulse, *, restitution: float, **grid: Any) -> xr.Dataset:
     """The spectrum cube of one pulse and one coefficient of restitution; other arguments as for `spectra`."""
     return next(spectra(pulse, restitution=[restitution], **grid))
 
 
 def spectra(
-    pulse: str,
+    pulse: str | SampledPulse,
     *,
     restitution: ArrayLike,
     slenderness: ArrayLike,
@@ -83,8 +84,8 @@ def spectra(
 
     Parameters
     ----------
-    pulse : str
-        Name of the pulse.
+    pulse : str or SampledPulse
+        Name of the pulse, or a pulse given by samples.
     restitution : array_like, shape (l,)
         eta [-], [0, 1], ascending.
     slenderness : array_like, shape (n,), n >= 4
@@ -164,7 +165,7 @@ def _interval_starts(slices: Array, spacing: float) -> list[int]:
 class _Grid:
     """The pulse, and the plane of slenderness and frequency ratio on which it is solved."""
 
-    pulse: str
+    pulse: str | SampledPulse
     mesh: Mesh
     columns: Array
     threads: int | None
@@ -309,7 +310,7 @@ def _largest_error(layer: GridLayer, cells: Cells, places: Sequence[tuple[float,
 
 
 def _cube(
-    pulse: str,
+    pulse: str | SampledPulse,
     eta: float,
     axes: Mapping[str, Array],
     layers: Sequence[GridLayer],

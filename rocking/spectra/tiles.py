@@ -11,12 +11,13 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, check_file, read_slice
+from rocking.excitation.sampled import SampledPulse
 from rocking.spectra.bands import rows_with_halo
 from rocking.spectra.cubes import spectra
 
 
 def spectrum_tile(
-    pulse: str,
+    pulse: str | SampledPulse,
     band: tuple[int, int],
     *,
     restitution: ArrayLike,
@@ -28,8 +29,8 @@ def spectrum_tile(
 
     Parameters
     ----------
-    pulse : str
-        Name of the pulse.
+    pulse : str or SampledPulse
+        Name of the pulse, or a pulse given by samples.
     band : (int, int)
         First row of nodes, and the one after the last.
     restitution : array_like, shape (l,)
@@ -65,7 +66,7 @@ def spectrum_tile(
     return xr.Dataset({name: (dimensions, values) for name, values in variables.items()}, {"restitution": etas, **axes})
 
 
-def join_tiles(pulse: str, tiles: Sequence[Path]) -> Iterator[xr.Dataset]:
+def join_tiles(pulse: str | SampledPulse, tiles: Sequence[Path]) -> Iterator[xr.Dataset]:
     """The spectrum cubes of which files of tiles hold the bands, in ascending order; one for each restitution in turn.
 
     One restitution at a time is in memory.

@@ -16,7 +16,7 @@ from rocking.boundary.curves import curves_at
 from rocking.boundary.search import RESOLUTION, region_code
 from rocking.boundary.tracing import CHORD
 from rocking.closed_form import case_1_1_margin, case_1_2_margin, overturning_amplitudes
-from rocking.datasets.cube import read_dataset, read_spectrum
+from rocking.datasets.cube import read_dataset, read_spectrum, stored_pulse
 from rocking.model.outcome_code import outcome_codes
 from rocking.model.response import Outcome
 from rocking.solver.peak_response import peak_response
@@ -53,7 +53,7 @@ def test_cube_is_consistent_and_answers_as_the_solver_at_each_angle(name: str) -
     rows, columns = (np.linspace(0, n - 1, 12).astype(int) for n in cube.peak_rotation.shape[1:])
     part = cube.isel(slenderness=rows, frequency_ratio=columns)
     solved = peak_response(
-        cube.pulse.attrs["pulse_name"],
+        stored_pulse(cube),
         slenderness=part.slenderness.values[:, None],
         frequency_ratio=part.frequency_ratio.values,
         restitution=float(cube.restitution),
@@ -105,7 +105,7 @@ def _as_stated(curves: xr.Dataset, points: NDArray[np.intp], own: float, other: 
         distance = sign * np.array([[own], [-other]])
         outcomes = region_code(
             peak_response(
-                curves.pulse.attrs["pulse_name"],
+                stored_pulse(curves),
                 slenderness=curves.slenderness.values[points[unmet]] + along_slenderness * distance,
                 frequency_ratio=curves.frequency_ratio.values[points[unmet]]
                 * np.exp((1.0 - along_slenderness) * distance),

@@ -23,6 +23,7 @@ from workflow.configuration import (
     restitutions,
     tile_bands,
 )
+from workflow.pulses import configured_pulse, different, samples_file
 from workflow.run_lock import RUN_ID, RunningError, acquire
 
 from snakemake.exceptions import WorkflowError

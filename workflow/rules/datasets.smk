@@ -4,13 +4,23 @@
 ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
 ANGLES = {str(angle): angle for angle in config["grid"]["alpha_deg"]}
 BANDS = {f"{first}-{last}": (first, last) for first, last in tile_bands(config)}
-PULSES = config["pulses"]
+ENTRIES = [(configured_pulse(entry, CONFIG_FOLDER), entry) for entry in config["pulses"]]
+PULSES = list(different(pulse for pulse, _ in ENTRIES))
+# of the pulses given by samples: the file of the samples, which names their digest, and the entry of the configuration
+SAMPLES = {pulse.name: samples_file(pulse) for pulse, _ in ENTRIES if not isinstance(pulse, str)}
+SAMPLED = {pulse.name: entry for pulse, entry in ENTRIES if not isinstance(pulse, str)}
+
+
+def samples_of(wildcards):
+    """The file of the samples of a pulse; none for a pulse of the catalogue."""
+    return SAMPLES.get(wildcards.pulse, [])
 
 
 wildcard_constraints:
     pulse="[a-z0-9_]+",
     angle="|".join(map(re.escape, ANGLES)),
     band="|".join(BANDS),
+    samples="[0-9a-f]{16}",
 
 
 # the curves of one angle at all restitutions, of c2, which has the most
@@ -36,8 +46,36 @@ OVERTURNING_PROVENANCE = provenance(
 )
 
 
+for pulse, _ in ENTRIES:
+    if not isinstance(pulse, str):
+        for path in (*spectrum_files(pulse.name, ETAS), *overturning_files(pulse.name, ETAS)):
+            PRODUCTS[path]["pulse_sha256"] = pulse.digest
+
+
+rule samples:
+    output:
+        samples=f"{parts.FOLDER}/pulses/{{pulse}}.{{samples}}.json",
+    log:
+        "logs/pulses/{pulse}.{samples}.log",
+    benchmark:
+        "logs/benchmarks/pulses-{pulse}-{samples}.tsv"
+    localrule: True
+    resources:
+        mem_mb=memory(300),
+        runtime=10,
+    params:
+        pulse=lambda wildcards: SAMPLED[wildcards.pulse],
+        folder=str(CONFIG_FOLDER.resolve()),
+    message:
+        "Samples of the {wildcards.pulse} pulse"
+    script:
+        "../scripts/samples.py"
+
+
 # one job for each pulse and angle traces the curves of all restitutions, which share the grid
 rule overturning_part:
+    input:
+        samples=samples_of,
     output:
         part=temp(part_of("overturning/{pulse}-{angle}", OVERTURNING_PROVENANCE)),
     log:
@@ -64,6 +102,7 @@ rule overturning_part:
 rule overturning:
     input:
         parts=expand(rules.overturning_part.output.part, angle=ANGLES, allow_missing=True),
+        samples=samples_of,
     output:
         boundaries=overturning_files("{pulse}", ETAS),
         record=record_of("overturning/{pulse}", OVERTURNING_PROVENANCE),
@@ -89,6 +128,7 @@ rule overturning:
 rule spectrum_tile:
     input:
         boundaries=rules.overturning.output.boundaries,
+        samples=samples_of,
     output:
         # the cells that are not interpolated depend on the code of the boundaries too
         part=temp(part_of("spectra/{pulse}-rows-{band}", {**SPECTRUM_PROVENANCE, "boundaries": OVERTURNING_PROVENANCE})),
@@ -113,6 +153,7 @@ rule spectrum_tile:
 rule spectra:
     input:
         tiles=expand(rules.spectrum_tile.output.part, band=BANDS, allow_missing=True),
+        samples=samples_of,
     output:
         cubes=spectrum_files("{pulse}", ETAS),
         record=record_of("spectra/{pulse}", SPECTRUM_PROVENANCE),

@@ -17,7 +17,10 @@ from rocking.datasets.cube import (
     scalar_coordinates,
     write_dataset,
 )
+from rocking.excitation.pulses import as_pulse
+from rocking.excitation.sampled import SampledPulse
 from workflow.parts import delete_former_parts
+from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run
 from workflow.scripts.overturning_part import ACCURACY, unstacked
 
@@ -28,6 +31,7 @@ COUNTS = ("unmeasured_chords", "open_ends")
 def main(
     *,
     pulse: str,
+    samples: Path | list[Path],
     restitution: Sequence[float],
     parts: Sequence[Path],
     boundaries: Sequence[Path],
@@ -35,9 +39,10 @@ def main(
 ) -> None:
     """Write the curves of each restitution [-] at all angles, one part for each angle, to `boundaries`."""
     by_angle = [unstacked(read_dataset(path)) for path in parts]
+    shape = pulse_of_job(pulse, samples)
     for eta, path, traced in zip(restitution, boundaries, zip(*by_angle, strict=True), strict=True):
         joined = join_curves([one.drop_attrs(deep=False) for one in traced])
-        curves = described(joined, pulse, eta).assign_attrs(accuracy_of(traced))
+        curves = described(joined, shape, eta).assign_attrs(accuracy_of(traced))
         write_dataset(describe(curves, **provenance), path)
         print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
     delete_former_parts(parts, pulse)
@@ -49,16 +54,17 @@ def accuracy_of(traced: Sequence[xr.Dataset]) -> dict[str, Any]:
     return {name: sum(found) if name in COUNTS else max(found) for name, found in values.items()}
 
 
-def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
+def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float) -> xr.Dataset:
     """The curves of all angles with our attributes."""
-    for name, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
-        curves[name].attrs |= VARIABLES["outcome"][1] | {"long_name": f"outcome on the {side} side"}
+    name = as_pulse(pulse).name
+    for key, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
+        curves[key].attrs |= VARIABLES["outcome"][1] | {"long_name": f"outcome on the {side} side"}
     curves["alpha"].attrs |= AXES["alpha"]
     for variable in curves.data_vars.values():
         variable.attrs = MODEL_RESULT | variable.attrs
     return describe(
         curves.assign_coords(scalar_coordinates(pulse, restitution)),
-        title=f"Overturning boundaries of the rigid block under the {pulse} pulse, restitution {restitution:.2f}",
+        title=f"Overturning boundaries of the rigid block under the {name} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
         f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}. "
         "Largest distance of a chord from its curve: chord_error, and uncounted_chord_error where blocks overturn "
@@ -68,7 +74,7 @@ def described(curves: xr.Dataset, pulse: str, restitution: float) -> xr.Dataset:
         "below which a region can be missed: node_distance; ends of regions that are known to a step of the grid "
         "only: open_ends.",
         history="rocking.boundary.tracing.overturning_boundaries",
-        id=f"overturning/{pulse}/eta-{restitution:.2f}",
+        id=f"overturning/{name}/eta-{restitution:.2f}",
     )
 
 

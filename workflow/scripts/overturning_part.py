@@ -14,7 +14,9 @@ import xarray as xr
 from rocking.boundary.curves import join_curves
 from rocking.boundary.tracing import overturning_boundaries
 from rocking.datasets.cube import MODEL_RESULT, write_dataset
+from rocking.excitation.sampled import SampledPulse
 from rocking.model.response import Outcome
+from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run
 
 ACCURACY = (
@@ -30,6 +32,7 @@ SIZES = {"curves": "curve", "points": "point"}
 def main(
     *,
     pulse: str,
+    samples: Path | list[Path],
     restitution: Sequence[float],
     alpha_deg: float,
     nodes: int,
@@ -39,12 +42,14 @@ def main(
 ) -> None:
     """Trace the curves of all restitutions [-] at one angle [deg], inside the configured window, into one file."""
     window = {"slenderness": _ends(slenderness), "frequency_ratio": _ends(frequency_ratio)}
-    curves = stacked([*curves_of(pulse, restitution, alpha_deg, nodes=nodes, **window)])
+    curves = stacked([*curves_of(pulse_of_job(pulse, samples), restitution, alpha_deg, nodes=nodes, **window)])
     write_dataset(curves, part)
     print(f"{part}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
-def curves_of(pulse: str, restitution: Sequence[float], alpha_deg: float, **window: Any) -> Iterator[xr.Dataset]:
+def curves_of(
+    pulse: str | SampledPulse, restitution: Sequence[float], alpha_deg: float, **window: Any
+) -> Iterator[xr.Dataset]:
     """The boundary curves at one slenderness angle, by restitution: ragged polylines, `row_size` points each."""
     alpha = math.radians(alpha_deg)
     for traced in overturning_boundaries(pulse, restitution=restitution, alpha=alpha or None, **window):

@@ -13,6 +13,7 @@ import numpy as np
 from rocking.boundary.cells import crossed_cells
 from rocking.datasets.cube import read_dataset, write_dataset
 from rocking.spectra.tiles import rows_with_halo, spectrum_tile
+from workflow.pulses import pulse_of_job
 from workflow.scripts.axes import stepped
 from workflow.scripts.job import run
 
@@ -20,6 +21,7 @@ from workflow.scripts.job import run
 def main(
     *,
     pulse: str,
+    samples: Path | list[Path],
     band: tuple[int, int],
     restitution: Sequence[float],
     grid: Mapping[str, Any],
@@ -44,7 +46,7 @@ def main(
             # on the whole axes: a curve is widened by a share of each cell
             bars[k] = crossed_cells(curves, angle, slenderness, frequency_ratio)[cells]
     tile = spectrum_tile(
-        pulse,
+        pulse_of_job(pulse, samples),
         band,
         restitution=restitution,
         slenderness=slenderness,
