@@ -18,9 +18,6 @@ LANES = 16
 """Doubles of a vector. Processors have units of two, four or eight and process the parts at the same time: with 16 the
 latencies of two units of eight overlap, which saves a tenth to a fifth of the time against 8."""
 
-WORDS = 8
-"""Doubles of a record that `scatter_records` writes for a lane; a divisor of `LANES`."""
-
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
@@ -125,7 +122,7 @@ def _square_root(builder: Any, x: Any) -> Any:
     return builder.call(builder.module.declare_intrinsic(f"llvm.sqrt.v{LANES}f64", fnty=kind), [x])
 
 
-def _transpose(builder: Any, rows: list[Any]) -> list[Any]:
+def transpose(builder: Any, rows: list[Any]) -> list[Any]:
     """Transpose each square of vectors side by side: exchange the off-diagonal blocks of size 1, 2, 4 and so on."""
     positions, size = range(LANES), 1
     while size < len(rows):
@@ -140,7 +137,7 @@ def _transpose(builder: Any, rows: list[Any]) -> list[Any]:
     return rows
 
 
-def _place(builder: Any, places: Any, lane: int) -> Any:
+def place_of(builder: Any, places: Any, lane: int) -> Any:
     return builder.load(builder.gep(places, [ir.Constant(ir.IntType(64), lane)]))
 
 
@@ -155,14 +152,14 @@ def _load_elements(builder: Any, array: Any, start: Any) -> Any:
 def _gather(builder: Any, array: Any, places: Any) -> Any:
     vector = ir.Constant(_LLVM_VECTOR, ir.Undefined)
     for i in range(LANES):
-        element = builder.load(_element_address(builder, array, _place(builder, places, i)))
+        element = builder.load(_element_address(builder, array, place_of(builder, places, i)))
         vector = builder.insert_element(vector, element, ir.Constant(ir.IntType(32), i))
     return vector
 
 
 def _gather_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
-    rows = [builder.load(_row_address(builder, source, _place(builder, places, i)), align=8) for i in range(LANES)]
-    for i, column in enumerate(_transpose(builder, rows)):
+    rows = [builder.load(_row_address(builder, source, place_of(builder, places, i)), align=8) for i in range(LANES)]
+    for i, column in enumerate(transpose(builder, rows)):
         builder.store(column, _row_address(builder, target, ir.Constant(ir.IntType(64), i)), align=8)
 
 
@@ -170,30 +167,8 @@ def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
     columns = [
         builder.load(_row_address(builder, source, ir.Constant(ir.IntType(64), i)), align=8) for i in range(LANES)
     ]
-    for i, row in enumerate(_transpose(builder, columns)):
-        builder.store(row, _row_address(builder, target, _place(builder, places, i)), align=8)
-
-
-def _scatter_records(builder: Any, source: Any, places: Any, target: Any) -> None:
-    words = [builder.load(_row_address(builder, source, ir.Constant(ir.IntType(64), i)), align=8) for i in range(WORDS)]
-    undefined = ir.Constant(_LLVM_VECTOR, ir.Undefined)
-    with builder.goto_entry_block():  # once, not in each iteration of a loop
-        unused = builder.alloca(ir.ArrayType(ir.DoubleType(), WORDS))
-    nowhere = builder.bitcast(unused, target.type)
-    for i, records in enumerate(_transpose(builder, words)):
-        for first in range(0, LANES, WORDS):
-            lanes = ir.Constant(ir.VectorType(ir.IntType(32), WORDS), list(range(first, first + WORDS)))
-            record = builder.shuffle_vector(records, undefined, lanes)
-            place = _place(builder, places, first + i)
-            written = builder.icmp_signed(">=", place, ir.Constant(place.type, 0))
-            address = builder.select(written, builder.gep(target, [place]), nowhere)
-            builder.store(record, builder.bitcast(address, record.type.as_pointer()), align=8)
-
-
-def _pack_integers(builder: Any, low: Any, high: Any) -> Any:
-    low, high = builder.fptosi(low, _LLVM_BITS), builder.fptosi(high, _LLVM_BITS)
-    low = builder.and_(low, ir.Constant(_LLVM_BITS, [2**32 - 1] * LANES))
-    return builder.bitcast(builder.or_(low, builder.shl(high, ir.Constant(_LLVM_BITS, [32] * LANES))), _LLVM_VECTOR)
+    for i, row in enumerate(transpose(builder, columns)):
+        builder.store(row, _row_address(builder, target, place_of(builder, places, i)), align=8)
 
 
 def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
@@ -312,13 +287,6 @@ gather_rows = instruction(_gather_rows, types.void, None, None, None)
 
 scatter_rows = instruction(_scatter_rows, types.void, None, None, None)
 """scatter_rows(source, places, target): the inverse, column i of `source` becomes row `places[i]` of `target`."""
-
-scatter_records = instruction(_scatter_records, types.void, None, None, None)
-"""scatter_records(source, places, target): column i of `source` (WORDS, LANES) becomes the record `places[i]` of an
-array of records of `WORDS` doubles; it is not written where that is negative."""
-
-pack_integers = instruction(_pack_integers, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
-"""pack_integers(x, y): bits of the integers x and y of 32 bits, x in the lower half."""
 
 
 def _operation(operation: Any, generate: Callable[..., Any], vector: VectorType, result: Any) -> None:

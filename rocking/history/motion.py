@@ -15,7 +15,7 @@ from rocking.history.body_motion import FREE_DURATION, BodyMotion, Floats
 from rocking.history.record_motion import SamplesMotion
 from rocking.history.sampling import sample_arcs, solve_and_sample
 from rocking.model.checks import check_number, check_one_alpha
-from rocking.model.fields import END_ROTATION, END_VELOCITY, EXCEEDED_ALPHA, RESPONSE_FIELDS
+from rocking.model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking.solver.peak_response import peak_response
 from rocking.solver.records.record_response import pulse_rows
@@ -87,8 +87,8 @@ class PulseMotion(BodyMotion):
             restitution=self.restitution,
             stop=self.stop,
         )
-        for field in RESPONSE_FIELDS:
-            if field not in (END_ROTATION, END_VELOCITY, EXCEEDED_ALPHA):
+        for field in SOLVED_FIELDS:
+            if field not in (END_ROTATION, END_VELOCITY):
                 record[field.name] = getattr(found, field.name)
 
 

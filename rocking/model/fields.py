@@ -7,6 +7,7 @@ classes with them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -37,6 +38,8 @@ class ResponseField:
         nan in memory and in files, null in JSON, and empty in CSV.
     detail : str
         What else has to be known; empty if nothing.
+    at_rest : float
+        Value of a block that does not uplift.
     """
 
     name: str
@@ -46,6 +49,7 @@ class ResponseField:
     meaning: str
     missing: str = ""
     detail: str = ""
+    at_rest: float = 0.0
 
     @property
     def file_dtype(self) -> str:
@@ -101,7 +105,13 @@ IMPACTS = ResponseField(
 CHATTER = ResponseField("chatter", "?", "1", "2.3", "whether impacts accumulate to rest while the pulse acts")
 EXCEEDED_ALPHA = ResponseField("exceeded_alpha", "?", "1", "3.2", "whether |theta| passed alpha at some time")
 UPLIFT_TIME = ResponseField(
-    "uplift_time", "f8", "1", "3.3", "time p t from the start of the pulse to the first uplift", "there is no uplift"
+    "uplift_time",
+    "f8",
+    "1",
+    "3.3",
+    "time p t from the start of the pulse to the first uplift",
+    "there is no uplift",
+    at_rest=math.nan,
 )
 FIRST_IMPACT_TIME = ResponseField(
     "first_impact_time",
@@ -110,6 +120,7 @@ FIRST_IMPACT_TIME = ResponseField(
     "3.21",
     "time p t from the uplift to the first impact",
     "there is none while the pulse acts",
+    at_rest=math.nan,
 )
 FIRST_IMPACT_VELOCITY = ResponseField(
     "first_impact_velocity",
@@ -118,6 +129,7 @@ FIRST_IMPACT_VELOCITY = ResponseField(
     "3.22",
     "angular velocity theta'/(p alpha) just before the first impact",
     "there is none while the pulse acts",
+    at_rest=math.nan,
 )
 PEAK_MODE = ResponseField(
     "peak_mode",
@@ -128,6 +140,7 @@ PEAK_MODE = ResponseField(
     "",
     "twice the impacts before it since the last uplift from rest, plus one if reached in free rocking, plus 65536 for "
     "each such uplift after the first; -1 where there is no peak",
+    at_rest=-1,
 )
 END_ROTATION = ResponseField(
     "end_rotation", "f8", "1", "3.11", "rotation |theta|/alpha when the pulse ends, or when overturning is certain"
@@ -147,7 +160,7 @@ ERROR_BOUND = ResponseField(
 FROM_CUBE = ResponseField("from_cube", "?", "1", "3.2", "whether it is interpolated in a data set; else it is solved")
 SOURCE = ResponseField("source", "U", "1", "3.2", "cube (interpolated data set) or solver")
 
-RESPONSE_FIELDS = (
+SOLVED_FIELDS = (
     PEAK_ROTATION,
     OUTCOME,
     IMPACTS,
@@ -160,7 +173,10 @@ RESPONSE_FIELDS = (
     END_ROTATION,
     END_VELOCITY,
 )
-"""Fields of `rocking.Response`, in order, and of the record that the solver writes for each block."""
+"""Fields of the record that the solver writes for each block."""
+
+RESPONSE_FIELDS = SOLVED_FIELDS
+"""Fields of `rocking.Response`, in order."""
 
 BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, FROM_CUBE)
 """Fields of a response with an error bound, of an interpolated cube or of the solver."""

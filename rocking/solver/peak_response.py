@@ -17,7 +17,7 @@ from rocking.errors import broadcast, integer
 from rocking.excitation.pulses import AbstractPulse, as_pulse
 from rocking.excitation.sampled import SampledPulse
 from rocking.model.checks import check_groups, check_number
-from rocking.model.fields import RESPONSE_FIELDS
+from rocking.model.fields import SOLVED_FIELDS
 from rocking.model.outcome_margin import outcome_margin
 from rocking.model.parameters import TOLERANCE
 from rocking.model.response import Response, dimensions_of
@@ -134,7 +134,7 @@ def peak_response(
         close = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
         near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
-    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
     return Response(
         **found,
         pulse=made.name,

@@ -29,7 +29,9 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking._numba.records import copy_fields
 from rocking.solver.free_rocking import barrier_of, highest_rotation, release
+from rocking.solver.state import set_empty_response
 
 IMPACT_LIMIT = 200_000
 """Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
@@ -73,11 +75,8 @@ def set_body(state: Record, cell: Record, each_side: bool) -> None:
 def reset_response(state: Record) -> None:
     """Set the body to rest before the first uplift, with an empty response."""
     state.at_rest, state.uplifts, state.impacts_before_uplift = 1, 0, 0
-    state.outcome, state.peak_rotation, state.peak_mode = NO_UPLIFT, 0.0, -1
-    state.side_peak[0], state.side_peak[1] = 0.0, 0.0
-    state.impacts, state.chatter = 0, 0
-    state.uplift_time, state.first_impact_time, state.first_impact_velocity = math.nan, math.nan, math.nan
-    state.end_rotation, state.end_velocity, state.end_sign, state.final_sign = 0.0, 0.0, 0.0, 0.0
+    set_empty_response(state)
+    state.side_peak[0], state.side_peak[1], state.end_sign, state.final_sign = 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -238,17 +237,9 @@ def impacts_accumulate(
 
 @kernel
 def write_response(state: Record, response: Record) -> None:
-    """Write the response."""
-    response.outcome, response.chatter, response.impacts, response.peak_mode = (
-        state.outcome,
-        state.chatter,
-        state.impacts,
-        state.peak_mode,
-    )
-    response.exceeded_alpha = not (state.peak_rotation <= 1.0)  # also where it is nan
-    response.peak_rotation, response.uplift_time = state.peak_rotation, state.uplift_time
-    response.first_impact_time, response.first_impact_velocity = state.first_impact_time, state.first_impact_velocity
-    response.end_rotation, response.end_velocity = state.end_rotation, state.end_velocity
+    """Write the response: all declared fields."""
+    state.exceeded_alpha = not (state.peak_rotation <= 1.0)  # also where it is nan
+    copy_fields(state, response)
 
 
 @kernel

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import Record
+from rocking._numba.records import constant_fields
 from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking.excitation.series import Family
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS, AbstractPulse
-from rocking.model.fields import RESPONSE_FIELDS, record_dtype
+from rocking.model.fields import SOLVED_FIELDS, record_dtype
 from rocking.solver.excitation import EXCITATION_FIELDS, excitation_fields, fill_excitation
 
 SERIES_LENGTH = 17
@@ -73,19 +74,10 @@ PROGRESS_FIELDS = [
     ("starts_at_uplift", np.int64),  # whether it starts with an uplift through q = 0, where q is exactly 0
     ("uplifts", np.int64),  # uplifts from rest so far
     ("impacts_before_uplift", np.int64),  # impacts before the last of them
-    # the response, see `rocking.model.fields`
-    ("outcome", np.int64),
-    ("peak_rotation", np.float64),
+    # the response; `write_response` copies what is declared
+    *((field.name, np.float64 if field.dtype == "f8" else np.int64) for field in SOLVED_FIELDS),
     ("side_peak", np.float64, EDGES),  # largest z on each edge
-    ("peak_mode", np.int64),
-    ("impacts", np.int64),
-    ("chatter", np.int64),
-    ("uplift_time", np.float64),
-    ("first_impact_time", np.float64),
-    ("first_impact_velocity", np.float64),
-    ("end_rotation", np.float64),  # state at the end of the motion, in the mirror image of the flight,
-    ("end_velocity", np.float64),
-    ("end_sign", np.float64),  # and sgn(theta), 0 at rest
+    ("end_sign", np.float64),  # sgn(theta) at the end of the motion, 0 at rest; end_rotation is |theta|/alpha
     ("final_sign", np.float64),  # sgn(theta) of a body that overturns, else 0
 ]
 """Fields of a solver state that the rules of events change: the flight and the response."""
@@ -271,8 +263,11 @@ def block_cell(rate: float, slenderness: float, eta: float, alpha: float, vertic
     return block_cells(*(np.array([value]) for value in (rate, slenderness, eta, alpha, vertical)))[0]
 
 
-RESPONSE_RECORD = record_dtype(RESPONSE_FIELDS)
+RESPONSE_RECORD = record_dtype(SOLVED_FIELDS)
 """Record of the response of a cell."""
+
+set_empty_response = constant_fields({field.name: field.at_rest for field in SOLVED_FIELDS})
+"""set_empty_response(record): the response of a body without uplift, into a record of the solver or a response."""
 
 
 @lru_cache(maxsize=256)

@@ -8,15 +8,12 @@ from rocking._numba.compilation import kernel
 from rocking._numba.quads import load_quad, numbers_of, quad, select_quad
 from rocking._numba.simd import (
     LANES,
-    WORDS,
     any_lane,
     gather,
     gather_rows,
     lane_bits,
     load,
     load_elements,
-    pack_integers,
-    scatter_records,
     scatter_rows,
     select,
     splat,
@@ -92,33 +89,6 @@ def test_elements_are_taken_in_a_row_and_from_places():
     take(source, places, found)
     np.testing.assert_array_equal(found[0], source[places[0] : places[0] + LANES])
     np.testing.assert_array_equal(found[1], source[places])
-
-
-@kernel
-def write_records(words, numbers, places, records):
-    store(words, 6, pack_integers(load(numbers, 0), load(numbers, 1)))
-    store(words, 7, pack_integers(load(numbers, 2), splat(0.0)))
-    scatter_records(words, places, records)
-
-
-def test_columns_become_records_where_a_place_is_given():
-    rng = np.random.default_rng(5)
-    layout = np.dtype([("numbers", np.float64, 6), ("first", np.int32), ("second", np.int32), ("bytes", np.int8, 8)])
-    records, words = np.zeros(30, layout), rng.random((WORDS, LANES))
-    numbers = np.array(
-        [rng.integers(0, 2**31, LANES), rng.integers(-(2**31), 2**31, LANES), rng.integers(0, 128, LANES)]
-    )
-    places = rng.permutation(30)[:LANES].astype(np.int64)
-    places[[0, 5, 11]] = -1
-    write_records(words, numbers.astype(float), places, records)
-    written = places >= 0
-    rows = records[places[written]]
-    np.testing.assert_array_equal(rows["numbers"], words[:6, written].T)
-    for name, row in zip(("first", "second"), numbers, strict=False):
-        np.testing.assert_array_equal(rows[name], row[written])
-    np.testing.assert_array_equal(rows["bytes"][:, 0], numbers[2, written])
-    assert not rows["bytes"][:, 1:].any()
-    assert not np.delete(records, places[written]).view(np.uint8).any()
 
 
 @pytest.mark.parametrize("seed", range(3))

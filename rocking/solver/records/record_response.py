@@ -16,7 +16,7 @@ from rocking.excitation.records.record import Record
 from rocking.excitation.records.vertical import check_vertical_scale
 from rocking.excitation.sampled import SampledPulse
 from rocking.model.checks import check, check_alpha
-from rocking.model.fields import RESPONSE_FIELDS
+from rocking.model.fields import SOLVED_FIELDS
 from rocking.model.parameters import FREQUENCY_PARAMETER, RESTITUTION, SLENDERNESS
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
@@ -104,7 +104,7 @@ def record_response(
     p, s, eta, angle, vertical = (contiguous_array(group).ravel() for group in groups)
     cells = block_cells(p * motion.time_step, s, eta, angle, vertical)
     records, _ = solve_bodies(motion_samples(motion), cells, cores, stop)
-    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in RESPONSE_FIELDS}
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
     named = dict(zip(given, checked, strict=True))
     if motion.vertical is None:
         del named["vertical_scale"]

@@ -7,7 +7,6 @@ import math
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking._numba.simd import LANES, any_lane, gather, load_elements, select, splat, store
 from rocking.solver.stages.lists import FIRST_LISTS, append, take_places
-from rocking.solver.stages.responses import write_empty_response
 from rocking.solver.stages.state import (
     AT_UPLIFT,
     BUCKETS,
@@ -22,6 +21,7 @@ from rocking.solver.stages.state import (
     UPLIFTS,
 )
 from rocking.solver.stages.uplifts import first_uplifts, uplift_piece
+from rocking.solver.state import set_empty_response
 
 
 @kernel
@@ -68,7 +68,7 @@ def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells
             _, sign = uplift_piece(pulse, s, pulse.end_phase[0])
         if s >= 1.0 or sign == 0.0:
             for one in range(place, following):
-                write_empty_response(responses[one])
+                set_empty_response(responses[one])
         else:
             members[place] = following - place
             shared = shared or following - place > 1

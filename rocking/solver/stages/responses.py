@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.memory import prefetch_for_write
-from rocking._numba.simd import LANES, load, pack_integers, scatter_records, select, splat, store
-from rocking.solver.rules import NO_UPLIFT
+from rocking._numba.records import scatter_records
+from rocking._numba.simd import LANES, load, select, splat, store
 from rocking.solver.stages.state import (
     CHATTER,
     FIRST_IMPACT_TIME,
@@ -20,34 +18,24 @@ from rocking.solver.stages.state import (
 
 
 @kernel
-def write_empty_response(response: Record) -> None:
-    """Write the response of a block without uplift."""
-    response.outcome, response.chatter, response.impacts, response.peak_mode = NO_UPLIFT, 0, 0, -1
-    response.exceeded_alpha = 0
-    response.peak_rotation, response.uplift_time = 0.0, math.nan
-    response.first_impact_time, response.first_impact_velocity = math.nan, math.nan
-    response.end_rotation, response.end_velocity = 0.0, 0.0
-
-
-@kernel
 def write_responses(group: Record, done: int, responses: Record) -> None:
-    """Write the responses of the lanes whose bits are set in `done`, each at once as the words of `RESPONSE_RECORD`."""
-    columns, words = group.columns, group.words
+    """Write the responses of the lanes whose bits are set in `done`, each at once."""
+    columns, response = group.columns, group.response
     for lane in range(LANES):
         group.written[lane] = group.place[lane] if (done >> lane) & 1 else -1
     peak = load(columns, PEAK)
-    exceeded = select(peak <= 1.0, splat(0.0), splat(1.0))  # also where it is nan
-    store(words, 0, peak)
-    store(words, 1, load(columns, UPLIFT_TIME))
-    store(words, 2, load(columns, FIRST_IMPACT_TIME))
-    store(words, 3, load(columns, FIRST_IMPACT_VELOCITY))
-    store(words, 4, load(group.free_z, 0))
-    store(words, 5, load(group.free_w, 0))
-    store(words, 6, pack_integers(load(columns, IMPACTS), load(columns, MODE)))
-    # bytes: outcome, chatter, exceeded_alpha
-    flags = load(group.outcome, 0) + 256.0 * load(columns, CHATTER) + 65536.0 * exceeded
-    store(words, 7, pack_integers(flags, splat(0.0)))
-    scatter_records(words, group.written, responses)
+    store(response.peak_rotation, 0, peak)
+    store(response.exceeded_alpha, 0, select(peak <= 1.0, splat(0.0), splat(1.0)))  # also where it is nan
+    store(response.peak_mode, 0, load(columns, MODE))
+    store(response.outcome, 0, load(group.outcome, 0))
+    store(response.impacts, 0, load(columns, IMPACTS))
+    store(response.chatter, 0, load(columns, CHATTER))
+    store(response.uplift_time, 0, load(columns, UPLIFT_TIME))
+    store(response.first_impact_time, 0, load(columns, FIRST_IMPACT_TIME))
+    store(response.first_impact_velocity, 0, load(columns, FIRST_IMPACT_VELOCITY))
+    store(response.end_rotation, 0, load(group.free_z, 0))
+    store(response.end_velocity, 0, load(group.free_w, 0))
+    scatter_records(response, group.written, responses)
 
 
 @kernel

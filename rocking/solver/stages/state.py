@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking._numba.compilation import Record
-from rocking._numba.simd import LANES, VECTOR_BYTES, WORDS
+from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
-from rocking.solver.state import WAVELET_SERIES_LENGTH
+from rocking.solver.state import RESPONSE_RECORD, WAVELET_SERIES_LENGTH
 
 BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
@@ -115,7 +115,7 @@ def _group_layout() -> np.dtype[np.void]:
             ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
             ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
             ("node_slope", np.float64, pieces),
-            ("words", np.float64, (WORDS, LANES)),  # of the responses
+            ("response", [(name, np.float64, lanes) for name in RESPONSE_RECORD.names or ()]),  # to be written
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
             ("written", np.int64, lanes),  # number of the response to be written, or -1
             ("used", np.int64),  # bits of the lanes that hold a cell
