@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import resample_poly
 
 import rocking
 from rocking.constants import STANDARD_GRAVITY
@@ -212,6 +213,21 @@ def test_resampling_keeps_a_band_limited_signal() -> None:
         assert found.duration == pytest.approx(record.duration, abs=step)
     finer = record.resampled(0.0025)
     np.testing.assert_allclose(finer.acceleration[::4], record.acceleration, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("up", "down", "samples"), [(8, 1, 400), (1, 2, 401), (7, 3, 60), (3, 7, 300), (999, 1000, 90), (1, 1000, 2001)]
+)
+def test_resampling_is_the_polyphase_filter_of_scipy(up: int, down: int, samples: int) -> None:
+    record = rocking.Record(np.random.default_rng(up).standard_normal(samples), 0.01, unit="m/s2")
+    found = record.resampled(0.01 * down / up).acceleration
+    expected = resample_poly(record.acceleration, up, down, window=("kaiser", 8.0))[: found.size]
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * record.peak_acceleration)
+
+
+def test_resampling_at_the_same_step_returns_the_samples() -> None:
+    record = sine_record()
+    assert np.array_equal(record.resampled(record.time_step).acceleration, record.acceleration)
 
 
 def test_steps_that_are_no_fraction_are_rejected() -> None:
