@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -260,7 +261,7 @@ class Kernel(CPUDispatcher):
         options = _with_private(options, arrays=arrays)
         inside = options | {"nopython": True, "no_cpython_wrapper": True}
         super().__init__(py_func=function, targetoptions=inside, pipeline_class=_KernelCompiler)
-        self._from_python = numba.njit(**options)(function)
+        self._from_python = lru_cache(maxsize=1)(lambda: numba.njit(**options)(function))
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """The signature of a call in a kernel; one for all integers, not one for each constant that kernels pass."""
@@ -268,7 +269,7 @@ class Kernel(CPUDispatcher):
         return super().get_call_template(plain, kws)
 
     def __call__(self, *args: Any) -> Any:
-        return self._from_python(*args)
+        return self._from_python()(*args)
 
 
 class SpecialisedKernel(Kernel):

@@ -7,10 +7,9 @@ and chords that leave their curve by more than `CHORD` are halved.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
@@ -25,6 +24,9 @@ from rocking.model.checks import check, check_number, check_one_alpha, check_win
 from rocking.model.outcome_code import decode_outcomes
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking.units import Scalar
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
 """Blocks that the pulse can uplift."""
@@ -170,6 +172,7 @@ def _rows(low: float, high: float, nodes: int, columns: int) -> Floats:
 
 def _as_dataset(chains: Chains) -> xr.Dataset:
     """The chains, cut where the outcome on their other side changes."""
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
     def curve(values: NDArray[np.integer[Any]], long_name: str) -> tuple[object, ...]:
         return ("curve", values, {"long_name": long_name, "units": "1"})

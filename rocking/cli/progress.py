@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 DELAY = 1.0
-"""Time after which the indicator appears [s]."""
+"""Time after which the indicator appears [s]; commands that are faster do not load what it needs."""
 
 LONG = 4.0
 """Time after which the indicator says that first calls are longer [s]."""
@@ -22,34 +23,32 @@ def progress(text: str) -> Iterator[None]:
     text : str
         What is done.
     """
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield
-        return
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    # the results go to stdout, which must not pass through the console of the indicator
-    shown = Progress(*columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False)
-    task = shown.add_task(text, total=None)
-    ended, lock = threading.Event(), threading.Lock()
-
-    def start() -> None:
-        if not ended.wait(DELAY):
-            with lock:
-                if not ended.is_set():
-                    shown.start()
-        if not ended.wait(LONG):
-            shown.update(task, description=f"{text} (the first calls compile parts of the solver)")
-
-    waiting = threading.Thread(target=start, daemon=True)
-    waiting.start()
+    ended = threading.Event()
+    shown = threading.Thread(target=_show, args=(text, ended), daemon=True)
+    shown.start()
     try:
         yield
     finally:
-        with lock:
-            ended.set()
-            shown.stop()
-        waiting.join()
+        ended.set()
+        shown.join()
+
+
+def _show(text: str, ended: threading.Event) -> None:
+    """Show the indicator from `DELAY` on until the work has ended."""
+    begin = time.monotonic()
+    if ended.wait(DELAY):
+        return
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    if not console.is_terminal or ended.is_set():
+        return
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    # the results go to stdout, which must not pass through the console of the indicator
+    with Progress(*columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False) as shown:
+        task = shown.add_task(text, total=None)
+        shown.tasks[0].start_time = begin
+        if not ended.wait(LONG):
+            shown.update(task, description=f"{text} (the first calls compile parts of the solver)")
+        ended.wait()

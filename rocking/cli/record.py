@@ -111,7 +111,6 @@ def _solved(
     """What is printed, by name, and the outcome and the margin in words."""
     from rocking.cli.printing import number
     from rocking.dimensional.record_response import respond_to_record
-    from rocking.suites.pulse_fit import fit_pulse
 
     found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
     response, assessment = found.dimensionless, found.assessment
@@ -155,6 +154,8 @@ def _solved(
             "overturns_above": changes.overturns_above.tolist(),
         }
     if fit:
+        from rocking.suites.pulse_fit import fit_pulse
+
         fitted = fit_pulse(motion, blocks=block)
         about |= {
             "pulse": fitted.velocity.family,

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import final, overload
+from typing import TYPE_CHECKING, final, overload
 
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from rocking.dimensional.curves import (
@@ -22,6 +21,9 @@ from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
 from rocking.model import block as geometry
 from rocking.units import Scalar
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Restitution = Scalar  # or "housner"
 

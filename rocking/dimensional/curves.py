@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from rocking._numba.cancellation import StopFlag
@@ -21,6 +21,9 @@ from rocking.model.block import AbstractBlock
 from rocking.model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.solver.bounded_response import solve_with_bound
 from rocking.units import Scalar
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 DEFAULT_SAMPLES = 400
 """Uniform samples of a history under a pulse, unless another number is given."""
@@ -192,6 +195,8 @@ def block_spectrum(
     InvalidArgumentError
         If a value is out of range, or `period` has more than one dimension.
     """
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
     periods = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
     if periods.ndim > 1:
         raise InvalidArgumentError("period", periods.shape, "one dimension")

@@ -7,10 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import Any, ClassVar
-
-import pandas as pd
-import xarray as xr
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rocking.equality import EqualByValue
 from rocking.model.block import AbstractBlock
@@ -18,6 +15,10 @@ from rocking.model.fields import OUTCOME, ResponseField
 from rocking.model.outcome import Outcome
 from rocking.model.response import Response
 from rocking.solver.bounded_response import BoundedResponse
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 ROTATION = ResponseField("rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns")
 DISPLACEMENT = ResponseField(
@@ -115,12 +116,16 @@ class ScalarResponse(EqualByValue, ABC):
 
     def to_xarray(self) -> xr.Dataset:
         """The fields as a data set of scalars, with units, meanings and equation numbers."""
+        import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
         values = self.to_dict() | {OUTCOME.name: int(self.outcome)}
         variables = {one.name: ((), values[one.name], {"units": one.unit} | one.attributes) for one in self.FIELDS}
         return xr.Dataset(variables, attrs=dict(self.motion))
 
     def to_pandas(self) -> pd.Series:
         """The fields as a series; units are those of `to_xarray`."""
+        import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
+
         return pd.Series({**self.motion, **self.to_dict()})
 
     def __repr__(self) -> str:

@@ -11,14 +11,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from rocking._numba.compilation import Record
 from rocking.history.body_motion import BodyMotion, overturned
 from rocking.model.reactions import Floats, Reactions, impulse_ratio, reactions
 from rocking.model.response import Outcome
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MAX_STEP = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""

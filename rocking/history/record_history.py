@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import integer, number
@@ -14,6 +15,9 @@ from rocking.history.record_motion import SamplesMotion, build_record_motion
 from rocking.model.response import Outcome
 from rocking.solver.records.record_response import frequency_parameter_range
 from rocking.units import Scalar
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MAX_SAMPLES = 1_000_000
 """Largest number of uniform samples of a history."""
@@ -69,6 +73,8 @@ def record_history(
     StoppedError
         If `stop` was set.
     """
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)
     groups = {

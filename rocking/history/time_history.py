@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from rocking._numba.cancellation import StopFlag
 from rocking.errors import integer
@@ -15,6 +16,9 @@ from rocking.model.checks import check_number
 from rocking.model.parameters import FREQUENCY_RATIO
 from rocking.model.response import Outcome
 from rocking.units import Scalar
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def time_history(
@@ -60,6 +64,8 @@ def time_history(
     StoppedError
         If `stop` was set.
     """
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
     samples = integer("samples", samples, 2, 1_000_000)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
     motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
