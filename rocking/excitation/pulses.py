@@ -1,9 +1,10 @@
 """Catalogue of ground-acceleration pulses, each defined by a shape f(phi) of unit peak on a window of the phase phi.
 
 The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; a positive one starts a
-rotation in the negative direction. There are two families: sums of sinusoids, for which the slender block has exact
-arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low frequencies. To add a
-pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time.
+rotation in the negative direction. Those of the catalogue are of two families: sums of sinusoids, for which the slender
+block has exact arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low
+frequencies. To add a pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time, of these
+families or of one's own (`SmoothPulse`).
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from rocking.excitation.shapes import (
     WaveletPulse,
     checked_number,
 )
+from rocking.excitation.smooth import SmoothPulse
 
 __all__ = [
     "PULSE_NAMES",
     "AbstractPulse",
     "SinusoidalPulse",
+    "SmoothPulse",
     "WaveletPulse",
     "as_pulse",
     "get_pulse",

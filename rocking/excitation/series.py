@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
+from rocking.excitation.polynomials import Polynomials
+
 Terms = tuple[tuple[float, float, float], ...]
 """Sinusoids c cos(w phi + d): c [-], w [-], d [rad]."""
 
@@ -23,6 +25,8 @@ class Family(IntEnum):
     """f = (sum of c_k phi^k) exp(-phi^2/spread)."""
     SAMPLES = 2
     """f is linear between samples, `rocking.excitation.sampled`; solved by `rocking.solver.records`."""
+    POLYNOMIALS = 3
+    """f is a polynomial on each of many pieces, `rocking.excitation.smooth`."""
 
 
 @dataclass(frozen=True)
@@ -34,22 +38,25 @@ class ExcitationSeries:
     family : Family
         Which expansion.
     terms : Terms
-        Of a sum of sinusoids; a wavelet has one of amplitude 0, so that the loops over the terms need no other case.
+        Of a sum of sinusoids; others have one of amplitude 0, so that the loops over the terms need no other case.
     polynomial : tuple of float
         Coefficients c_k of a wavelet [-].
     spread : float
         Of the Gaussian of a wavelet [rad2].
+    polynomials : Polynomials or None
+        Of a smooth pulse.
     """
 
     family: Family
     terms: Terms = ((0.0, 1.0, 0.0),)
     polynomial: tuple[float, ...] = ()
     spread: float = 0.0
+    polynomials: Polynomials | None = None
 
     @property
     def has_exact_arcs(self) -> bool:
         """Whether the slender block (3.1) has exact arcs (3.4) under it at all frequencies."""
-        return self.family != Family.WAVELET
+        return self.family == Family.SINUSOIDS
 
     @property
     def least_arc_frequency(self) -> float:
@@ -57,7 +64,9 @@ class ExcitationSeries:
 
         Arcs under wavelets cancel like omega^-2 or omega^-3 below (`rocking.solver.stages.wavelets`).
         """
-        return 0.0 if self.has_exact_arcs else math.sqrt(self.spread) / (2.0 * MAX_WAVELET_DECAY)
+        if self.family == Family.WAVELET:
+            return math.sqrt(self.spread) / (2.0 * MAX_WAVELET_DECAY)
+        return 0.0 if self.has_exact_arcs else math.inf
 
     @property
     def derivatives(self) -> tuple[float, ...]:

@@ -64,9 +64,8 @@ class AbstractPulse(ABC):
     stationary: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        if not (self.name and isinstance(self.name, str)):
-            raise InvalidArgumentError("name", self.name, "a string that is not empty")
-        start, end = _checked_window(self.start, self.end)
+        self._check_window()
+        start, end = self.start, self.end
         found = self._stationary_phases(start, end)
         given = _checked_numbers("stationary", self.stationary, unit="rad")
         if given and not (len(given) == len(found) and np.allclose(given, found, rtol=0.0, atol=1e-10 * (end - start))):
@@ -75,11 +74,17 @@ class AbstractPulse(ABC):
             )
         if len(found) >= MAX_PIECES:
             raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
-        for name, value in (("start", start), ("end", end), ("stationary", given or found)):
-            object.__setattr__(self, name, value)
+        object.__setattr__(self, "stationary", given or found)
         peak = peak_amplitude(self.shape, start, end, found)
         if not abs(peak - 1.0) <= PEAK_TOLERANCE:
             raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
+
+    def _check_window(self) -> None:
+        """Check the name and the window, and make its ends numbers."""
+        if not (self.name and isinstance(self.name, str)):
+            raise InvalidArgumentError("name", self.name, "a string that is not empty")
+        for name, value in zip(("start", "end"), _checked_window(self.start, self.end), strict=True):
+            object.__setattr__(self, name, value)
 
     @abstractmethod
     def shape(self, phi: ArrayLike) -> Array:
@@ -146,7 +151,7 @@ class SinusoidalPulse(AbstractPulse):
 
     def mirrored(self) -> SinusoidalPulse:
         terms = tuple((-c, w, d) for c, w, d in self.terms)
-        return SinusoidalPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, terms)
+        return SinusoidalPulse(mirrored_name(self.name), self.start, self.end, self.stationary, terms)
 
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         return stationary_phases_of_sinusoids(self.terms, start, end)
@@ -187,7 +192,7 @@ class WaveletPulse(AbstractPulse):
 
     def mirrored(self) -> WaveletPulse:
         polynomial = tuple(-c for c in self.polynomial)
-        return WaveletPulse(_mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
+        return WaveletPulse(mirrored_name(self.name), self.start, self.end, self.stationary, polynomial, self.spread)
 
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         # f' = (P' - 2 phi/spread P) exp(-phi^2/spread) has the sign of the polynomial
@@ -242,10 +247,11 @@ def stationary_phases_of_sinusoids(terms: Terms, start: float, end: float) -> tu
     return sign_changes(slope, np.abs(c * w).sum(), np.abs(c * w**3).sum(), start, end)
 
 
-def peak_amplitude(shape: Callable[[ArrayLike], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
+def peak_amplitude(shape: Callable[[Array], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
     """max |f| on the window [-]."""
-    return float(np.max(np.abs(shape([start, *turns, end]))))
+    return float(np.max(np.abs(shape(np.array([start, *turns, end])))))
 
 
-def _mirrored_name(name: str) -> str:
+def mirrored_name(name: str) -> str:
+    """The name of the mirrored pulse: with a leading minus, or without it."""
     return name.removeprefix("-") if name.startswith("-") else "-" + name

@@ -23,17 +23,21 @@ Slope = Callable[[Array], tuple[Array, Array]]
 """From phases (n,) the function and its derivative."""
 
 
-def sign_changes(slope: Slope, bound: float, second_bound: float, start: float, end: float) -> tuple[float, ...]:
+def sign_changes(
+    slope: Slope, bound: float, second_bound: float, start: float, end: float, parts: int = 1
+) -> tuple[float, ...]:
     """The phases strictly inside the window at which `slope` changes sign, to the last bit.
 
-    `bound` and `second_bound`, M, are bounds of the slope and of its second derivative. On an interval of length l
-    about m a function v has no zero if |v(m)| > |v'(m)| l/2 + M l^2/8, and at most one if |v'(m)| > M l/2; other
-    intervals are halved. Two zeros in an interval that remains after `HALVINGS` change f by less than rounding.
+    `slope` is smooth inside each of `parts` equal parts of the window, a power of two; `bound` and `second_bound`, M,
+    are bounds of the slope and of its second derivative. On an interval of length l about m a function v has no zero if
+    |v(m)| > |v'(m)| l/2 + M l^2/8, and at most one if |v'(m)| > M l/2; other intervals are halved. Two zeros in an
+    interval that remains after `HALVINGS` change f by less than rounding.
     """
     if bound == 0.0:  # f is constant
         return ()
-    length, share = end - start, 1.0
-    first, brackets = np.zeros(1), []  # exact fractions of the window: adjacent intervals share their end
+    length, share = end - start, 1.0 / parts
+    first: Array = share * np.arange(float(parts))
+    brackets = []  # exact fractions of the window: adjacent intervals share their end
     for _ in range(HALVINGS):
         value, rate = slope(start + (first + 0.5 * share) * length)
         half = 0.5 * share * length

@@ -19,8 +19,16 @@ from rocking._numba.simd_exponentials import exponential
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking.excitation.series import ExcitationSeries, Family
 from rocking.excitation.shapes import MAX_POLYNOMIAL, MAX_SINUSOIDS
+from rocking.solver.families.polynomials import (
+    POLYNOMIAL_FIELDS,
+    POLYNOMIALS,
+    expand_polynomials,
+    fill_polynomials,
+    polynomial_value,
+    polynomial_values_and_slopes,
+)
 
-WAVELET = int(Family.WAVELET)
+SINUSOIDS, WAVELET = int(Family.SINUSOIDS), int(Family.WAVELET)
 
 
 def excitation_fields() -> list[tuple[str, type] | tuple[str, type, tuple[int, ...]]]:
@@ -34,6 +42,7 @@ def excitation_fields() -> list[tuple[str, type] | tuple[str, type, tuple[int, .
         ("shift", np.float64, per_term),  # d
         ("spread", np.float64),  # wavelet: f = (sum polynomial[k] phi^k) exp(-phi^2/spread)
         ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
+        *POLYNOMIAL_FIELDS,
     ]
 
 
@@ -49,19 +58,23 @@ def fill_excitation(record: Record, series: ExcitationSeries) -> None:
     record["amplitude"][:count], record["multiple"][:count], record["shift"][:count] = amplitude, multiple, shift
     record["spread"] = series.spread
     record["polynomial"][: len(series.polynomial)] = series.polynomial
+    fill_polynomials(record, series)
 
 
 @kernel
 def has_exact_arcs(flight: Record, alpha: float) -> bool:
     """Whether the motion consists of exact arcs (3.4): slender blocks under sums of sinusoids."""
-    return alpha == 0.0 and flight.family != WAVELET
+    return alpha == 0.0 and flight.family == SINUSOIDS
 
 
 @kernel
 def is_unit_sinusoid(flight: Record) -> bool:
     """Whether f is one sinusoid of amplitude 1 and frequency 1, for which phases of |a f| = 1 have closed forms."""
     return (
-        flight.terms == 1 and flight.multiple[0] == 1.0 and abs(flight.amplitude[0]) == 1.0 and flight.family != WAVELET
+        flight.family == SINUSOIDS
+        and flight.terms == 1
+        and flight.multiple[0] == 1.0
+        and abs(flight.amplitude[0]) == 1.0
     )
 
 
@@ -73,6 +86,8 @@ def shape_at(phi: float, flight: Record) -> float:
         for i in range(MAX_POLYNOMIAL):
             f = f * phi + flight.polynomial[MAX_POLYNOMIAL - 1 - i]
         return f * math.exp(-phi * phi / flight.spread)
+    if flight.family == POLYNOMIALS:
+        return polynomial_value(flight, phi)
     for k in range(flight.terms):
         f += flight.amplitude[k] * math.cos(flight.multiple[k] * phi + flight.shift[k])
     return f
@@ -94,6 +109,8 @@ def shapes_and_slopes(pulse: Record, phase: SimdVector) -> Any:
         value, first, _ = polynomial_at(pulse, phase)
         gaussian = exponential(phase * phase * (-1.0 / pulse.spread))
         return value * gaussian, (first + phase * (-2.0 / pulse.spread) * value) * gaussian
+    if pulse.family == POLYNOMIALS:
+        return polynomial_values_and_slopes(pulse, phase)
     f, slope = splat(0.0), splat(0.0)
     for k in range(pulse.terms):
         sine, cosine = sine_and_cosine(phase * pulse.multiple[k] + pulse.shift[k])
@@ -107,6 +124,8 @@ def expand_excitation(steps: Record) -> None:
     """Fill `f` with the coefficients of F = sgn(theta) a f in powers of tau about `phase`."""
     if steps.family == WAVELET:
         expand_wavelet(steps)
+    elif steps.family == POLYNOMIALS:
+        expand_polynomials(steps)
     else:
         expand_sinusoids(steps)
 

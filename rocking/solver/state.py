@@ -212,6 +212,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("w0", np.float64, lanes),
             ("starts_at_uplift", np.float64, lanes),  # 1 if it starts with an uplift through |a f| = 1, else 0
             ("limit", np.float64, lanes),  # largest step size [tau]
+            ("reach", np.float64, lanes),  # the same, up to which the expansion of the excitation is exact
             ("in_use", np.float64, lanes),  # 1 if the lane follows a block, else 0
             ("destabilised", np.float64, lanes),  # 1 if the block is destabilised up to the end of the segment, else 0
             ("restoring_phase", np.float64, lanes),  # otherwise, phase from which the acceleration is restoring
@@ -318,6 +319,7 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
         steps[name] = flight[name]
     steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)
+    steps["reach"] = math.inf
     for name in AT_REST:
         steps[name] = 1.0
     return steps

@@ -19,6 +19,7 @@ import rocking
 from rocking import plot
 from rocking._numba.simd import LANES
 from rocking.cli.app import app
+from rocking.excitation import pulses
 from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
@@ -34,6 +35,7 @@ PRINTED = {
     "large_rotations": ["6.06624767, 7.45218141"],
     "map_with_boundaries": ["400 never uplift"],
     "own_body": [],
+    "own_family": ["3.08448126"],
     "own_pulse": ["2.02417318"],
     "record": ["45 changes of the outcome", "overturns above 1.13384"],
     "spectrum": ["rotation", "0.04483"],
@@ -63,6 +65,7 @@ def test_every_example_has_an_expected_output():
 def test_example(name, smoke_results, monkeypatch, capsys, tmp_path):
     monkeypatch.setenv("ROCKING_RESULTS", str(smoke_results))
     monkeypatch.setenv("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
+    monkeypatch.setattr(pulses, "_REGISTERED", {})
     path = str(ROOT / "examples" / f"{name}.py")
     if name == "ask_a_server":
         with serving(smoke_results, tmp_path / "log") as server:

@@ -126,4 +126,5 @@ def take_step(steps: Record) -> None:
     expand_excitation(steps)
     expand_motion(steps)
     choose_step_size(steps)
+    store(steps.h, 0, minimum(load(steps.h, 0), load(steps.reach, 0)))
     evaluate_step(steps)

@@ -1,0 +1,39 @@
+"""
+A family of pulses of one's own
+===============================
+
+A subclass of ``SmoothPulse`` gives any smooth function of the phase, in any unit; its parameters are fields. Responses
+are exact to rounding, as for the pulses of the catalogue. Here a decaying sine whose frequency grows.
+"""
+
+import math
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import rocking
+from rocking.excitation.pulses import SmoothPulse, register
+
+
+@dataclass(frozen=True)
+class DecayingChirp(SmoothPulse):
+    decay: float  # [1/rad]
+    growth: float  # of the frequency [1/rad]
+
+    def curve(self, phi):
+        return np.exp(-self.decay * phi) * np.sin(phi + self.growth * phi**2)
+
+
+register(DecayingChirp("chirp", 0.0, 8.0 * math.pi, decay=0.1, growth=0.03))
+
+chirp = rocking.get_pulse("chirp")
+phi = np.linspace(chirp.start, chirp.end, 400)
+figure, axes = plt.subplots(2, 1, layout="constrained")
+axes[0].plot(phi, chirp.acceleration(phi), color="black")
+axes[0].set_xlabel(r"phase $\varphi$ [rad]")
+axes[0].set_ylabel("f [-]")
+print(rocking.critical_amplitude("chirp", frequency_ratio=3.0, restitution=0.85).amplitude)
+block = rocking.Block(half_width=0.2, half_height=0.8)
+rocking.plot.boundary(block.boundary("chirp", period=(0.3, 1.5)), axes[1])
+plt.show()
