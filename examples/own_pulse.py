@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import rocking
-from rocking.excitation.shapes import SinusoidalPulse
+from rocking.excitation.pulses import SinusoidalPulse
 
 cycles = 2.5
 end = 2.0 * math.pi * cycles

@@ -23,6 +23,9 @@ from rocking._numba.way import INTERNALS
 Record = Any
 """A numpy record of named numbers and short arrays, passed to a kernel by address."""
 
+Fields = list[tuple[str, type] | tuple[str, type, tuple[int, ...]]]
+"""Names, types and shapes of consecutive fields of a record."""
+
 FloatArray = NDArray[np.float64]
 """A float64 array; the kernels' docstrings give shapes."""
 

@@ -14,13 +14,10 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from rocking.errors import InvalidArgumentError, number, one_of
-from rocking.excitation.shapes import (
-    AbstractPulse,
-    SinusoidalPulse,
-    WaveletPulse,
-    checked_number,
-)
+from rocking.excitation.shapes import AbstractPulse, checked_number
+from rocking.excitation.sinusoids import SinusoidalPulse
 from rocking.excitation.smooth import SmoothPulse
+from rocking.excitation.wavelets import WaveletPulse
 
 __all__ = [
     "PULSE_NAMES",

@@ -24,6 +24,13 @@ MAX_RATIO = 1e9
 
 
 @final
+class SampleSeries(ExcitationSeries):
+    """No coefficients: the solver reads the samples."""
+
+    family = Family.SAMPLES
+
+
+@final
 class SampledPulse(AbstractPulse):
     """A pulse of any shape, linear between samples and zero outside, scaled to the peak 1.
 
@@ -161,8 +168,12 @@ class SampledPulse(AbstractPulse):
         return SampledPulse(-self.values, self.phases, 2.0 * math.pi, opposite)
 
     @property
-    def series(self) -> ExcitationSeries:
-        return ExcitationSeries(Family.SAMPLES)
+    def samples(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return self.phases, self.values
+
+    @property
+    def series(self) -> SampleSeries:
+        return SampleSeries()
 
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         del start, end

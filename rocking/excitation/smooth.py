@@ -6,6 +6,7 @@ import copy
 import hashlib
 from abc import abstractmethod
 from dataclasses import dataclass, field
+from typing import ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,15 @@ from rocking.excitation.series import ExcitationSeries, Family
 from rocking.excitation.shapes import MAX_PIECES, AbstractPulse, mirrored_name, peak_amplitude
 
 Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True)
+class PolynomialSeries(ExcitationSeries):
+    """f is a polynomial on each of many pieces."""
+
+    family: ClassVar[Family] = Family.POLYNOMIALS
+    polynomials: Polynomials
 
 
 @dataclass(frozen=True)
@@ -89,8 +99,8 @@ class SmoothPulse(AbstractPulse):
         return made
 
     @property
-    def series(self) -> ExcitationSeries:
-        return ExcitationSeries(Family.POLYNOMIALS, polynomials=self.polynomials)
+    def series(self) -> PolynomialSeries:
+        return PolynomialSeries(self.polynomials)
 
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         del start, end

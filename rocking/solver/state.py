@@ -15,16 +15,11 @@ from numpy.typing import NDArray
 from rocking._numba.compilation import Record
 from rocking._numba.records import constant_fields
 from rocking._numba.simd import LANES, VECTOR_BYTES
-from rocking.excitation.series import Family
-from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS, AbstractPulse
+from rocking.excitation.shapes import MAX_PIECES, AbstractPulse
+from rocking.excitation.sinusoids import MAX_SINUSOIDS
 from rocking.model.fields import SOLVED_FIELDS, record_dtype
-from rocking.solver.excitation import EXCITATION_FIELDS, excitation_fields, fill_excitation
-
-SERIES_LENGTH = 17
-"""Length of the series of the slender arcs: degree 16 in z."""
-
-WAVELET_SERIES_LENGTH = 23
-"""The same under wavelets."""
+from rocking.solver.excitation import EXCITATION_FIELDS, PULSE_FIELDS, fill_excitation
+from rocking.solver.families.sinusoids import SERIES_LENGTH
 
 MAX_ORDER = 22
 """Largest degree of the Taylor steps."""
@@ -95,18 +90,10 @@ def _flight_layout() -> np.dtype[np.void]:
     return np.dtype(
         [
             # the excitation
-            *excitation_fields(),
+            *PULSE_FIELDS,
             ("pieces", np.int64),  # number of monotone pieces of f
-            ("end_phase", np.float64, ends),  # their ends, with f and the cosines and sines of the angles there
+            ("end_phase", np.float64, ends),  # their ends, with f there
             ("end_shape", np.float64, ends),
-            ("end_cosine", np.float64, (*ends, MAX_SINUSOIDS)),
-            ("end_sine", np.float64, (*ends, MAX_SINUSOIDS)),
-            (
-                "half_period_phase",
-                np.float64,
-                ends,
-            ),  # single sinusoid: phase at which the half period that holds the piece starts,
-            ("half_period_cosine", np.float64, ends),  # and the cosine there, +1 or -1
             # of two crossings of |f| = 1/a for each piece: its ends with f there, sgn(f) at the crossing, and its
             # phase, see `find_crossings`
             ("crossing_left", np.float64, crossings),
@@ -115,9 +102,6 @@ def _flight_layout() -> np.dtype[np.void]:
             ("crossing_f_right", np.float64, crossings),
             ("crossing_sign", np.float64, crossings),
             ("crossing_phase", np.float64, crossings),
-            ("derivatives", np.float64, (MAX_POLYNOMIAL,)),  # of a wavelet, see `ExcitationSeries`
-            ("growth_rate", np.float64),  # bound of the growth of its derivatives [1/rad]
-            ("series_length", np.int64),  # of the series at the start of a flight in `rocking.solver.stages`
             # the cell
             *BODY_FIELDS,
             ("omega", np.float64),  # frequency ratio
@@ -232,7 +216,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("peak", np.float64, lanes),
             ("taken", np.int64, lanes),  # number of steps of the flight
             # the excitation, as in `FLIGHT_STATE`
-            *excitation_fields(),
+            *EXCITATION_FIELDS,
             # accuracy
             ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
             ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
@@ -275,15 +259,8 @@ set_empty_response = constant_fields({field.name: field.at_rest for field in SOL
 def pulse_state(pulse: AbstractPulse) -> Record:
     """The record `FLIGHT_STATE` of a pulse, to be copied before use."""
     record: Record = np.zeros(1, FLIGHT_STATE)[0]
-    fill_excitation(record, pulse.series)
-    record["series_length"] = SERIES_LENGTH
-    if pulse.series.family == Family.WAVELET:
-        record["series_length"] = WAVELET_SERIES_LENGTH
-        record["derivatives"] = pulse.series.derivatives
-        record["growth_rate"] = pulse.series.growth_rate(WAVELET_SERIES_LENGTH - 2)
-    multiple, shift = (np.array(column) for column in zip(*(term[1:] for term in pulse.series.terms), strict=True))
-    count = len(multiple)
     phases = np.array([pulse.start, *pulse.stationary, pulse.end])
+    fill_excitation(record, pulse.series, phases)
     ends = len(phases)
     record["pieces"] = ends - 1
     record["end_phase"][:ends] = phases
@@ -292,12 +269,6 @@ def pulse_state(pulse: AbstractPulse) -> Record:
         record[f"crossing_{name}"].ravel()[: 2 * (ends - 1)] = np.repeat(values, 2)
     rise = np.where(np.diff(f) < 0.0, -1.0, 1.0)
     record["crossing_sign"].ravel()[: 2 * (ends - 1)] = np.stack((-rise, rise), axis=1).ravel()
-    angles = multiple * phases[:, None] + shift
-    record["end_cosine"][:ends, :count] = np.cos(angles)
-    record["end_sine"][:ends, :count] = np.sin(angles)
-    half_turn = np.floor((0.5 * (angles[:-1, 0] + angles[1:, 0])) / np.pi)
-    record["half_period_phase"][: ends - 1] = half_turn * np.pi - shift[0]
-    record["half_period_cosine"][: ends - 1] = 1.0 - 2.0 * (half_turn % 2.0)
     return record
 
 
@@ -315,7 +286,7 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
     memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
     start = -memory.ctypes.data % VECTOR_BYTES
     steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
-    for name in EXCITATION_FIELDS:
+    for name, *_ in EXCITATION_FIELDS:
         steps[name] = flight[name]
     steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))
     steps["log_precision"] = math.log2(precision)

@@ -21,7 +21,7 @@ from rocking.boundary import trends
 from rocking.datasets.cube import write_dataset
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import SinusoidalPulse
-from rocking.excitation.shapes import MAX_SINUSOIDS
+from rocking.excitation.sinusoids import MAX_SINUSOIDS
 from rocking.history import sampling
 from rocking.interpolation import kernel as lookup_kernel
 from rocking.interpolation import stencils as interpolation

@@ -18,7 +18,9 @@ from rocking.excitation.pulses import (
     WaveletPulse,
     get_pulse,
 )
-from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
+from rocking.excitation.shapes import MAX_PIECES
+from rocking.excitation.sinusoids import MAX_SINUSOIDS
+from rocking.excitation.wavelets import MAX_POLYNOMIAL
 
 PHI_1, PHI_2 = 0.0697034 * pi, 0.0409760 * pi
 BETA = sqrt(6) * sqrt(3 - sqrt(6)) * exp(-(3 - sqrt(6)) / 2)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
-from rocking.solver.state import SERIES_LENGTH
+from rocking.solver.families.sinusoids import SERIES_LENGTH
 
 MAX_EXPONENT = 350.0
 """e^350 determines the sign of any growing term that is not exactly zero, and its square does not overflow."""

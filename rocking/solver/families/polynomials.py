@@ -10,14 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from rocking._numba.compilation import FloatArray, Record, SimdVector, kernel
+from rocking._numba.compilation import Fields, FloatArray, Record, SimdVector, kernel
 from rocking._numba.simd import LANES, gather, load, splat, store
 from rocking.excitation.polynomials import DEGREE, MAX_POLYNOMIALS
-from rocking.excitation.series import ExcitationSeries, Family
+from rocking.excitation.series import Family
+from rocking.excitation.smooth import PolynomialSeries
 
 POLYNOMIALS = int(Family.POLYNOMIALS)
 
-POLYNOMIAL_FIELDS: list[tuple[str, type] | tuple[str, type, tuple[int, ...]]] = [
+POLYNOMIAL_FIELDS: Fields = [
     ("polynomials", np.int64),  # number of pieces
     ("ends", np.float64, (MAX_POLYNOMIALS + 1,)),  # `Polynomials`, with the reciprocals of `halves`
     ("middles", np.float64, (MAX_POLYNOMIALS,)),
@@ -28,11 +29,9 @@ POLYNOMIAL_FIELDS: list[tuple[str, type] | tuple[str, type, tuple[int, ...]]] = 
 ]
 
 
-def fill_polynomials(record: Record, series: ExcitationSeries) -> None:
-    """Write a smooth pulse into a record with `POLYNOMIAL_FIELDS`."""
+def fill_polynomials(record: Record, series: PolynomialSeries) -> None:
+    """Write a smooth pulse."""
     table = series.polynomials
-    if table is None:
-        return
     count = len(table.coefficients)
     record["polynomials"] = count
     record["ends"][: count + 1] = table.ends
@@ -54,19 +53,19 @@ def locate_pieces(pulse: Record, phases: FloatArray) -> None:
 
 
 @kernel
-def polynomial_value(pulse: Record, phase: float) -> float:
-    """f [-] at a phase."""
-    pulse.phases[:] = phase
-    locate_pieces(pulse, pulse.phases)
-    place = pulse.places[0]
-    x, f = (phase - pulse.middles[place]) * pulse.inverse_halves[place], 0.0
+def polynomials_at(phi: float, flight: Record) -> float:
+    """f of the excitation."""
+    flight.phases[:] = phi
+    locate_pieces(flight, flight.phases)
+    place = flight.places[0]
+    x, f = (phi - flight.middles[place]) * flight.inverse_halves[place], 0.0
     for k in range(DEGREE + 1):
-        f = f * x + pulse.coefficients[DEGREE - k, place]
+        f = f * x + flight.coefficients[DEGREE - k, place]
     return f
 
 
 @kernel
-def polynomial_values_and_slopes(pulse: Record, phase: SimdVector) -> Any:
+def polynomials_and_slopes(pulse: Record, phase: SimdVector) -> Any:
     """f [-] and df/dphi at phases."""
     store(pulse.phases, 0, phase)
     locate_pieces(pulse, pulse.phases)

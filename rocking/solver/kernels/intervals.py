@@ -20,7 +20,7 @@ import math
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import LANES
 from rocking.solver.crossings import find_crossings
-from rocking.solver.excitation import is_unit_sinusoid
+from rocking.solver.families.sinusoids import is_unit_sinusoid
 
 
 @kernel

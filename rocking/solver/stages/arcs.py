@@ -14,6 +14,7 @@ from typing import Any
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import any_lane, load, select, splat, store
 from rocking._numba.simd_exponentials import cosh_minus_one_and_sinh
+from rocking.solver.families.sinusoids import SERIES_LENGTH
 from rocking.solver.stages.excitation import (
     expand_at_start,
     particular_increments,
@@ -21,7 +22,6 @@ from rocking.solver.stages.excitation import (
     start_particular_solution,
 )
 from rocking.solver.stages.state import AT_UPLIFT, OMEGA, SLENDERNESS, W0
-from rocking.solver.state import SERIES_LENGTH
 
 
 @kernel

@@ -14,7 +14,8 @@ from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import LANES, any_lane, load, maximum, minimum, select, splat, store
 from rocking._numba.simd_exponentials import arccosine
 from rocking.solver.crossings import refine_crossings
-from rocking.solver.excitation import is_unit_sinusoid, shapes_and_slopes
+from rocking.solver.excitation import shapes_and_slopes
+from rocking.solver.families.sinusoids import is_unit_sinusoid
 from rocking.solver.stages.hermite import hermite_roots
 from rocking.solver.stages.state import SLENDERNESS
 

@@ -1,4 +1,4 @@
-"""The excitation inside the stages: the one place that distinguishes the families of f(phi) for `LANES` cells.
+"""The excitation inside the stages: the one place that distinguishes the families with exact arcs, for `LANES` cells.
 
 `set_angles` sets what the other functions use at a phase: cosines and sines of the angles w_k phi + d_k of a sum of
 sinusoids, or the phase and the Gaussian of a wavelet (`rocking.solver.stages.wavelets`). Each function has a case for
@@ -15,14 +15,19 @@ from rocking._numba.simd import load, maximum, minimum, select, splat, square_ro
 from rocking._numba.simd_exponentials import exponential
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking.solver.arcs.arc import SERIES_RADIUS
-from rocking.solver.excitation import WAVELET, expand_gaussian_product, is_unit_sinusoid, polynomial_at
+from rocking.solver.families.sinusoids import SERIES_LENGTH, is_unit_sinusoid
+from rocking.solver.families.wavelets import (
+    WAVELET,
+    WAVELET_SERIES_LENGTH,
+    expand_gaussian_product,
+    polynomial_at,
+)
 from rocking.solver.stages.state import AT_UPLIFT, OMEGA, PHASE, SLENDERNESS, W0
 from rocking.solver.stages.wavelets import (
     MAX_WAVELET_REACH,
     WAVELET_SERIES_RADIUS,
     particular_solution,
 )
-from rocking.solver.state import SERIES_LENGTH, WAVELET_SERIES_LENGTH
 
 
 @kernel

@@ -8,8 +8,11 @@ import numpy as np
 
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES, VECTOR_BYTES
-from rocking.excitation.shapes import MAX_PIECES, MAX_POLYNOMIAL, MAX_SINUSOIDS
-from rocking.solver.state import RESPONSE_RECORD, WAVELET_SERIES_LENGTH
+from rocking.excitation.shapes import MAX_PIECES
+from rocking.excitation.sinusoids import MAX_SINUSOIDS
+from rocking.excitation.wavelets import MAX_POLYNOMIAL
+from rocking.solver.families.wavelets import WAVELET_SERIES_LENGTH
+from rocking.solver.state import RESPONSE_RECORD
 
 BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""

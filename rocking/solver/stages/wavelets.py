@@ -6,7 +6,7 @@ The bounded solution of z'' - z = -g is K = (A + B)/2, where with the decay c = 
            = sqrt(pi) c g erfcx(c + phi/sqrt(S)),    A(phi) = B(-phi),    erfcx(x) = exp(x^2) erfc(x)
 
 and dK/dphi = K' = (B - A)/(2 omega), omega^2 K'' = K - g. A wavelet is a sum of derivatives of g, f = h_0 g + h_1 g' +
-h_2 g'' + h_3 g''' (`ExcitationSeries.derivatives`), so that the particular solution of z'' - z = -f is
+h_2 g'' + h_3 g''' (`WaveletSeries.derivatives`), so that the particular solution of z'' - z = -f is
 
     p = (h_0 + h_2/omega^2) K + (h_1 + h_3/omega^2) K' - (h_2 g + h_3 g')/omega^2
 
