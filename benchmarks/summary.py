@@ -16,7 +16,7 @@ from typing import Any
 from benchmarks.ablations import suite as ablations
 from benchmarks.accuracy import grid_size, tolerance
 from benchmarks.cells import DIAGRAMS
-from benchmarks.cost import growth, solver, stages, work_precision
+from benchmarks.cost import bodies, growth, solver, stages, work_precision
 from benchmarks.cost import records as recorded_motions
 from benchmarks.service import performance
 
@@ -29,6 +29,7 @@ TABLES = {
     "grid-size": ("Interpolation", grid_size.table),
     "tolerance": ("Tolerance", tolerance.table),
     "records": ("Recorded motions", recorded_motions.table),
+    "bodies": ("Bodies with two edges", bodies.table),
     "service": ("Service", performance.table),
     "ablations": ("Ablations", ablations.table),
     "stages": ("Stages of the reproduction", lambda record: stages.table(record["stages"])),

@@ -30,7 +30,7 @@ from rocking.solver.records.batch import solve_by_steps, solve_slender
 from rocking.solver.records.record_response import record_response
 from rocking.solver.records.samples import motion_samples
 from rocking.solver.records.state import body_states, step_state
-from rocking.solver.state import RESPONSE_RECORD, block_cells
+from rocking.solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
 
 HALF_DIAGONAL = np.array([0.5, 1.0, 2.0, 4.0])
 FREQUENCY_PARAMETER = np.sqrt(0.75 * STANDARD_GRAVITY / HALF_DIAGONAL)
@@ -68,7 +68,7 @@ def stepped(motion: Record, kind: str, scales: int) -> int:
     if kind == "slender":
         return int(solve_slender(samples, cells, body_states(samples, 1)[0], NEVER_STOPPED, found))
     lanes, steps = body_states(samples, LANES), step_state(samples, cells)
-    return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, 2))))
+    return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, EDGE_COLUMNS))))
 
 
 def processor_time(call: Callable[[], Any], rounds: int) -> dict[str, float]:

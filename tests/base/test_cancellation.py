@@ -17,7 +17,7 @@ from rocking.solver.peak_response import NO_BODIES
 from rocking.solver.stages.batch import LEFT, solve_by_arcs
 from rocking.solver.stages.remainder import solve_remainder
 from rocking.solver.stages.state import stage_state
-from rocking.solver.state import RESPONSE_RECORD, pulse_state, step_state
+from rocking.solver.state import EDGE_COLUMNS, RESPONSE_RECORD, pulse_state, step_state
 from rocking.spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
@@ -100,7 +100,7 @@ def test_a_kernel_reads_the_flag_within_one_cell():
             timer = threading.Timer(delay, flag.fill, [1])
             timer.start()
             if alpha:
-                kernel(*groups, NO_BODIES, *scratch, flag, answers, np.empty((0, 2)))
+                kernel(*groups, NO_BODIES, *scratch, flag, answers, np.empty((0, EDGE_COLUMNS)))
             else:
                 kernel(*groups, *scratch, flag, answers)
             timer.join()

@@ -237,6 +237,7 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
         "grid_size",
         "first_call",
         "recorded_motions",
+        "bodies",
         "service",
         "stages",
     )

@@ -12,7 +12,7 @@ from rocking.solver.families.wavelets import WAVELET_SERIES_LENGTH
 from rocking.solver.kernels.batch import solve_batch
 from rocking.solver.peak_response import NO_BODIES, solve_cells, solver_state
 from rocking.solver.stages.batch import LEFT
-from rocking.solver.state import FULL_PRECISION, RESPONSE_RECORD
+from rocking.solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
 from tests.solver.test_stages import assert_agree, assert_equal, by_stages, cells
 
 NAMES = ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"]
@@ -38,7 +38,9 @@ def frequencies(pulse, s, w):
 def by_steps(pulse, s, w, eta):
     found = np.zeros(s.size, RESPONSE_RECORD)
     state = solver_state.of_steps(pulse, FULL_PRECISION)
-    solve_batch(s, w, eta, np.zeros(s.size), NO_BODIES, *state, np.zeros(1, np.uint8), found, np.empty((0, 2)))
+    solve_batch(
+        s, w, eta, np.zeros(s.size), NO_BODIES, *state, np.zeros(1, np.uint8), found, np.empty((0, EDGE_COLUMNS))
+    )
     return found
 
 

@@ -1,7 +1,7 @@
 # The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
 # measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = ["tolerance", "solver", "growth", "grid-size", "first-call", "records", "service", "ablations", "stages"]
+TIMED = ["tolerance", "solver", "growth", "grid-size", "first-call", "records", "bodies", "service", "ablations", "stages"]
 
 
 rule work_precision:
@@ -145,6 +145,22 @@ rule recorded_motions:
         "Responses under recorded motions"
     shell:
         "python -m benchmarks.cost.records --out {output.record} >{log}"
+
+
+rule bodies:
+    output:
+        record="results/benchmarks/bodies.json",
+    log:
+        "logs/bench/bodies.log",
+    benchmark:
+        "logs/bench/bodies.tsv"
+    threads: CORES
+    params:
+        code=benchmark_code("cost/bodies"),
+    message:
+        "Bodies with two edges beside blocks"
+    shell:
+        "python -m benchmarks.cost.bodies --out {output.record} >{log}"
 
 
 rule service:
