@@ -1,17 +1,22 @@
 """A pulse defined outside the package: responses, histories, boundaries, a cube and HTTP responses for it."""
 
+import json
+
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
+from typer.testing import CliRunner
 
 import rocking
 from rocking import precompile
+from rocking.cli.app import app
 from rocking.datasets.cube import read_spectrum, write_dataset
-from rocking.errors import InvalidArgumentError
+from rocking.errors import DatasetError, InvalidArgumentError
 from rocking.excitation import pulses
 from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
+from rocking.lookup.collection import CubeCollection
 from rocking.lookup.open import open_cube
 from rocking.spectra.cubes import spectrum
 from tests.direct_integration import integrate
@@ -125,3 +130,60 @@ def test_numbers_in_files_never_change():
     stored += ("mavroeidis_papageorgiou",)
     assert PULSE_NAMES[: len(stored)] == stored
     assert [pulse_number(name) for name in stored] == list(range(9))
+
+
+@pytest.fixture
+def ramp(monkeypatch):
+    monkeypatch.setattr(pulses, "_REGISTERED", {})
+    made = rocking.SampledPulse([0.0, 1.0, -0.3, 0.0], [0.0, 0.1, 0.5, 0.8], name="ramp")
+    register(made)
+    return made
+
+
+def test_a_sampled_pulse_is_known_by_its_name_to_every_function(ramp):
+    assert rocking.get_pulse("ramp") is ramp
+    assert rocking.get_pulse("-ramp") == ramp.mirrored()
+    for name, pulse in (("ramp", ramp), ("-ramp", ramp.mirrored())):
+        np.testing.assert_array_equal(
+            rocking.peak_response(name, **GROUPS).peak_rotation, rocking.peak_response(pulse, **GROUPS).peak_rotation
+        )
+    assert rocking.time_history("ramp", **GROUPS).equals(rocking.time_history(ramp, **GROUPS))
+    omega = {"frequency_ratio": 3.0, "restitution": 0.85}
+    assert rocking.critical_amplitude("ramp", **omega) == rocking.critical_amplitude(ramp, **omega)
+    window = {"restitution": 0.85, "nodes": 31, "frequency_ratio": (2.0, 3.0)}
+    assert rocking.overturning_boundary("ramp", **window).equals(rocking.overturning_boundary(ramp, **window))
+    block = rocking.Block(0.2, 0.8)
+    motion = {"peak_acceleration": 4.0, "period": 0.6}
+    assert block.response("ramp", **motion).rotation == block.response(ramp, **motion).rotation
+    options = [f"--{key.replace('_', '-')}={value}" for key, value in GROUPS.items()]
+    found = CliRunner().invoke(app, ["response", "--pulse", "ramp", "--json", *options])
+    assert json.loads(found.stdout)["peak_rotation"] == rocking.peak_response(ramp, **GROUPS).peak_rotation
+    with pytest.raises(InvalidArgumentError, match=r"^`name` = "):
+        register(rocking.SampledPulse([0.0, 1.0], name="two words"))
+
+
+def test_a_cube_of_a_sampled_pulse_and_http_by_its_name(ramp, tmp_path, monkeypatch):
+    axes = {"slenderness": np.linspace(0.55, 0.65, 21), "frequency_ratio": np.geomspace(2.8, 3.2, 21)}
+    path = tmp_path / "spectra" / "ramp" / "eta-0.85.nc"
+    write_dataset(spectrum("ramp", restitution=0.85, **axes), path)
+    solved = float(rocking.peak_response(ramp, **GROUPS).peak_rotation)
+    precompile.main()
+    with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
+        listed = client.get("/v1/pulses").json()["pulses"][-1]
+        assert (listed["name"], listed["duration"]) == ("ramp", 1.0)
+        found = client.get("/v1/response", params=GROUPS | {"pulse": "ramp", "tolerance": 1e-2}).json()
+        assert found["source"] == "cube"
+        assert found["peak_rotation"] == pytest.approx(solved, abs=found["error_bound"])
+        for end in ("", ".nc", "/subset", ".zarr/zarr.json", ".zarr/.zmetadata"):
+            response = client.get(f"/v1/datasets/spectra/ramp/eta-0.85{end}")
+            assert response.status_code == 200 or ".zarr" in end, response.text
+        assert client.get("/health").json()["problems"] == {}
+    monkeypatch.setattr(pulses, "_REGISTERED", {})  # as in another process
+    cube = open_cube(path)
+    assert cube.pulse == ramp
+    assert float(cube.response(**GROUPS, method="solver").peak_rotation) == solved
+    register(rocking.SampledPulse([0.0, 1.0, 0.0], name="ramp"))
+    with pytest.raises(DatasetError, match="other samples"):
+        CubeCollection(tmp_path).response("ramp", **GROUPS, method="cube")
+    found, used = CubeCollection(tmp_path).response("ramp", **GROUPS)
+    assert (found.source.item(), used) == ("solver", ())
