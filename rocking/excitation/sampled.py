@@ -11,7 +11,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, in_range, number
+from rocking.errors import InvalidArgumentError, in_range, number, positive
 from rocking.excitation.pulse_file import read_pulse_file
 from rocking.excitation.series import ExcitationSeries, Family
 from rocking.excitation.shapes import AbstractPulse
@@ -136,12 +136,12 @@ class SampledPulse(AbstractPulse):
         InvalidArgumentError
             If the file cannot be read or does not hold a pulse: with the line, what was found and what is allowed.
         """
+        own = {} if period is None else {"period": positive("period", period, "-")}
         file = read_pulse_file(path, MAX_SAMPLES)
-        given = file.arguments if period is None else file.arguments | {"period": period}
         try:
-            return cls(**given)
+            return cls(**file.arguments | own)
         except InvalidArgumentError as error:
-            raise file.error(error) from None
+            raise error if error.parameter in own else file.error(error) from None
 
     @cached_property
     def digest(self) -> str:

@@ -85,6 +85,13 @@ def test_errors_name_the_file_and_the_line(text: str, value: str, allowed: str, 
     assert len(str(caught.value)) < 400
 
 
+@pytest.mark.parametrize("period", [0.0, -1.0, float("nan"), "a", 1e300])
+def test_a_wrong_period_is_named(period: float, tmp_path: Path) -> None:
+    with pytest.raises(InvalidArgumentError) as caught:
+        rocking.SampledPulse.from_file(written(tmp_path, TEXTS["commas"]), period)
+    assert caught.value.parameter == "period"
+
+
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(InvalidArgumentError, match="a file that can be read") as caught:
         rocking.SampledPulse.from_file(tmp_path / "none.csv")
