@@ -54,7 +54,7 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
     Parameters
     ----------
     pulse : str or AbstractPulse
-        Closed form for sums of sinusoids, composite Gauss quadrature for wavelets.
+        Closed form for sums of sinusoids, composite Gauss quadrature for others.
     frequency_ratio : float
         omega [-], [1e-12, 1e12].
     start_phase : float
@@ -71,13 +71,14 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
             total += (c * cmath.exp(1j * (w * phi0 + d)) * (cmath.exp(rate * length) - 1) / rate).real
         return total
     length = min(length, _NEGLIGIBLE)
-    pieces = math.ceil(
-        length * max(omega, 1.0)
-    )  # at most one unit of s and one radian each: 20 nodes are exact to rounding
-    edges = np.linspace(0.0, length, pieces + 1)
-    s = edges[:-1, None] + (edges[1] - edges[0]) * (_NODES + 1) / 2
+    # at most one unit of s, one radian and one monotone or linear piece each: 20 nodes are exact to rounding
+    equal = np.linspace(0.0, length, math.ceil(length * max(omega, 1.0)) + 1)
+    cuts = (np.asarray(shape.stationary if shape.samples is None else shape.samples[0]) - phi0) / omega
+    edges = np.unique(np.concatenate([equal, cuts[(cuts > 0.0) & (cuts < length)]]))
+    halves = 0.5 * np.diff(edges)[:, None]
+    s = edges[:-1, None] + halves * (_NODES + 1)
     values = shape.shape(phi0 + omega * s) * np.exp(-s)
-    return float(np.sum(values * _WEIGHTS) * (edges[1] - edges[0]) / 2)
+    return float(np.sum(values * _WEIGHTS * halves))
 
 
 def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequency_ratio: float) -> float:

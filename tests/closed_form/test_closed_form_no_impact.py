@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
+import rocking
 from rocking import closed_form as cf
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
 from rocking.solver.peak_response import peak_response
 from tests.direct_integration import integrate
+from tests.excitation.test_smooth_pulse import Given
 
 
 def test_half_sine_values_of_shi_et_al_1996():
@@ -97,3 +99,20 @@ def test_margin_after_impact_vanishes_on_the_curves_of_the_sine():
         velocity = float(cf.case_1_2_impact_velocity(a, omega))
         assert cf.margin_after_impact("sine", a, omega, eta, 2 * np.pi, velocity) == pytest.approx(0, abs=1e-12)
         assert cf.margin_after_impact("-sine", a, omega, eta, 2 * np.pi, -velocity) == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize("omega", [0.3, 2.0])
+def test_discounted_integral_of_samples_is_that_of_the_linear_pieces(omega):
+    pulse = rocking.SampledPulse([0.0, 1.0, -0.4, 0.0, 0.2, 0.0])
+    time, f = pulse.phases / omega, pulse.values
+    slope = np.diff(f) / np.diff(time)
+    exact = (f[:-1] + slope) * np.exp(-time[:-1]) - (f[1:] + slope) * np.exp(-time[1:])
+    assert cf.discounted_integral(pulse, omega, 0.0) == pytest.approx(exact.sum(), rel=1e-13)
+
+
+def test_discounted_integral_of_a_smooth_pulse_with_many_extremes():
+    sinusoid = SinusoidalPulse("sum", 0.0, 3.0, (), ((1.0, 60.0, -0.5 * np.pi),))
+    smooth = Given("smooth", 0.0, 3.0, lambda phi: np.sin(60.0 * phi))
+    for start in (0.0, 1.1):
+        exact = cf.discounted_integral(sinusoid, 0.5, start)
+        assert cf.discounted_integral(smooth, 0.5, start) == pytest.approx(exact, rel=1e-12, abs=1e-15)
