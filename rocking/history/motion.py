@@ -10,7 +10,6 @@ from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
 from rocking.errors import positive
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.excitation.sampled import SampledPulse
 from rocking.history.body_motion import FREE_DURATION, BodyMotion, Floats
 from rocking.history.record_motion import SamplesMotion
 from rocking.history.sampling import sample_arcs, solve_and_sample
@@ -110,7 +109,7 @@ def build_motion(
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
         horizon = positive("duration", duration, "-")
-    if isinstance(made, SampledPulse):
+    if made.samples is not None:
         rows = pulse_rows(made, omega)
         return SamplesMotion(block_cell(1.0 / omega, s, eta, angle), horizon, stop, rows)
     return PulseMotion(block_cell(omega, s, eta, angle), horizon, stop, made)

@@ -15,7 +15,6 @@ from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking.errors import broadcast, integer
 from rocking.excitation.pulses import AbstractPulse, as_pulse
-from rocking.excitation.sampled import SampledPulse
 from rocking.model.checks import check_groups, check_number
 from rocking.model.fields import SOLVED_FIELDS
 from rocking.model.outcome_margin import outcome_margin
@@ -125,9 +124,8 @@ def peak_response(
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
     accepted = 0.0 if tolerance is None else check_number(TOLERANCE, tolerance)
-    # no terms to truncate
-    by_arcs = isinstance(made, SampledPulse) or (made.series.has_exact_arcs and slender)
-    precision = FULL_PRECISION if by_arcs else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
+    exact = made.samples is not None or (made.series.has_exact_arcs and slender)  # no terms to truncate
+    precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
         margin = outcome_margin(records["end_rotation"], records["end_velocity"], *_with_alpha(cells)[2:])
@@ -176,7 +174,7 @@ def solve_cells(
     StoppedError
         If `stop` was set.
     """
-    if isinstance(pulse, SampledPulse):
+    if pulse.samples is not None:
         return solve_pulse(pulse, cells, threads, stop)
     if len(cells) == 3 and cells[1].min(initial=math.inf) >= pulse.series.least_arc_frequency:
         return _solve_alike(pulse, cells, True, precision, threads, stop)

@@ -14,14 +14,14 @@ from rocking._numba.simd import LANES
 from rocking.errors import InvalidArgumentError, broadcast, in_range, integer
 from rocking.excitation.records.record import Record
 from rocking.excitation.records.vertical import check_vertical_scale
-from rocking.excitation.sampled import SampledPulse
+from rocking.excitation.shapes import AbstractPulse
 from rocking.model.checks import check, check_alpha
 from rocking.model.fields import SOLVED_FIELDS
 from rocking.model.parameters import FREQUENCY_PARAMETER, RESTITUTION, SLENDERNESS
 from rocking.model.response import Response, dimensions_of
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.records.batch import solve_by_steps, solve_slender
-from rocking.solver.records.samples import motion_samples, pulse_samples
+from rocking.solver.records.samples import TIME, motion_samples, pulse_samples
 from rocking.solver.records.state import body_states, step_state
 from rocking.solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
 
@@ -157,7 +157,7 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
 
 
 def solve_pulse(
-    pulse: SampledPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
+    pulse: AbstractPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
     """Response records (size,) of blocks under a sampled pulse; `cells` as for `solve_cells` of `peak_response`.
 
@@ -178,7 +178,7 @@ def solve_pulse(
     )[0]
 
 
-def pulse_rows(pulse: SampledPulse, lowest: float) -> Array:
+def pulse_rows(pulse: AbstractPulse, lowest: float) -> Array:
     """`pulse_samples` with intervals of at most `MAX_INTERVAL` at frequency ratios from `lowest` on.
 
     Raises
@@ -186,13 +186,14 @@ def pulse_rows(pulse: SampledPulse, lowest: float) -> Array:
     InvalidArgumentError
         If that takes more than `MAX_DIVIDED` intervals.
     """
-    longest = float(np.diff(pulse.phases).max())
+    phases = pulse_samples(pulse)[TIME]
+    longest = float(np.diff(phases).max())
     parts = max(1, math.ceil(longest / (MAX_INTERVAL * lowest)))
-    most = max(1, MAX_DIVIDED // pulse.values.size)
+    most = max(1, MAX_DIVIDED // phases.size)
     if parts > most:
         least = longest / (MAX_INTERVAL * most)
         raise InvalidArgumentError(
-            "frequency_ratio", lowest, f"at least {least:.3g} for this pulse of {pulse.values.size} samples"
+            "frequency_ratio", lowest, f"at least {least:.3g} for this pulse of {phases.size} samples"
         )
     return pulse_samples(pulse, parts)
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking.constants import STANDARD_GRAVITY
+from rocking.errors import InvalidArgumentError
 from rocking.excitation.records.record import Record as RecordedMotion
-from rocking.excitation.sampled import SampledPulse
+from rocking.excitation.shapes import AbstractPulse
 
 SHAPE, LATER, BLOCKS, TIME, VERTICAL, LATER_LOW, BLOCKS_LOW = range(7)
 """Rows of the array of a motion, see `sample_rows`."""
@@ -69,9 +70,17 @@ def motion_samples(motion: RecordedMotion) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=16)
-def pulse_samples(pulse: SampledPulse, parts: int = 1) -> NDArray[np.float64]:
-    """`sample_rows` of a pulse, whose unit of time is the phase [rad]; each interval is divided into `parts`."""
-    phases, values = pulse.phases, pulse.values
+def pulse_samples(pulse: AbstractPulse, parts: int = 1) -> NDArray[np.float64]:
+    """`sample_rows` of a pulse, whose unit of time is the phase [rad]; each interval is divided into `parts`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the pulse is not given by samples.
+    """
+    if pulse.samples is None:
+        raise InvalidArgumentError("pulse", pulse.name, "a pulse given by samples")
+    phases, values = pulse.samples
     if parts > 1:
         share = np.arange(parts) / parts
         phases = np.append(phases[:-1, None] + np.diff(phases)[:, None] * share, phases[-1])
