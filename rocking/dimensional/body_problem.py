@@ -16,7 +16,6 @@ from rocking.errors import InvalidArgumentError, in_range
 from rocking.excitation.pulses import AbstractPulse
 from rocking.excitation.records.record import Record
 from rocking.excitation.records.vertical import reject_flight
-from rocking.excitation.sampled import SampledPulse
 from rocking.history.body_motion import FREE_DURATION, BodyMotion
 from rocking.history.motion import PulseMotion
 from rocking.history.record_motion import SamplesMotion
@@ -138,11 +137,11 @@ class BodyProblem:
         else:
             end = (motion.end - motion.start) / float(cell["rate"])
         horizon = end + FREE_DURATION if duration is None else p * duration
-        if isinstance(motion, SampledPulse):
+        if not isinstance(motion, Record):
+            if motion.samples is None:
+                return PulseMotion(cell, horizon, stop, motion, inertia_ratio=inertia, tilt=tilt)
             rows = pulse_rows(motion, float(cell["rate"]))
             cell["rate"] = 1.0 / cell["rate"]
-        elif not isinstance(motion, Record):
-            return PulseMotion(cell, horizon, stop, motion, inertia_ratio=inertia, tilt=tilt)
         return SamplesMotion(cell, horizon, stop, rows, inertia_ratio=inertia, tilt=tilt)
 
 

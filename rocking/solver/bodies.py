@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag
 from rocking.excitation.records.record import Record
-from rocking.excitation.sampled import SampledPulse
 from rocking.excitation.shapes import AbstractPulse
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking.solver.kernels.batch import solve_batch
@@ -44,7 +43,7 @@ def solve_motion(
     """
     if isinstance(motion, Record):
         return solve_bodies(motion_samples(motion), cells, threads, stop, each_side=True)
-    if isinstance(motion, SampledPulse):
+    if motion.samples is not None:
         rows = pulse_rows(motion, float(cells["rate"].min(initial=math.inf)))
         sampled = cells.copy()
         sampled["rate"] = 1.0 / cells["rate"]
