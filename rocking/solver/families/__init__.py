@@ -1,1 +1,1 @@
-"""Families of f(phi) in the solver, one module each; `rocking.solver.excitation` selects the one of a pulse."""
+"""Families of f(phi), one module each: fields of the record, value, slope, expansion, exact arcs."""
