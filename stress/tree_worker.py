@@ -1,0 +1,83 @@
+"""Solves chunks of random cells with the package that PYTHONPATH gives; started by `stress.versions`, once for a tree.
+
+It imports nothing of `stress/`, so that it runs with the package of any commit. A line of JSON on standard input
+describes a chunk, with the seed from which its cells are drawn; the answer on standard output is a line of JSON (number
+of cells, processor time [s]) and the records `RESULT` of the responses. A chunk may name some of its cells, and factors
+of their inputs: then only these are solved.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from functools import lru_cache, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import rocking
+
+INPUTS = ("slenderness", "frequency_ratio", "restitution", "alpha")
+"""Under a record the second is the frequency parameter p [rad/s]."""
+
+RESULT = np.dtype([("peak_rotation", "f8"), ("outcome", "i1"), ("impacts", "i4"), ("chatter", "?")])
+
+AT_LIMIT = 0.02
+"""Share of the cells with eta = 0, and of those with eta = 1 [-]."""
+
+Array = NDArray[np.float64]
+
+
+def draw(chunk: dict[str, Any]) -> list[Array]:
+    """The inputs of all cells of a chunk; alpha is 0 for slender blocks."""
+    random, size = np.random.default_rng(chunk["seed"]), chunk["size"]
+    slenderness = random.uniform(0.02, 1.0, size)
+    low, high = (0.5, 10.0) if chunk["record"] else (0.1, 30.0)
+    frequency = np.exp(random.uniform(np.log(low), np.log(high), size))
+    eta = np.clip(random.uniform(-AT_LIMIT, 1.0 + AT_LIMIT, size), 0.0, 1.0)
+    alpha = random.uniform(0.01, 1.4, size) if chunk["rigid"] else np.zeros(size)
+    return [slenderness, frequency, eta, alpha]
+
+
+@lru_cache
+def read_motion(path: str) -> rocking.Record:
+    """The record of a file."""
+    return rocking.read_record(path)
+
+
+def solve(chunk: dict[str, Any]) -> tuple[NDArray[np.void], float]:
+    """The responses of a chunk, array (cells,) of `RESULT`, and the processor time [s]."""
+    cells = draw(chunk)
+    if "cells" in chunk:
+        chosen = np.array(chunk["cells"], np.intp)
+        cells = [values[chosen] * factor for values, factor in zip(cells, chunk["factors"], strict=True)]
+        cells[2] = np.minimum(cells[2], 1.0)
+    inputs: dict[str, Any] = dict(zip(INPUTS, cells, strict=True))
+    if chunk["record"]:
+        inputs["frequency_parameter"] = inputs.pop("frequency_ratio")
+        call = partial(rocking.record_response, read_motion(chunk["pulse"]), threads=1)
+    else:
+        call = partial(rocking.peak_response, chunk["pulse"], threads=1)
+    call(**{name: values[: values.size // 50] for name, values in inputs.items()})  # compiled before the time is taken
+    started = time.process_time()
+    response = call(**inputs)
+    seconds = time.process_time() - started
+    found = np.empty(cells[0].size, RESULT)
+    for name in RESULT.names or ():
+        found[name] = getattr(response, name)
+    return found, seconds
+
+
+def main() -> None:
+    """Answer until standard input ends."""
+    for line in sys.stdin:
+        found, seconds = solve(json.loads(line))
+        sys.stdout.buffer.write(json.dumps({"cells": found.size, "seconds": seconds}).encode() + b"\n")
+        sys.stdout.buffer.write(found.tobytes())
+        sys.stdout.buffer.flush()
+
+
+if __name__ == "__main__":
+    main()

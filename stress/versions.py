@@ -1,0 +1,253 @@
+"""Compares the responses of random cells between this tree and another checkout of the package.
+
+    python -m stress.versions OTHER_TREE --cells 10_000_000
+
+Cells are drawn in chunks, for all named pulses and a record in turn, slender and rigid (`stress.tree_worker`), and
+solved by a process of each tree. A comparison that was interrupted is continued by the same command. Reported for each
+kind of cell:
+
+- peaks: the largest relative difference, and the largest over the effect of one rounding, 2^-53, of each input and of
+  the peak itself, which follows from the conditioning of the cell;
+- events: cells whose outcome or (without chatter) number of impacts differ. One is explained if each tree finds what
+  the other has found when inputs change by at most `MAX_ULPS`: so near, the rounding of the inputs decides. The exit
+  status is 1 if one is not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.measure import progress, save
+from rocking.excitation.pulses import PULSE_NAMES
+from rocking.source_tree import PROJECT, SourceTree
+from stress.tree_worker import INPUTS, RESULT
+
+RECORD = PROJECT / "workflow/motions/napa_HNE.csv"
+
+CHUNK, RECORD_CHUNK = 100_000, 5_000
+"""Cells of a chunk; of a record, under which a cell takes some hundred times as long."""
+
+ROUNDING = 2.0**-53
+"""Relative error of a number that is rounded to a double [-]."""
+
+SMALL = 1e-10
+"""Relative change of an input by which conditioning is measured [-]: the differences are exact to six digits."""
+
+MAX_ULPS = 256
+"""Largest change of the inputs, in units in the last place, that explains another outcome."""
+
+
+class Tree:
+    """A process that solves chunks with the package of a checkout."""
+
+    def __init__(self, root: Path) -> None:
+        worker = Path(__file__).with_name("tree_worker.py")
+        environment = os.environ | {"PYTHONPATH": str(root), "OMP_NUM_THREADS": "1"}
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", str(worker)], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.communicate()
+
+    def start(self, chunk: dict[str, Any]) -> None:
+        """Let the process solve a chunk."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps(chunk).encode() + b"\n")
+        self._process.stdin.flush()
+
+    def result(self) -> tuple[NDArray[np.void], float]:
+        """The responses of the chunk that was started, and its processor time [s]."""
+        assert self._process.stdout is not None
+        about = json.loads(self._process.stdout.readline() or b"null")
+        if about is None:
+            sys.exit(f"a process has ended with status {self._process.wait()}")
+        content = self._process.stdout.read(about["cells"] * RESULT.itemsize)
+        return np.frombuffer(content, RESULT), float(about["seconds"])
+
+    def solve(self, chunk: dict[str, Any], cells: NDArray[np.intp], factors: NDArray[np.float64]) -> NDArray[np.void]:
+        """The responses of some cells of a chunk with inputs multiplied by factors (4,)."""
+        self.start(chunk | {"cells": cells.tolist(), "factors": factors.tolist()})
+        return self.result()[0]
+
+
+def kinds() -> list[dict[str, Any]]:
+    """The kinds of cells, in the order of the chunks."""
+    motions = [(name, False, CHUNK) for name in PULSE_NAMES] + [(str(RECORD), True, RECORD_CHUNK)]
+    return [
+        {"pulse": name, "record": record, "rigid": rigid, "size": size}
+        for (name, record, size), rigid in product(motions, (False, True))
+    ]
+
+
+def same_events(one: NDArray[np.void], other: NDArray[np.void]) -> NDArray[np.bool_]:
+    """Where outcomes and, without chatter, the numbers of impacts are equal."""
+    counted = ~one["chatter"] & ~other["chatter"]
+    return np.asarray((one["outcome"] == other["outcome"]) & (~counted | (one["impacts"] == other["impacts"])))
+
+
+def compare_chunk(chunk: dict[str, Any], trees: Sequence[Tree]) -> dict[str, Any]:
+    """Solve a chunk in both trees and compare the responses."""
+    for tree in trees:
+        tree.start(chunk)
+    (here, seconds), (there, others) = (tree.result() for tree in trees)
+    same = same_events(here, there)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.abs(there["peak_rotation"] / here["peak_rotation"] - 1.0)
+    change = np.where(same, np.nan_to_num(change), 0.0)  # nan: both overturn, or none uplifts
+    moved = np.flatnonzero(change)
+    over = change[moved] / (ROUNDING * (1.0 + conditioning(chunk, moved, here, trees[0])))
+    differing = np.flatnonzero(~same)
+    return {
+        "cells": here.size,
+        "outcomes": int(np.sum(here["outcome"] != there["outcome"])),
+        "impacts": int(differing.size - np.sum(here["outcome"] != there["outcome"])),
+        "equal_peaks": int(np.sum(same & (change == 0.0))),
+        "largest_change": float(change.max()),
+        "largest_over_conditioning": float(over.max(initial=0.0)),
+        "seconds": seconds,
+        "seconds_there": others,
+        "differences": [
+            {"cell": int(k), "ulps": ulps, "here": here[k].tolist()[1:3], "there": there[k].tolist()[1:3]}
+            for k, ulps in zip(differing, ulps_that_explain(chunk, differing, here, there, trees), strict=True)
+        ],
+    }
+
+
+def conditioning(
+    chunk: dict[str, Any], cells: NDArray[np.intp], found: NDArray[np.void], tree: Tree
+) -> NDArray[np.float64]:
+    """Sum over the inputs of the relative change of the peak over that of the input [-]; infinite at a boundary."""
+    total = np.zeros(cells.size)
+    for k in range(len(INPUTS)):
+        factors = np.ones(len(INPUTS))
+        factors[k] -= SMALL
+        moved = tree.solve(chunk, cells, factors)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            change = np.abs(moved["peak_rotation"] / found["peak_rotation"][cells] - 1.0) / SMALL
+        total += np.where(np.isnan(change), np.inf, change)
+    return total
+
+
+def ulps_that_explain(
+    chunk: dict[str, Any],
+    cells: NDArray[np.intp],
+    here: NDArray[np.void],
+    there: NDArray[np.void],
+    trees: Sequence[Tree],
+) -> list[int | None]:
+    """The change of the inputs, in ulps, with which each tree finds what the other has found; None above `MAX_ULPS`.
+
+    Both have to: a tree that errs at single points finds what the other has found next to them.
+    """
+    needed = [ulps_to_find(chunk, cells, wanted, tree) for tree, wanted in zip(trees, (there, here), strict=True)]
+    return [None if None in pair else max(filter(None, pair)) for pair in zip(*needed, strict=True)]
+
+
+def ulps_to_find(
+    chunk: dict[str, Any], cells: NDArray[np.intp], wanted: NDArray[np.void], tree: Tree
+) -> list[int | None]:
+    """The change of the inputs, in ulps, with which a tree finds the wanted events; None above `MAX_ULPS`."""
+    found: list[int | None] = [None] * cells.size
+    ulps = 1
+    while ulps <= MAX_ULPS and None in found:
+        for steps in product((-ulps, 0, ulps), repeat=len(INPUTS)):
+            left = np.array([k for k, known in enumerate(found) if known is None], dtype=np.intp)
+            if not left.size:
+                break
+            moved = tree.solve(chunk, cells[left], 1.0 + 2.0 * ROUNDING * np.array(steps))
+            for k in left[same_events(moved, wanted[cells[left]])]:
+                found[k] = ulps
+        ulps *= 2
+    return found
+
+
+def summary(kind: dict[str, Any], chunks: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The results of the chunks of one kind together."""
+    added = ("cells", "outcomes", "impacts", "equal_peaks", "seconds", "seconds_there")
+    largest = ("largest_change", "largest_over_conditioning")
+    total = {name: sum(chunk[name] for chunk in chunks) for name in added}
+    total |= {name: max(chunk[name] for chunk in chunks) for name in largest}
+    differences = [{"seed": chunk["seed"], **one} for chunk in chunks for one in chunk["differences"]]
+    name = f"{Path(kind['pulse']).stem}, {'rigid' if kind['rigid'] else 'slender'}"
+    return {"kind": name, **total, "differences": differences}
+
+
+def markdown(rows: Sequence[dict[str, Any]]) -> str:
+    """The comparison as a table."""
+    names = ("cells", "number", "equal peaks", "largest difference", "over conditioning")
+    names += ("outcomes", "impacts", "unexplained", "us here", "us there")
+    lines = [f"| {' | '.join(names)} |", "| --- " * len(names) + "|"]
+    for row in rows:
+        cells = row["cells"]
+        values = (
+            row["kind"],
+            f"{cells}",
+            f"{100.0 * row['equal_peaks'] / cells:.1f} %",
+            f"{row['largest_change']:.1e}",
+            f"{row['largest_over_conditioning']:.2g}",
+            *(f"{row[name]}" for name in ("outcomes", "impacts")),
+            f"{len(unexplained(row))}",
+            *(f"{1e6 * row[name] / cells:.3g}" for name in ("seconds", "seconds_there")),
+        )
+        lines.append(f"| {' | '.join(values)} |")
+    return "\n".join(lines)
+
+
+def unexplained(row: dict[str, Any]) -> list[dict[str, Any]]:
+    """The differences of events that the rounding of the inputs does not explain."""
+    return [one for one in row["differences"] if one["ulps"] is None]
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("other", type=Path, metavar="OTHER_TREE", help="folder that holds another version of rocking/")
+    parser.add_argument("--cells", type=int, default=1_000_000, help="fewest cells; default: %(default)s")
+    parser.add_argument("--seed", type=int, default=0, help="of the cells; default: %(default)s")
+    parser.add_argument("--out", type=Path, default=Path("results/stress/versions.json"))
+    options = parser.parse_args()
+    roots = PROJECT, options.other.resolve()
+    if not (roots[1] / "rocking/__init__.py").is_file():
+        parser.error(f"{options.other}: no folder rocking/ with the package")
+    digests = [SourceTree(root).digest_of(SourceTree(root).package()) for root in roots]
+    identity = {"seed": options.seed, "digests": digests, "kinds": kinds()}
+    chunks: list[dict[str, Any]] = []
+    if options.out.exists():
+        former = json.loads(options.out.read_bytes())
+        chunks = former["chunks"] if {name: former.get(name) for name in identity} == identity else []
+    trees, partial = [Tree(root) for root in roots], options.out.with_suffix(".partial")
+    done = sum(chunk["cells"] for chunk in chunks)
+    while done < options.cells:
+        seed = [options.seed, len(chunks)]
+        found = compare_chunk(kinds()[len(chunks) % len(kinds())] | {"seed": seed}, trees)
+        chunks.append({"seed": seed, **found})
+        done += found["cells"]
+        save(identity | {"chunks": chunks}, partial)
+        partial.replace(options.out)
+        progress(f"{done} of {options.cells} cells")
+    for tree in trees:
+        tree.close()
+    rows = [summary(kind, chunks[k :: len(kinds())]) for k, kind in enumerate(kinds()[: len(chunks)])]
+    table = markdown(rows)
+    options.out.with_suffix(".md").write_text(table + "\n", encoding="utf-8")
+    print(table)
+    left = [f"{row['kind']}: {one}" for row in rows for one in unexplained(row)]
+    if left:
+        sys.exit("\n".join(["events that the rounding of the inputs does not explain:", *left]))
+
+
+if __name__ == "__main__":
+    main()
