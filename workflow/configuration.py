@@ -24,6 +24,7 @@ from pydantic import (
 
 from rocking.errors import InvalidArgumentError
 from rocking.excitation.pulses import PULSE_NAMES
+from rocking.model.fields import DERIVED_FIELDS
 from rocking.spectra.bands import HALO_ABOVE, HALO_BELOW, bands
 from rocking.suites.configuration import suite_configuration
 from workflow.pulses import configured_pulse, different
@@ -149,6 +150,8 @@ def _pairs(blocks: Any) -> Any:
 
 
 PULSE = leaf(f"one of {', '.join(PULSE_NAMES)}", lambda value: value in PULSE_NAMES)
+DERIVED_NAMES = [field.name for field in DERIVED_FIELDS]
+DERIVED = leaf(f"one of {', '.join(DERIVED_NAMES)}", lambda value: value in DERIVED_NAMES)
 ETA = number(0, 1)
 OMEGA = number(1e-3, 1e3)
 SLENDERNESS = number(1e-4, 10)
@@ -257,6 +260,7 @@ DATA_SETS = {
     "pulses": Annotated[several(Annotated[Any, PlainValidator(_pulse)]), AfterValidator(_by_name)],
     "restitution": Annotated[several(ETA, ascending=True), AfterValidator(_two_decimals)],
     "grid": section(
+        {"derived": several(DERIVED)},
         alpha_deg=Annotated[several(number(0.01, 89, zero=True), ascending=True), AfterValidator(_with_slender_limit)],
         slenderness=Annotated[
             section(breaks=several(SLENDERNESS, 2, ascending=True), steps=list[number(1e-6, 10)]),  # type: ignore[misc]

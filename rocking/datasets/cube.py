@@ -14,9 +14,10 @@ restitution_error     f4   largest error halfway to the next restitution, measur
 alpha_error           f4   largest error halfway to the next angle, measured in the same cells
 ====================  ===  =====================================================================================
 
-with scalar coordinates `pulse` and `restitution`; alpha = 0 stands for the slender limit. A file of a pulse given by
-samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of
-creation, so equal content gives equal bytes, and a digest of their values.
+with scalar coordinates `pulse` and `restitution`, and derived fields of the nodes where they were asked for
+(`OPTIONAL_VARIABLES`); alpha = 0 stands for the slender limit. A file of a pulse given by samples holds these,
+`pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of creation, so equal content
+gives equal bytes, and a digest of their values.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from rocking.errors import DatasetError
 from rocking.excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
 from rocking.excitation.sampled import SampledPulse
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
-from rocking.model.fields import CUBE_FIELDS
+from rocking.model.fields import CUBE_FIELDS, DERIVED_FIELDS
 from rocking.model.parameters import FREQUENCY_RATIO, SLENDERNESS
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
@@ -102,6 +103,9 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking.model.fields`."""
 
+OPTIONAL_VARIABLES = {field.name: (field.file_dtype, field.attributes) for field in DERIVED_FIELDS}
+"""Variables that a spectrum cube has if they were asked for, at its nodes; they are not interpolated."""
+
 VARIABLES["peak_rotation"][1]["ancillary_variables"] = "outcome peak_mode stencil interpolation_error"
 
 _GLOBAL = {
@@ -128,7 +132,7 @@ def build_spectrum_dataset(
     Parameters
     ----------
     variables : mapping
-        The arrays named in `VARIABLES`, each of shape (alpha, slenderness, frequency_ratio).
+        The arrays named in `VARIABLES` and any of `OPTIONAL_VARIABLES`, of shape (alpha, slenderness, frequency_ratio).
     pulse : str or SampledPulse
         Name of the pulse, or a pulse given by samples.
     restitution : float
@@ -140,7 +144,8 @@ def build_spectrum_dataset(
     cube = xr.Dataset(
         {
             key: (DIMENSIONS, np.asarray(variables[key], dtype=dtype), {**MODEL_RESULT, **attributes})
-            for key, (dtype, attributes) in VARIABLES.items()
+            for key, (dtype, attributes) in (VARIABLES | OPTIONAL_VARIABLES).items()
+            if key in variables
         },
         coords={key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS},
     )
@@ -336,7 +341,8 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
         As `read_spectrum`.
     """
     cube = decode_dataset(content, path)
-    for name, (dtype, _) in VARIABLES.items():
+    present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
+    for name, (dtype, _) in (VARIABLES | present).items():
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
             raise DatasetError(f"{path}: no variable `{name}` of type {dtype} over {DIMENSIONS}; build it again")
     for name in DIMENSIONS:

@@ -33,6 +33,7 @@ from rocking.interpolation.stencils import slice_index, slice_window
 from rocking.interpolation.windows import SLICE_WINDOW, group_points
 from rocking.lookup.cube_slice import CubeSlice
 from rocking.lookup.points import Points
+from rocking.model.fields import DERIVED_FIELDS
 from rocking.model.outcome import Outcome
 from rocking.solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 from rocking.solver.chunks import AVAILABLE_CORES, fill_chunks
@@ -319,6 +320,7 @@ def _response(found: Found) -> BoundedResponse:
         exceeded_alpha=found.exceeded_alpha,
         error_bound=found.error_bound,
         from_cube=found.state == INTERPOLATED,
+        derived={field.name: np.where(found.state == INTERPOLATED, np.nan, field.at_rest) for field in DERIVED_FIELDS},
     )
 
 

@@ -8,13 +8,15 @@ classes with them.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking.model.outcome import Outcome
+from rocking.model.residual_energy import residual_energy
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,9 @@ class ResponseField:
         What else has to be known; empty if nothing.
     at_rest : float
         Value of a block that does not uplift.
+    derive : callable, optional
+        Computes the field from other fields and the groups, both arrays by name, which broadcast; the groups that a
+        response does not know are not there. None: the solver computes it.
     """
 
     name: str
@@ -50,6 +55,7 @@ class ResponseField:
     missing: str = ""
     detail: str = ""
     at_rest: float = 0.0
+    derive: Callable[[Mapping[str, NDArray[Any]], Mapping[str, NDArray[Any]]], NDArray[Any]] | None = None
 
     @property
     def file_dtype(self) -> str:
@@ -146,6 +152,16 @@ END_ROTATION = ResponseField(
     "end_rotation", "f8", "1", "3.11", "rotation |theta|/alpha when the pulse ends, or when overturning is certain"
 )
 END_VELOCITY = ResponseField("end_velocity", "f8", "1", "3.11", "rate of |theta|/alpha with respect to p t then")
+RESIDUAL_ENERGY = ResponseField(
+    "residual_energy",
+    "f8",
+    "1",
+    "3.11",
+    "kinetic and potential energy at the end of the pulse over that of the unstable equilibrium at alpha",
+    "it is interpolated in a data set, or the angle alpha is not known",
+    "both from the energy at rest; where overturning is certain earlier, the energy then",
+    derive=residual_energy,
+)
 
 OVERTURNED = ResponseField("overturned", "?", "1", "3.8", "whether the block overturns")
 ERROR_BOUND = ResponseField(
@@ -175,16 +191,19 @@ SOLVED_FIELDS = (
 )
 """Fields of the record that the solver writes for each block."""
 
-RESPONSE_FIELDS = SOLVED_FIELDS
+DERIVED_FIELDS = (RESIDUAL_ENERGY,)
+"""Numbers that are computed from fields of a response when they are read, without a kernel."""
+
+RESPONSE_FIELDS = (*SOLVED_FIELDS, *DERIVED_FIELDS)
 """Fields of `rocking.Response`, in order."""
 
 BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, FROM_CUBE)
 """Fields of a response with an error bound, of an interpolated cube or of the solver."""
 
 CUBE_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, PEAK_MODE)
-"""Fields of a response that a spectrum cube stores."""
+"""Fields of a response that a spectrum cube stores; those of `DERIVED_FIELDS` on request."""
 
-COLUMN_FIELDS = (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, SOURCE)
+COLUMN_FIELDS = (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, SOURCE, *DERIVED_FIELDS)
 """Columns of a response as CSV and JSON."""
 
 

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking.equality import EqualByValue
 from rocking.errors import InvalidArgumentError
-from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS
+from rocking.model.derived_fields import DerivedFields
+from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField
 from rocking.model.outcome import Outcome
 from rocking.model.parameters import FREQUENCY_PARAMETER, GROUPS
 from rocking.units import Quantity
@@ -25,7 +26,7 @@ __all__ = ["Outcome", "Response", "dimensions_of"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Response(EqualByValue):
+class Response(DerivedFields, EqualByValue):
     """Responses of blocks to a pulse. Every field is an array of the broadcast shape of the arguments.
 
     The fields are declared, with their equations, in `rocking.model.fields`.
@@ -56,6 +57,9 @@ class Response(EqualByValue):
         mode the peak is a smooth function of the groups.
     end_rotation, end_velocity : float64 arrays [-]
         Rotation |theta|/alpha and its rate with respect to p t when the pulse ends, or when overturning is certain.
+    residual_energy : float64 array [-]
+        Kinetic and potential energy at the end of the pulse over that of the unstable equilibrium at alpha, both from
+        the energy at rest; where overturning is certain earlier, the energy then. nan if the angle is not known.
     pulse : str
         Name of the pulse; empty if not known.
     groups : mapping of str to array
@@ -89,6 +93,12 @@ class Response(EqualByValue):
     def shape(self) -> tuple[int, ...]:
         """The broadcast shape of the arguments."""
         return self.peak_rotation.shape
+
+    def _derived(self, field: ResponseField) -> NDArray[Any]:
+        if field.derive is None:
+            raise AttributeError(field.name)
+        fields = {one.name: vars(self)[one.name] for one in SOLVED_FIELDS}
+        return np.asarray(field.derive(fields, self.groups), field.dtype)
 
     def __repr__(self) -> str:
         """What happened, in words."""

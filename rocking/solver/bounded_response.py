@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking.equality import EqualByValue
 from rocking.excitation.pulses import AbstractPulse
-from rocking.model.fields import BOUNDED_FIELDS
+from rocking.model.derived_fields import DerivedFields
+from rocking.model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, ResponseField
 from rocking.model.outcome import Outcome
 from rocking.solver.peak_response import peak_response
 from rocking.solver.rules import IMPACT_LIMIT
@@ -23,7 +26,7 @@ Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BoundedResponse(EqualByValue):
+class BoundedResponse(DerivedFields, EqualByValue):
     """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
 
     The fields are declared, with their equations, in `rocking.model.fields`.
@@ -44,6 +47,8 @@ class BoundedResponse(EqualByValue):
         changes within the rounding of the parameters.
     from_cube : bool array
         Whether it is interpolated in a data set; else it is solved.
+    derived : mapping of str to float64 array
+        The derived fields, such as `residual_energy`, which are attributes too; nan where it is interpolated.
     """
 
     peak_rotation: Array
@@ -52,6 +57,7 @@ class BoundedResponse(EqualByValue):
     exceeded_alpha: Flags
     error_bound: Array
     from_cube: Flags
+    derived: Mapping[str, Array]
 
     @property
     def source(self) -> NDArray[np.str_]:
@@ -84,16 +90,25 @@ class BoundedResponse(EqualByValue):
 
     def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
         """The same responses in another shape."""
-        return BoundedResponse(*(getattr(self, field.name).reshape(shape) for field in BOUNDED_FIELDS))
+        return self._each(lambda values: values.reshape(shape))
 
     def __getitem__(self, index: Flags | NDArray[np.intp] | slice) -> BoundedResponse:
         """The responses of a part of the points."""
-        return BoundedResponse(*(getattr(self, field.name)[index] for field in BOUNDED_FIELDS))
+        return self._each(lambda values: values[index])
+
+    def _each(self, change: Callable[[NDArray[Any]], NDArray[Any]]) -> BoundedResponse:
+        fields: dict[str, Any] = {field.name: change(getattr(self, field.name)) for field in BOUNDED_FIELDS}
+        return BoundedResponse(**fields, derived={name: change(values) for name, values in self.derived.items()})
+
+    def _derived(self, field: ResponseField) -> Array:
+        return self.derived[field.name]
 
     def put(self, where: Flags | NDArray[np.intp], part: BoundedResponse) -> None:
         """Set the responses of a part of the points."""
         for field in BOUNDED_FIELDS:
             getattr(self, field.name)[where] = getattr(part, field.name)
+        for name, values in self.derived.items():
+            values[where] = part.derived[name]
 
 
 def solve_with_bound(
@@ -143,5 +158,11 @@ def solve_with_bound(
     bound[found.overturned[0]] = np.nan
     bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
     return BoundedResponse(
-        peak, outcome, found.impacts[0], found.exceeded_alpha[0], bound, np.zeros(peak.shape, np.bool_)
+        peak,
+        outcome,
+        found.impacts[0],
+        found.exceeded_alpha[0],
+        bound,
+        np.zeros(peak.shape, np.bool_),
+        {field.name: getattr(found, field.name)[0] for field in DERIVED_FIELDS},
     )

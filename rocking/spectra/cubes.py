@@ -14,10 +14,12 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._numba.cancellation import StopFlag
-from rocking.datasets.cube import build_spectrum_dataset
+from rocking.datasets.cube import OPTIONAL_VARIABLES, build_spectrum_dataset
+from rocking.errors import one_of
 from rocking.excitation.sampled import SampledPulse
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking.model.checks import check, check_alpha
+from rocking.model.fields import CUBE_FIELDS
 from rocking.model.outcome_code import SURVIVES, outcome_codes
 from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking.model.response import Response
@@ -77,6 +79,7 @@ def spectra(
     frequency_ratio: ArrayLike,
     alpha: ArrayLike = (0.0,),
     barred: NDArray[np.bool_] | None = None,
+    derived: Sequence[str] = (),
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Iterator[xr.Dataset]:
@@ -96,6 +99,8 @@ def spectra(
         Slenderness angles [rad], ascending; 0 for the slender limit.
     barred : bool array, shape (l, k, n - 1, m - 1), optional
         Cells that are not interpolated because overturning boundaries cross them (`rocking.boundary.cells`).
+    derived : sequence of str
+        Names of `rocking.model.fields.DERIVED_FIELDS` that the cubes store too.
     threads : int, optional
         Threads of the solver; by default all cores.
     stop : StopFlag, optional
@@ -110,8 +115,10 @@ def spectra(
     columns = check(FREQUENCY_RATIO, frequency_ratio)
     angles = check_alpha(alpha)
     etas = check(RESTITUTION, restitution)
+    for name in derived:
+        one_of("derived", name, OPTIONAL_VARIABLES)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
-    layers, errors = _layers(grid, etas, angles, barred)
+    layers, errors = _layers(grid, etas, angles, barred, derived)
     errors |= _errors_between_slices(grid, layers, etas, angles)
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
     for k, eta in enumerate(etas):
@@ -121,7 +128,7 @@ def spectra(
 
 
 def _layers(
-    grid: _Grid, etas: Array, angles: Array, barred: NDArray[np.bool_] | None
+    grid: _Grid, etas: Array, angles: Array, barred: NDArray[np.bool_] | None, derived: Sequence[str]
 ) -> tuple[list[list[GridLayer]], dict[str, Array]]:
     """The layers by restitution and angle, and the errors (l, k, n - 1, m - 1) of interpolation in their cells."""
     layers: list[list[GridLayer]] = [[] for _ in etas]
@@ -130,9 +137,10 @@ def _layers(
         for first in range(0, etas.size, BATCH_SIZE):
             some = etas[first : first + BATCH_SIZE]
             nodes = grid.nodes(some, angle)
+            further = {name: getattr(nodes, name) for name in derived}
             for k in range(some.size):
                 bars = None if barred is None else barred[first + k, a]
-                layers[first + k].append(GridLayer.of(grid.mesh, nodes, k, bars))
+                layers[first + k].append(GridLayer.of(grid.mesh, nodes, k, bars, further))
             made = [layers[first + k][a] for k in range(some.size)]
             errors[first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
     return layers, {"interpolation_error": errors}
@@ -317,8 +325,8 @@ def _cube(
     errors: Mapping[str, Array],
 ) -> xr.Dataset:
     """Assemble the layers of one restitution; the values of a cell are stored at its lower node."""
-    names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha", "peak_mode")
-    variables = {name: np.stack([getattr(layer, name) for layer in layers]) for name in names}
+    variables = {field.name: np.stack([getattr(layer, field.name) for layer in layers]) for field in CUBE_FIELDS}
+    variables |= {name: np.stack([layer.derived[name] for layer in layers]) for name in layers[0].derived}
 
     def at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
         return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)

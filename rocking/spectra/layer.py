@@ -6,7 +6,9 @@ E = (1 - peak)^2 that vanishes on the overturning boundary. E is interpolated th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +23,7 @@ from rocking.interpolation.stencils import (
     interpolate_cells,
     interpolated_cells,
 )
+from rocking.model.fields import CUBE_FIELDS, IMPACTS, OUTCOME, PEAK_MODE
 from rocking.model.outcome_code import SURVIVES, outcome_codes
 from rocking.model.response import Outcome, Response
 
@@ -42,7 +45,10 @@ FEW_IMPACTS = 1
 
 @dataclass(frozen=True, eq=False)
 class GridLayer:
-    """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `rocking.datasets.cube`."""
+    """Nodes (n, m) and cells (n - 1, m - 1) of one restitution and one angle; fields as in `rocking.datasets.cube`.
+
+    `derived` holds the derived fields that are stored too.
+    """
 
     mesh: Mesh
     peak_rotation: Array
@@ -51,22 +57,29 @@ class GridLayer:
     exceeded_alpha: Flags
     peak_mode: NDArray[np.int32]
     stencil: NDArray[np.int8]
+    derived: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None) -> GridLayer:
+    def of(
+        cls, mesh: Mesh, nodes: Response, k: int, barred: Flags | None, derived: Mapping[str, Array] | None = None
+    ) -> GridLayer:
         """The k-th restitution of solved nodes (n, m, restitutions); cells `barred` (n - 1, m - 1) have no stencil.
 
-        The fields are copied: views would keep all fields of all restitutions in memory.
+        `derived` are fields of the nodes that are stored too. The fields are copied: views would keep all fields of all
+        restitutions in memory.
         """
-        fields = ("peak_rotation", "outcome", "impacts", "exceeded_alpha", "peak_mode")
-        peak, outcome, impacts, exceeded, mode = (np.ascontiguousarray(getattr(nodes, f)[..., k]) for f in fields)
+        stored: dict[str, NDArray[Any]] = {
+            one.name: np.ascontiguousarray(getattr(nodes, one.name)[..., k]) for one in CUBE_FIELDS
+        }
+        outcome, impacts, mode = (stored[one.name] for one in (OUTCOME, IMPACTS, PEAK_MODE))
         safe = outcome == Outcome.SAFE
         codes = np.where(interpolated_cells(safe), PEAK, NO_STENCIL)
         codes = np.where(interpolated_cells(safe & (mode % 2 == 1)), SQUARED, codes)
         codes = np.where(_same_overturning(outcome_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
-        return cls(mesh, peak, outcome, impacts, exceeded, mode, codes.astype(np.int8))
+        further = {name: np.ascontiguousarray(values[..., k]) for name, values in (derived or {}).items()}
+        return cls(mesh=mesh, **stored, stencil=codes.astype(np.int8), derived=further)
 
     @property
     def smooth(self) -> Flags:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, check_file, read_slice
+from rocking.datasets.cube import AXES, DIMENSIONS, build_spectrum_dataset, check_file, read_slice
 from rocking.excitation.sampled import SampledPulse
 from rocking.spectra.bands import rows_with_halo
 from rocking.spectra.cubes import spectra
@@ -58,9 +58,9 @@ def spectrum_tile(
     variables: dict[str, NDArray[Any]] = {}
     for k, cube in enumerate(spectra(pulse, restitution=etas, slenderness=rows[around], barred=barred, **grid)):
         part = cube.isel(slenderness=own)
-        for name, (dtype, _) in VARIABLES.items():
-            whole = variables.setdefault(name, np.empty((etas.size, *part[name].shape), dtype=dtype))
-            whole[k] = part[name].values
+        for name, values in part.data_vars.items():
+            whole = variables.setdefault(str(name), np.empty((etas.size, *values.shape), dtype=values.dtype))
+            whole[k] = values.values
     axes = {name: (name, part[name].values, AXES[name]) for name in DIMENSIONS}
     dimensions = ("restitution", *DIMENSIONS)
     return xr.Dataset({name: (dimensions, values) for name, values in variables.items()}, {"restitution": etas, **axes})
@@ -83,7 +83,9 @@ def join_tiles(pulse: str | SampledPulse, tiles: Sequence[Path]) -> Iterator[xr.
         parts = [read_slice(path, restitution=k) for path in tiles]
         axes = {name: parts[0][name].values for name in DIMENSIONS}
         axes["slenderness"] = np.concatenate([part["slenderness"].values for part in parts])
-        variables = {name: np.concatenate([part[name].values for part in parts], axis=1) for name in VARIABLES}
+        variables = {
+            str(name): np.concatenate([part[name].values for part in parts], axis=1) for name in parts[0].data_vars
+        }
         del parts
         cube = build_spectrum_dataset(variables, pulse=pulse, restitution=float(eta), axes=axes)
         yield cube.assign_attrs(restitution_slices=etas)

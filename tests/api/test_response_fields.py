@@ -17,7 +17,7 @@ def test_models_have_the_declared_fields_in_order(model):
 
 
 def test_a_point_has_the_fields_of_a_bounded_response():
-    assert PointResult._fields == (*(field.name for field in BOUNDED_FIELDS[:-1]), "source", "data_version")
+    assert PointResult._fields == (*(field.name for field in BOUNDED_FIELDS[:-1]), "source", "data_version", "derived")
 
 
 def test_csv_has_the_declared_columns(client):

@@ -53,6 +53,7 @@ def main(
         frequency_ratio=frequency_ratio,
         alpha=alpha,
         barred=barred,
+        derived=grid.get("derived", ()),
         threads=threads,
     )
     write_dataset(tile, part, chunks={"restitution": 1, "alpha": 1})

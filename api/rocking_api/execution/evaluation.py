@@ -16,14 +16,16 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from rocking._numba.cancellation import StopFlag
 from rocking.lookup.collection import CubeCollection
 from rocking.model.checks import check
-from rocking.model.fields import BOUNDED_FIELDS, FROM_CUBE
+from rocking.model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, FROM_CUBE
 from rocking.solver.bounded_response import BoundedResponse
 from rocking_api.models.params import FREQUENCY_RATIO, SLENDERNESS, LookupOptions, alpha_of
 
 CHUNK_SIZE = 50_000
 """Points between two checks of the stop flag [-]: some hundredths of a second."""
 
-FIELDS: dict[str, DTypeLike] = {field.name: field.dtype for field in BOUNDED_FIELDS if field is not FROM_CUBE}
+FIELDS: dict[str, DTypeLike] = {
+    field.name: field.dtype for field in (*BOUNDED_FIELDS, *DERIVED_FIELDS) if field is not FROM_CUBE
+}
 """Fields of `BoundedResponse` that are kept, and their types."""
 
 BYTES_PER_POINT = sum(np.dtype(dtype).itemsize for dtype in FIELDS.values()) + 1
@@ -107,7 +109,7 @@ def evaluate_many(
 
 
 class PointResult(NamedTuple):
-    """The fields of a `BoundedResponse` for one block, and the sha256 of the data set it comes from."""
+    """The fields of a `BoundedResponse` for one block, the sha256 of its data set, and the derived fields by name."""
 
     peak_rotation: float
     outcome: int
@@ -116,10 +118,17 @@ class PointResult(NamedTuple):
     error_bound: float
     source: str
     data_version: str | None
+    derived: dict[str, float]
 
 
 def point_results(found: BoundedResponse, versions: tuple[str, ...]) -> list[PointResult]:
     """The results of one restitution, one by one."""
-    columns = [getattr(found, name).ravel().tolist() for name in PointResult._fields[:-1]]
+    columns = [getattr(found, name).ravel().tolist() for name in PointResult._fields[:-2]]
+    derived = {name: values.ravel().tolist() for name, values in found.derived.items()}
     version = versions[0] if versions else None
-    return [PointResult._make((*row, version if row[-1] == "cube" else None)) for row in zip(*columns, strict=True)]
+    return [
+        PointResult._make(
+            (*row, version if row[-1] == "cube" else None, {name: values[k] for name, values in derived.items()})
+        )
+        for k, row in enumerate(zip(*columns, strict=True))
+    ]

@@ -19,7 +19,7 @@ from pydantic_core import to_json
 
 from rocking.datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking.datasets.cube import MODEL_RESULT, VARIABLES
-from rocking.model.fields import ERROR_BOUND
+from rocking.model.fields import DERIVED_FIELDS, ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
 
 Form = Literal["json", "csv", "nc"]
@@ -131,6 +131,8 @@ def dataset_of(
             dtype, about = VARIABLES[name]
             kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
             variables[name] = ("point", result.fields[name].astype(dtype, copy=False), MODEL_RESULT | kept)
+    for field in DERIVED_FIELDS:
+        variables[field.name] = ("point", result.fields[field.name], MODEL_RESULT | field.attributes)
     bound = {"units": ERROR_BOUND.unit, **ERROR_BOUND.attributes}
     source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": " ".join(_SOURCES)}
     variables["error_bound"] = ("point", result.fields["error_bound"], bound)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.metadata import version
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field, SerializeAsAny
+from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from rocking.model.fields import (
     COLUMN_FIELDS,
+    DERIVED_FIELDS,
     ERROR_BOUND,
     EXCEEDED_ALPHA,
     IMPACTS,
@@ -26,6 +27,8 @@ from rocking_api.execution.evaluation import BatchResult, PointResult
 from rocking_api.http.encoding import Column
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import HistoryParams, OverturningParams, ResponseParams
+
+Model = TypeVar("Model", bound=BaseModel)
 
 VERSION = version("rocking")
 OUTCOMES = [outcome.name for outcome in Outcome]
@@ -46,6 +49,13 @@ _DATA = Field(
 )
 
 
+def with_derived_fields(kind: Any) -> Callable[[type[Model]], type[Model]]:
+    """A decorator that adds the derived fields, each of the type `kind`, to a model."""
+    fields: dict[str, Any] = {field.name: (kind, Field(description=field.description())) for field in DERIVED_FIELDS}
+    return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
+
+
+@with_derived_fields(float | None)
 class PointResponse(BaseModel):
     """One block."""
 
@@ -64,6 +74,7 @@ class PointResponse(BaseModel):
     metadata_url: str = METADATA_URL_FIELD
 
 
+@with_derived_fields(list[float | None])
 class Columns(BaseModel):
     """Many blocks, in the order of the request."""
 
@@ -256,6 +267,7 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
         note = "the block overturns: there is no peak"
     elif math.isinf(point.error_bound):
         note = "the outcome changes within the rounding of the question: there is no bound"
+    derived: dict[str, Any] = {name: finite(value) for name, value in point.derived.items()}
     return PointResponse(
         query=params,
         peak_rotation=finite(point.peak_rotation),
@@ -268,6 +280,7 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
         note=note,
         source=point.source,
         data_version=point.data_version,
+        **derived,
     )
 
 
