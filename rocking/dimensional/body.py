@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -307,14 +308,20 @@ class RespondingBody(AbstractBody):
                 "horizontal displacement of the top",
             ),
         }
-        attributes = {
+        attributes: dict[str, Any] = {
             "motion": problem.motion.name,
             "body": self.description,
             "peak_acceleration": float(problem.acceleration),
             "outcome": Outcome(int(record["outcome"])).name,
             "impacts": int(record["impacts"]),
+            "alpha": alpha,
+            "alpha_left": float(self.left.alpha),
+            "slenderness": float(moving.cell["slenderness"][0]),
+            "slenderness_left": float(moving.cell["slenderness"][1]),
             "motion_end": moving.pulse_end / p,
         }
+        if not isinstance(motion, Record):
+            attributes |= {"pulse": problem.motion.name, "pulse_end": moving.pulse_end / p}
         if contact:
             found = reactions_of(moving, impacts, tau, rotation, velocity)
             slope = math.tan(alpha)

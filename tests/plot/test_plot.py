@@ -62,6 +62,21 @@ def test_ground_acceleration_with_the_smallest_one_that_starts_rocking(ax):
     assert "m/s" in ax.get_ylabel()
 
 
+def test_pictures_of_a_body_with_two_edges(ax):
+    body = rocking.RigidBody(0.12, 0.18, 0.4)
+    data = body.history("sine", peak_acceleration=4.0, period=0.6)
+    plot.history(data, ax)
+    limits = {round(float(line.get_ydata()[0]), 6) for line in ax.lines if len(line.get_ydata()) == 2}
+    right, left = np.degrees(float(body.right.alpha)), np.degrees(float(body.left.alpha))
+    assert {round(right, 6), round(-left, 6)} <= limits
+    assert ax.get_xlim() == (0.0, float(data["time"][-1]))
+    ground = plot.ground_acceleration(data)
+    limits = {round(float(line.get_ydata()[0]), 6) for line in ground.lines if len(line.get_ydata()) == 2}
+    assert {round(9.80665 * 0.12 / 0.4, 6), round(-9.80665 * 0.18 / 0.4, 6)} <= limits
+    assert "period" in plot.spectrum(body.spectrum("sine", peak_acceleration=4.0, period=[0.3, 0.6, 0.9])).get_xlabel()
+    assert "period" in plot.boundary(body.boundary("sine", period=(0.4, 1.5))).get_xlabel()
+
+
 def test_history_of_a_record_and_in_groups(ax):
     record = noise(3)
     found = rocking.record_history(record, frequency_parameter=3.0, slenderness=0.3, restitution=0.85)

@@ -20,8 +20,8 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     Parameters
     ----------
     data : xarray.Dataset
-        Result of `rocking.time_history`, `rocking.record_history` or `rocking.Block.history`. Rotation in radians is
-        drawn in degrees.
+        Result of `rocking.time_history`, `rocking.record_history`, or of `history` of a block or body. Rotation in
+        radians is drawn in degrees.
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default in a new figure.
     **style
@@ -37,9 +37,10 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     rotation = data["rotation"]
     in_degrees = rotation.attrs["units"] == "rad"
     scale, alpha = (180.0 / math.pi, math.degrees(data.attrs["alpha"])) if in_degrees else (1.0, 1.0)
+    of_left = scale * data.attrs.get("alpha_left", alpha / scale)
     _mark_pulse(ax, data)
-    for sign in (-1.0, 1.0):
-        ax.axhline(sign * alpha, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
+    for limit in (-of_left, alpha):
+        ax.axhline(limit, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
     ax.axhline(0.0, color=GREY, linewidth=0.5)
     ax.plot(x, scale * rotation.values, **({"color": BLUE} | style))
     impacts = data["impact_time"].values
@@ -77,9 +78,10 @@ def ground_acceleration(data: xr.Dataset, ax: Axes | None = None, **style: Any) 
     ax = axes_of(ax)
     ground = data["ground_acceleration"]
     in_si = ground.attrs["units"] != "1"
-    uplift = data.attrs["peak_acceleration"] * data.attrs["slenderness"] if in_si else 1.0
-    for sign in (-1.0, 1.0):
-        ax.axhline(sign * uplift, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
+    strength = data.attrs["peak_acceleration"] if in_si else 1.0
+    resisted = data.attrs["slenderness"] if in_si else 1.0
+    for uplift in (-resisted, data.attrs.get("slenderness_left", resisted)):
+        ax.axhline(strength * uplift, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)))
     ax.axhline(0.0, color=GREY, linewidth=0.5)
     ax.plot(x, ground.values, **({"color": "black"} | style))
     ax.set_xlim(0.0, float(x.values[-1]) or None)  # one sample has no length
