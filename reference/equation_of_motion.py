@@ -4,6 +4,10 @@ With z = |theta|/alpha and s the sign of theta, u = a f the ground acceleration 
 
     slender   z'' = -(1 - z) - s u
     rigid     z'' = -sin(alpha (1 - z))/alpha - s u (tan(alpha)/alpha) cos(alpha (1 - z))
+
+The series also hold for a flight about an edge of another angle alpha_s = r alpha, with r - z for 1 - z, and under a
+vertical ground acceleration, with V = 1 + (vertical acceleration)/g as a factor of the first term. A frequency
+parameter p_s other than p, the unit of tau, is a factor (p_s/p)^2 of the square of the step.
 """
 
 from __future__ import annotations
@@ -80,27 +84,53 @@ class Motion(NamedTuple):
         return 2 * (self.alpha * below / 2).sin() / self.alpha
 
 
-def slender_series(z: arb, slope: arb, square: arb, forcing: list[arb], at_crossing: bool) -> list[arb]:
-    """z_{k+2} (k+1)(k+2) = h^2 [z_k - (1 if k = 0) + push_k]."""
+ONE, ZERO = arb(1), arb(0)
+
+
+def slender_series(
+    z: arb,
+    slope: arb,
+    square: arb,
+    forcing: list[arb],
+    at_crossing: bool,
+    ratio: arb = ONE,
+    vertical: tuple[arb, arb] = (ONE, ZERO),
+) -> list[arb]:
+    """z_{k+2} (k+1)(k+2) = h^2 [V_0 z_k + V_1 z_{k-1} - (r V_k if k < 2) + push_k]."""
     series = [z, slope]
     for k, p in enumerate(forcing[:-1]):
-        force = series[k] + p - 1 if k == 0 else series[k] + p
+        force = vertical[0] * series[k] + p
+        if k > 0:
+            force += vertical[1] * series[k - 1]
+        if k < 2:
+            force -= ratio * vertical[k]
         if k == 0 and at_crossing:
             force = arb(0)
         series.append((square * force / ((k + 1) * (k + 2))).mid())
     return series
 
 
-def rigid_series(z: arb, slope: arb, square: arb, forcing: list[arb], alpha: arb, at_crossing: bool) -> list[arb]:
-    """The same with S = sin(alpha (1 - z))/alpha, C = cos(alpha (1 - z)): S' = -C z', C' = alpha^2 S z'."""
+def rigid_series(
+    z: arb,
+    slope: arb,
+    square: arb,
+    forcing: list[arb],
+    alpha: arb,
+    at_crossing: bool,
+    ratio: arb = ONE,
+    vertical: tuple[arb, arb] = (ONE, ZERO),
+) -> list[arb]:
+    """The same with S = sin(alpha (r - z))/alpha, C = cos(alpha (r - z)): S' = -C z', C' = alpha^2 S z'."""
     series = [z, slope]
-    sine, cosine = (alpha * (1 - z)).sin_cos()
+    sine, cosine = (alpha * (ratio - z)).sin_cos()
     s, c = [(sine / alpha).mid()], [cosine.mid()]
     weighted = [slope]  # (j + 1) z_{j+1}
     scale, alpha2 = (alpha.tan() / alpha).mid(), (alpha * alpha).mid()
     forcing = [(scale * p).mid() for p in forcing]
     for k in range(len(forcing) - 1):
-        force = sum(map(mul, forcing[: k + 1], c[::-1]), -s[k])
+        force = sum(map(mul, forcing[: k + 1], c[::-1]), -vertical[0] * s[k])
+        if k > 0:
+            force -= vertical[1] * s[k - 1]
         if k == 0 and at_crossing:
             force = arb(0)
         series.append((square * force / ((k + 1) * (k + 2))).mid())

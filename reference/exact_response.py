@@ -13,14 +13,16 @@ NO_UPLIFT, SAFE, OVERTURNED_DIRECTLY, OVERTURNED_AFTER_IMPACT, CAPPED = 0, 1, 2,
 
 @dataclass
 class ExactResponse:
-    """Response of a block; times are tau = p t.
+    """Response of a block; times are tau = p t. Of a body with two edges p and alpha are those of the right one.
 
     `margin` is the distance of the deciding quantity from the barrier (> 0 overturns), `uplifts` counts uplifts from
-    rest, `slowest_impact` is the smallest speed at an impact during the pulse.
+    rest, `slowest_impact` is the smallest speed at an impact during the pulse. `peaks` are the largest |theta|/alpha on
+    the right and the left edge, `peak_rotation` is the larger of |theta|/alpha_s.
     """
 
     outcome: int = NO_UPLIFT
     peak_rotation: arb | None = None
+    peaks: tuple[arb, arb] | None = None
     impacts: int = 0
     chatter: bool = False
     exceeded_alpha: bool = False
