@@ -31,6 +31,8 @@ def residual_energy(fields: Mapping[str, NDArray[Any]], groups: Mapping[str, NDA
         return np.full(z.shape, np.nan)
     half = 0.5 * groups["alpha"]
     barrier = np.sinc(half / np.pi)  # sin(half)/half
-    # X(0)^2 - X(z)^2 as a product has no cancellation for small z
-    climbed = z * (2.0 - z) * np.sinc(half * z / np.pi) * np.sinc(half * (2.0 - z) / np.pi)
-    return np.asarray((w * w + climbed) / (barrier * barrier))
+    x = (1.0 - z) * np.sinc(half * (1.0 - z) / np.pi)
+    with np.errstate(over="ignore", invalid="ignore"):  # each form is used where it neither cancels nor overflows
+        climbed = z * (2.0 - z) * np.sinc(half * z / np.pi) * np.sinc(half * (2.0 - z) / np.pi)  # X(0)^2 - X(z)^2
+        energy = np.where(z < 1.0, w * w + climbed, (w - x) * (w + x) + barrier * barrier)
+    return np.asarray(energy / (barrier * barrier))

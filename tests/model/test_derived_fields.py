@@ -50,7 +50,7 @@ found = rocking.peak_response("sine", **groups)
 options = ["--slenderness", "0.3", "--frequency-ratio", "5", "--restitution", "0.85"]
 printed = CliRunner().invoke(app, ["response", "--pulse", "sine", *options, "--csv"])
 query = {"pulse": "sine", "slenderness": 0.3, "frequency_ratio": 5.0, "restitution": 0.85, "method": "solver"}
-with TestClient(create_app(Settings(results=sys.argv[2])), base_url="http://127.0.0.1") as client:
+with TestClient(create_app(Settings(results=sys.argv[2], max_seconds=600.0)), base_url="http://127.0.0.1") as client:
     one = client.get("/v1/response", params=query).json()
     many = client.post("/v1/response", json=query, headers={"Accept": "text/csv"}).text
 cube = spectrum("sine", restitution=0.85, slenderness=np.linspace(0.2, 0.5, 4),
@@ -129,6 +129,20 @@ def test_blocks_with_less_energy_than_the_unstable_equilibrium_survive():
     assert not low.all()
     assert not found.overturned[low].any()
     assert (found.residual_energy[found.outcome == rocking.Outcome.NO_UPLIFT] == 0.0).all()
+
+
+@pytest.mark.parametrize("frequency_ratio", [1e-9, 1e-3, 1e9])
+def test_the_energy_is_finite_at_the_ends_of_the_ranges(frequency_ratio):
+    """Where overturning is certain at rotations of 1e157 alpha, too."""
+    for pulse in ("rectangular", "sine", "ricker"):
+        found = rocking.peak_response(
+            pulse,
+            slenderness=[1e-6, 0.9],
+            frequency_ratio=frequency_ratio,
+            restitution=0.85,
+            alpha=[[0.0], [1e-12], [1.57]],
+        )
+        assert np.isfinite(found.residual_energy).all()
 
 
 def test_without_an_angle_there_is_no_energy():
