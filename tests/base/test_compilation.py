@@ -2,6 +2,7 @@
 
 import gc
 import math
+import operator
 import os
 import re
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from numba.core.types.functions import BaseFunction
 
 import rocking
 from rocking import precompile
@@ -242,3 +244,45 @@ def test_only_the_cores_of_this_process_are_used():
     bind = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})"
     code = f"{bind}; import rocking.solver.peak_response; print(rocking.solver.peak_response.AVAILABLE_CORES)"
     assert script(code) == "1\n"
+
+
+@pytest.mark.skipif(INTERNALS is None, reason="of the faster way alone")
+def test_an_operation_is_looked_up_once_for_each_combination_of_types(monkeypatch):
+    looked_up = []
+    look_up = BaseFunction.get_call_type
+
+    def counted(self, context, args, kws):
+        looked_up.append((self.key[0], args))
+        return look_up(self, context, args, kws)
+
+    monkeypatch.setattr(BaseFunction, "get_call_type", counted)
+
+    @kernel
+    def twice(x):
+        return x + x
+
+    @kernel
+    def thrice(x):
+        return x + x + x
+
+    @entry
+    def product(x, n):
+        return twice(x) * thrice(x) * twice(n)
+
+    assert product(0.5, 3) == 9.0
+    sums = [args for key, args in looked_up if key is operator.add]
+    assert sorted(sums, key=str) == [(numba.float64,) * 2, (numba.int64,) * 2]
+    assert BaseFunction.get_call_type is counted  # as it was before
+
+
+@pytest.mark.skipif(INTERNALS is None, reason="of the faster way alone")
+def test_an_entry_that_cannot_be_compiled_leaves_numba_as_it_was():
+    before = BaseFunction.get_call_type, numba.types.Record.__repr__
+
+    @entry
+    def cannot(x):
+        return x + "a"
+
+    with pytest.raises(numba.TypingError):
+        cannot(0.5)
+    assert before == (BaseFunction.get_call_type, numba.types.Record.__repr__)
