@@ -55,6 +55,7 @@ class SmoothPulse(AbstractPulse):
 
     Examples
     --------
+    >>> import numpy as np
     >>> from dataclasses import dataclass
     >>> @dataclass(frozen=True)
     ... class Decay(SmoothPulse):
@@ -62,8 +63,8 @@ class SmoothPulse(AbstractPulse):
     ...
     ...     def curve(self, phi):
     ...         return np.exp(-self.rate * phi) * np.sin(phi)
-    >>> Decay("decay", 0.0, 4.0 * np.pi, rate=0.1).acceleration([0.0, 1.5]).round(3).tolist()
-    [0.0, 0.997]
+    >>> Decay("decay", 0.0, 4.0 * np.pi, rate=0.1).acceleration([0.0, 4.5]).round(3).tolist()
+    [0.0, -0.726]
     """
 
     stationary: tuple[float, ...] = field(init=False, repr=False, compare=False)

@@ -1,5 +1,6 @@
 """Smooth pulses of one's own: their polynomials and extremes, equality, and what is refused."""
 
+import doctest
 import math
 from dataclasses import dataclass
 
@@ -8,6 +9,7 @@ import pytest
 
 import rocking
 from rocking.errors import InvalidArgumentError
+from rocking.excitation import smooth
 from rocking.excitation.polynomials import DEGREE, MAX_POLYNOMIALS, turning_points
 from rocking.excitation.shapes import MAX_PIECES
 from rocking.excitation.smooth import SmoothPulse
@@ -143,3 +145,9 @@ def test_a_class_without_curve_is_no_pulse():
     with pytest.raises(TypeError, match="curve"):
         SmoothPulse("none", 0.0, 1.0)
     assert rocking.get_pulse("sine").stationary == (math.pi / 2, 3 * math.pi / 2)
+
+
+def test_the_example_of_the_docstring():
+    found = doctest.testmod(smooth)
+    assert found.attempted > 0
+    assert found.failed == 0
