@@ -1,0 +1,31 @@
+"""The documented settings of the service are those it has."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from rocking_api.routers.control_map import MapParams
+from rocking_api.settings import Settings
+
+PAGE = (Path(__file__).parents[2] / "docs" / "service.md").read_text(encoding="utf-8")
+ROWS = dict(re.findall(r"^\| ROCKING_(\w+) \| ([^|]+?) \|", PAGE, flags=re.MULTILINE))
+
+
+def test_the_table_names_every_setting():
+    assert {name.lower() for name in ROWS} == set(Settings.model_fields)
+
+
+@pytest.mark.parametrize("name", sorted(set(ROWS) - {"CACHE"}))
+def test_a_documented_default_is_the_default(name):
+    default = Settings.model_fields[name.lower()].default
+    documented = ROWS[name]
+    if isinstance(default, Path):
+        assert documented == str(default)
+    else:
+        assert json.loads(documented) == (list(default) if isinstance(default, tuple) else default)
+
+
+def test_the_default_map_is_the_one_of_the_page():
+    fields = MapParams.model_fields
+    assert (fields["columns"].default, fields["rows"].default) == (120, 90)
