@@ -12,8 +12,9 @@ import xarray as xr
 from compliance_checker.runner import CheckSuite
 from netCDF4 import Dataset
 
-from rocking.datasets.cube import VARIABLES, read_dataset, read_spectrum, write_dataset
+from rocking.datasets.cube import VARIABLES, read_dataset, read_spectrum, stored_pulse, write_dataset
 from rocking.errors import DatasetError, InvalidArgumentError
+from rocking.excitation.sampled import SampledPulse
 from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
 from rocking.model.response import Outcome
 from rocking.solver.peak_response import peak_response
@@ -58,6 +59,15 @@ def complaints(path: Path, standard: str) -> list[str]:
 @pytest.mark.filterwarnings("ignore")  # warnings of the dependencies of the checker
 def test_spectrum_follows_cf(written: Path) -> None:
     assert complaints(written, "cf:1.11") == []
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_file_holds_the_samples_of_its_pulse_and_follows_cf(tmp_path: Path) -> None:
+    pulse = SampledPulse(np.random.default_rng(1).uniform(-1.0, 1.0, 100), period=30.0, name="noise")
+    axes = {"slenderness": SLENDERNESS[::4], "frequency_ratio": FREQUENCY_RATIO[::4]}
+    write_dataset(spectrum(pulse, restitution=0.85, **axes), tmp_path / "noise.nc")
+    assert complaints(tmp_path / "noise.nc", "cf:1.11") == []
+    assert stored_pulse(read_spectrum(tmp_path / "noise.nc")) == pulse
 
 
 @pytest.mark.filterwarnings("ignore")
