@@ -23,7 +23,9 @@ from rocking.history.contact import contact_extremes, reactions_of
 from rocking.history.record_history import MAX_SAMPLES, default_times
 from rocking.history.record_motion import SamplesMotion
 from rocking.model.body import AbstractBody
+from rocking.model.checks import check, check_number
 from rocking.model.outcome import Outcome
+from rocking.model.parameters import RESTITUTION, Parameter
 from rocking.model.response import dimensions_of
 from rocking.units import Scalar, Values
 
@@ -33,6 +35,14 @@ Motion = str | AbstractPulse | Record
 
 DEFAULT_SAMPLES = 400
 """Uniform samples of a history under a pulse, unless another number is given."""
+
+
+STRENGTHS = {
+    "peak_acceleration": Parameter("peak_acceleration", "a_g", "m/s2", 0.0, math.inf, "neither", "peak acceleration"),
+    "period": Parameter("period", "T_p", "s", 0.0, math.inf, "neither", "period of the pulse"),
+    "scale": Parameter("scale", "", "-", 0.0, HIGHEST_SCALE, "right", "factor of a record"),
+}
+"""Arguments that say how strong and how long a motion is."""
 
 
 class RespondingBody(AbstractBody):
@@ -148,7 +158,7 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError, StoppedError
             As for `response`; also if `size` is missing for a record, or the body is an array.
         """
-        self._need_one("spectrum")
+        self._need_one("spectrum", restitution, peak_acceleration=peak_acceleration, scale=scale)
         if size is None and isinstance(motion, Record):
             raise InvalidArgumentError("size", None, "factors of all lengths, for the spectrum of a record")
         axis, values = ("period", period) if size is None else ("size", size)
@@ -206,7 +216,7 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError, StoppedError
             As for `response`.
         """
-        self._need_one("boundary")
+        self._need_one("boundary", restitution)
         if isinstance(motion, Record):
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
@@ -278,9 +288,8 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError, StoppedError
             As for `response`; also if the body or an argument is an array.
         """
+        self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
         problem, *_ = self._problem(motion, peak_acceleration, period, scale, restitution)
-        if problem.shape:
-            raise InvalidArgumentError("history", f"shape {problem.shape}", "one body under one motion")
         if samples is not None:
             samples = integer("samples", samples, 2, MAX_SAMPLES)
         length = None if duration is None else positive("duration", duration, "s")
@@ -368,28 +377,26 @@ class RespondingBody(AbstractBody):
         restitution: Values = "momentum",
     ) -> tuple[BodyProblem, dict[str, Array], tuple[Hashable, ...]]:
         """The checked problem, its arguments as arrays, and the names of the dimensions of labelled ones."""
-        of_pulse = {"peak_acceleration": peak_acceleration, "period": period}
         eta = checked_restitution(restitution)
-        given: dict[str, Values | None]
+        of_pulse = {"peak_acceleration": peak_acceleration, "period": period}
+        given: dict[str, Values]
         if isinstance(motion, Record):
             for name, value in of_pulse.items():
                 if value is not None:
                     raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
             given = {"scale": 1.0 if scale is None else scale}
-            checked = {"scale": in_range("scale", given["scale"], 0.0, HIGHEST_SCALE, closed="right")}  # type: ignore[arg-type]
-            acceleration, times = checked["scale"] * motion.peak_acceleration, np.ones(())
         else:
             if scale is not None:
                 raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
-            units = {"peak_acceleration": "m/s2", "period": "s"}
+            given = {}
             for name, value in of_pulse.items():
                 if value is None:
                     raise InvalidArgumentError(name, None, "a number, for a pulse")
-            given = dict(of_pulse)
-            checked = {
-                name: in_range(name, value, 0.0, math.inf, closed="neither", unit=units[name])  # type: ignore[arg-type]
-                for name, value in of_pulse.items()
-            }
+                given[name] = value
+        checked = {name: check(STRENGTHS[name], value) for name, value in given.items()}
+        if isinstance(motion, Record):
+            acceleration, times = checked["scale"] * motion.peak_acceleration, np.ones(())
+        else:
             acceleration, times = checked["peak_acceleration"], checked["period"]
         if eta is not None:
             given["restitution"], checked["restitution"] = restitution, eta
@@ -397,6 +404,12 @@ class RespondingBody(AbstractBody):
         made = motion if isinstance(motion, Record) else as_pulse(motion)
         return BodyProblem(self, made, acceleration, times, eta), checked, dimensions_of(*given.values())
 
-    def _need_one(self, name: str) -> None:
+    def _need_one(self, name: str, restitution: Scalar, **numbers: Scalar | None) -> None:
+        """Refuse an array of bodies, and arrays as arguments that are one number."""
         if self.shape:
             raise InvalidArgumentError(name, f"bodies of shape {self.shape}", "one body")
+        if checked_restitution(restitution) is not None:
+            check_number(RESTITUTION, restitution)
+        for key, value in numbers.items():
+            if value is not None:
+                check_number(STRENGTHS[key], value)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking.constants import STANDARD_GRAVITY
 from rocking.dimensional.body import RespondingBody
-from rocking.errors import InvalidArgumentError, broadcast, in_range, number
+from rocking.errors import InvalidArgumentError, broadcast, in_range, number, positive
 from rocking.model.body import Edge, polygon_properties, rigid_edge
 from rocking.units import Scalar, Values
 
@@ -214,8 +214,9 @@ class RigidBody(RespondingBody):
         >>> RigidBody.from_polygon([(0, 0), (0.3, 0), (0.3, 1.0), (0.1, 1.2), (0, 1.0)])
         <rocking.RigidBody: body on edges 0.1485 m left and 0.1515 m right of its mass at 0.5515 m>
         """
+        g = positive("gravity", gravity, "m/s2")
         found = polygon_properties(vertices)
-        return cls(found.left, found.right, found.height, found.gyration, gravity=gravity, top_height=found.top)
+        return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)
 
     @classmethod
     def from_mesh(
@@ -256,8 +257,9 @@ class RigidBody(RespondingBody):
         """
         from rocking.dimensional.mesh import mesh_properties  # noqa: PLC0415  (trimesh is an extra)
 
+        g = positive("gravity", gravity, "m/s2")
         angle = number("direction", direction, -2.0 * math.pi, 2.0 * math.pi, unit="rad")
         found, closed = mesh_properties(path, angle, unit)
         if not closed:
             warnings.warn(f"{Path(path).name} is not closed: its centre of mass is uncertain", UserWarning, 2)
-        return cls(found.left, found.right, found.height, found.gyration, gravity=gravity, top_height=found.top)
+        return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)

@@ -35,6 +35,7 @@ from rocking.suites.outcomes import (
     problems_of,
     responses_to,
     slenderness_of,
+    vertical_scale_of,
 )
 from rocking.units import Scalar
 
@@ -82,8 +83,8 @@ def suite_sensitivity(
     xarray.Dataset
         Over (block, intensity, record): `peak_rotation`, `overturned`, `outcome` and `scale` as `rocking.fragility`
         gives them; `friction_demand`, the largest abs(H)/N [-], infinite if the block would lift off, nan for an
-        `EquivalentBlock` and under records with a vertical component, whose contact forces are not known;
-        `overturned_low_restitution`, `overturned_high_restitution` and `overturned_resampled`. Over (block, intensity):
+        `EquivalentBlock`, whose contact forces are not known; `overturned_low_restitution`,
+        `overturned_high_restitution` and `overturned_resampled`. Over (block, intensity):
         `exceedances`, the number of records that overturn the block, their `fraction` with its Clopper-Pearson interval
         `fraction_lower`, `fraction_upper`; for each of the three changes the fraction, such as `fraction_resampled`,
         and the number of records whose outcome is another one, such as `changed_resampled`;
@@ -183,9 +184,7 @@ def sensitivity_of_outcomes(outcomes: xr.Dataset, confidence: float) -> xr.Datas
 def _friction_demands(suite: Suite, record: Record, scale: Array, frequency: Array, stop: StopFlag | None) -> Array:
     """The largest friction demand of each block at each level, (blocks, levels)."""
     found = np.full(scale.shape, np.nan)
-    if record.vertical is not None:  # the forces are not known then
-        return found
-    slenderness = slenderness_of(suite, record, scale)
+    slenderness, vertical = slenderness_of(suite, record, scale), vertical_scale_of(suite, record, scale)
     for k, (block, eta) in enumerate(zip(suite.blocks, suite.restitution.tolist(), strict=True)):
         if not block.contact_is_known:
             continue
@@ -196,6 +195,7 @@ def _friction_demands(suite: Suite, record: Record, scale: Array, frequency: Arr
                 slenderness=float(slenderness[k, n]),
                 restitution=eta,
                 alpha=block.equation_alpha,
+                vertical_scale=None if vertical is None else float(vertical[k, n]),
                 stop=stop,
             )
             found[k, n] = contact_extremes(motion).largest_friction_demand

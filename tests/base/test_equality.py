@@ -53,6 +53,8 @@ EXAMPLES = {
     "VelocityPulse": lambda: rocking.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
     "BlockResponse": lambda: BLOCK.response("sine", peak_acceleration=40.0, period=1.0),
     "BlockRecordResponse": lambda: BLOCK.response(record(), scale=50.0),
+    "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
+    "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
     "Problem": lambda: groups.Problem(0.2, [2.0, 3.0], 4.0, 8.0),
     "Groups": lambda: groups.Groups([2.0, 3.0], 0.5),
     "SuiteConfiguration": configuration,

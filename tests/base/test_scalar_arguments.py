@@ -17,6 +17,7 @@ from rocking.spectra.cubes import spectrum
 from tests.lookup_grid import GRID
 
 BLOCK = rocking.Block(0.2, 0.8)
+BODY = rocking.RigidBody(0.15, 0.2, 0.6)
 FRAME = EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5)
 TIME = np.arange(0.0, 3.0, 0.01)
 RECORD = rocking.Record(3.0 * np.sin(6.0 * TIME), 0.01, "m/s2")
@@ -133,12 +134,32 @@ for kind, body in (("Block", BLOCK), ("EquivalentBlock", FRAME)):
         f"{kind}.spectrum": (body.spectrum, [PULSE]),
     }
 
+CALLS |= {
+    "RigidBody.from_polygon": (rocking.RigidBody.from_polygon, [{"vertices": [(0, 0), (0.3, 0), (0.2, 1)]} | SIZE]),
+    "RigidBody.from_mesh": (rocking.RigidBody.from_mesh, [{"path": __file__, "direction": 0.5} | SIZE]),
+    "RigidBody.boundary": (BODY.boundary, [{"motion": "sine", "restitution": 0.9}]),
+    "RigidBody.history": (
+        BODY.history,
+        [{"motion": "sine", "peak_acceleration": 4.0, "period": 0.5, "restitution": 0.9, "duration": 1.0,
+          "samples": 10}, {"motion": RECORD, "scale": 1.0}],
+    ),
+    "RigidBody.response": (
+        BODY.response, [{"motion": "sine", "peak_acceleration": 4.0, "period": 0.5, "threads": 1}],
+    ),
+    "RigidBody.spectrum": (
+        BODY.spectrum,
+        [{"motion": "sine", "peak_acceleration": 4.0, "period": [0.5], "restitution": 0.9},
+         {"motion": RECORD, "scale": 1.0, "size": [1.0]}],
+    ),
+    "RigidBody.thresholds": (BODY.thresholds, [{"motion": "sine", "period": 0.5, "highest": 9.0}]),
+}  # fmt: skip
+
 RESULTS = {"PulseFit", "orientation.Quantity", "Block.top_displacement", "EquivalentBlock.top_displacement"}
 """What the package makes itself, and functions of its results, which may be nan."""
 
 OPTIONAL = {
     "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
-    "restitution", "scale", "vertical_scale",
+    "restitution", "scale", "vertical_scale", "highest", "size", "peak_acceleration", "period",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 
