@@ -1,7 +1,18 @@
 # The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
 # measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = ["tolerance", "solver", "growth", "grid-size", "first-call", "records", "bodies", "service", "ablations", "stages"]
+TIMED = [
+    "tolerance",
+    "solver",
+    "growth",
+    "grid-size",
+    "first-call",
+    "records",
+    "bodies",
+    "service",
+    "ablations",
+    "stages",
+]
 
 
 rule work_precision:

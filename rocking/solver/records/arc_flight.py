@@ -5,7 +5,7 @@ from __future__ import annotations
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking.solver.records.event_loop import cut_time, restoring_at
 from rocking.solver.records.piece import follow_piece, hyperbolic
-from rocking.solver.records.samples import LATER, SHAPE, TIME, interval_length
+from rocking.solver.records.samples import LATER, SHAPE, interval_length
 from rocking.solver.state import IMPACT, OVERTURNS, PULSE_END
 
 
@@ -56,14 +56,14 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
         return IMPACT, k, impact, z, w
     k += 1
     known = max(block.peak_rotation, block.largest_z)
-    cosh1, sinh, above, slope, sagitta = 0.0, 0.0, 0.0, 0.0, 0.0
-    time, unit, at = samples[TIME], -1.0, samples[TIME, k]
+    equidistant = block.equidistant == 1
+    cosh1, sinh, above = hyperbolic(h)
+    above, slope, sagitta = above / h, cosh1 / h, 0.125 * h * h
     while k < count:
         if z + w > 1.0 + a * later[k]:
             return OVERTURNS, k, 0.0, z, w
-        step, at = time[k + 1] - at, time[k + 1]
-        if step != unit:  # once for equidistant samples
-            unit, h = step, block.h * step
+        if not equidistant:
+            h = interval_length(block, samples, k)
             cosh1, sinh, above = hyperbolic(h)
             above, slope, sagitta = above / h, cosh1 / h, 0.125 * h * h
         q0, q1 = q1, 1.0 + sign * a * f[k + 1]

@@ -128,13 +128,16 @@ def next_exceedance(block: Record, samples: FloatArray, first: int) -> int:
     f, blocks, lows = samples[SHAPE], samples[BLOCKS], samples[BLOCKS_LOW]
     right, left = block.a[0], block.a[1]
     strongest, count = max(right, left), len(f) - 1
+    has_vertical, vertical = block.vertical != 0.0, 1.0
     k = first
     while k < count:
-        b = k // BLOCK
-        if k % BLOCK == 0 and strongest * blocks[b] <= 1.0 + block.vertical * lows[b]:
-            k += BLOCK
-            continue
-        vertical = vertical_at(block, samples, k + 1)
+        if k % BLOCK == 0:
+            b = k // BLOCK
+            if strongest * blocks[b] <= (1.0 + block.vertical * lows[b] if has_vertical else 1.0):
+                k += BLOCK
+                continue
+        if has_vertical:
+            vertical = vertical_at(block, samples, k + 1)
         if left * f[k + 1] > vertical or -right * f[k + 1] > vertical:
             return k
         k += 1
@@ -145,18 +148,18 @@ def next_exceedance(block: Record, samples: FloatArray, first: int) -> int:
 def extremes_in_window(
     block: Record, samples: FloatArray, window: float, spread: float
 ) -> tuple[float, float, float, float, float]:
-    """Extremes of q from the position of the body on, over a time `window` [tau].
+    """Bounds of q from the position of the body on, over a time `window` [tau].
 
-    Returns the smallest and the largest q on the right edge, the same on the left edge, and the largest V. After the
-    last sample q = V = 1. The search ends early, with the extremes so far, once q <= 0 on an edge, or q varies by more
-    than the factor `spread`.
+    Returns a lower and an upper bound of q on the right edge, the same on the left edge, and the largest V, from the
+    extremes of both components: without vertical motion the bounds are the extremes of q. After the last sample
+    q = V = 1. The search ends early, with the extremes so far, once q <= 0 on an edge, or q varies by more than the
+    factor `spread`.
     """
     right, left = block.a[0], block.a[1]
     count, k = samples.shape[1] - 1, block.interval
+    has_vertical = block.vertical != 0.0
     f, vertical = ground_at(block, samples, k, block.s)
-    least_right = most_right = vertical + right * f
-    least_left = most_left = vertical - left * f
-    highest = vertical
+    low, high, lightest, heaviest = f, f, vertical, vertical
     end = block.s + window  # from the left end of interval k
     while k < count:
         h = interval_length(block, samples, k)
@@ -164,18 +167,22 @@ def extremes_in_window(
         if inside:
             f, vertical = ground_at(block, samples, k, end)
         else:
-            f, vertical = samples[SHAPE, k + 1], vertical_at(block, samples, k + 1)
-        on_right, on_left = vertical + right * f, vertical - left * f
-        least_right, most_right = min(least_right, on_right), max(most_right, on_right)
-        least_left, most_left = min(least_left, on_left), max(most_left, on_left)
-        highest = max(highest, vertical)
+            f = samples[SHAPE, k + 1]
+            if has_vertical:
+                vertical = vertical_at(block, samples, k + 1)
+        low, high = min(low, f), max(high, f)
+        if has_vertical:
+            lightest, heaviest = min(lightest, vertical), max(heaviest, vertical)
+        least_right, least_left = lightest + right * low, lightest - left * high
         if (
             inside
             or min(least_right, least_left) <= 0.0
-            or most_right >= spread * least_right
-            or most_left >= spread * least_left
+            or heaviest + right * high >= spread * least_right
+            or heaviest - left * low >= spread * least_left
         ):
-            return least_right, most_right, least_left, most_left, highest
+            return least_right, heaviest + right * high, least_left, heaviest - left * low, heaviest
         end -= h
         k += 1
-    return min(least_right, 1.0), max(most_right, 1.0), min(least_left, 1.0), max(most_left, 1.0), max(highest, 1.0)
+    least_right, least_left = lightest + right * low, lightest - left * high
+    most_right, most_left = heaviest + right * high, heaviest - left * low
+    return min(least_right, 1.0), max(most_right, 1.0), min(least_left, 1.0), max(most_left, 1.0), max(heaviest, 1.0)
