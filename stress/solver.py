@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import rocking
 from reference.exact_response import ExactResponse
-from rocking.model.fields import RESPONSE_FIELDS
+from rocking.model.fields import SOLVED_FIELDS
 from stress.cells import Cell, reference_response
 from stress.tables import INPUTS, Table
 
@@ -31,7 +31,7 @@ def solve(table: Table) -> rocking.Response:
     for pulse in np.unique(table.pulse):
         rows = table.pulse == pulse
         response = rocking.peak_response(str(pulse), **{name: table[name][rows] for name in INPUTS})
-        for field in RESPONSE_FIELDS:
+        for field in SOLVED_FIELDS:
             name, values = field.name, getattr(response, field.name)
             fields.setdefault(name, np.empty(len(rows), values.dtype))[rows] = values
     return rocking.Response(**fields)  # type: ignore[arg-type]  # the fields by name, each of its own dtype

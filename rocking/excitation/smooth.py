@@ -30,7 +30,7 @@ class PolynomialSeries(ExcitationSeries):
 
 @dataclass(frozen=True)
 class SmoothPulse(AbstractPulse):
-    """A pulse that is a smooth function of phi on its window, f = curve/max |curve|; a subclass gives `curve`.
+    """A pulse that is a smooth function of phi on its window, f = curve over its peak; a subclass gives `curve`.
 
     Responses are exact to rounding: the curve is represented by polynomials of degree 15 on at most 128 pieces of the
     window, as accurately as it can be evaluated. Parameters of the family are fields of the subclass.
@@ -44,7 +44,7 @@ class SmoothPulse(AbstractPulse):
     stationary : tuple of float
         All phases strictly inside the window at which f' changes its sign [rad], found from the polynomials.
     peak : float
-        max |curve| on the window, negative for a mirrored pulse.
+        largest absolute value of the curve on the window, negative for a mirrored pulse.
     digest : str
         sha256 of what the solver is given; pulses with another one differ.
 

@@ -73,7 +73,7 @@ def errors_of(seed: int) -> tuple[ExactResponse, list[float]]:
     with working_precision(BITS):
         exact = integrate_record(**groups)
         moved = integrate_record(**groups, scale=1 + arb(RELATIVE_CHANGE))
-        found, sides = solve_bodies(rows, cell, 1, None, each_side=True)
+        found, edges = solve_bodies(rows, cell, 1, None, each_side=True)
         if exact.outcome == CAPPED or exact.outcome != moved.outcome:
             return exact, []
         assert found["outcome"][0] == exact.outcome, seed
@@ -82,7 +82,7 @@ def errors_of(seed: int) -> tuple[ExactResponse, list[float]]:
         assert exact.peaks is not None
         assert moved.peaks is not None
         errors = []
-        for true, other, z in zip(exact.peaks, moved.peaks, sides[0].tolist(), strict=True):
+        for true, other, z in zip(exact.peaks, moved.peaks, edges[0, :2].tolist(), strict=True):
             if true == 0:
                 assert z == 0.0
                 continue

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking.model.fields import RESPONSE_FIELDS
+from rocking.model.fields import SOLVED_FIELDS
 
 Record = Callable[[str, object], None]
 DATA = Path(__file__).parents[1] / "data"
@@ -42,7 +42,7 @@ class Table:
             rows = self.pulse == pulse
             inputs = {name: self[name][rows] for name in ("slenderness", "frequency_ratio", "restitution")}
             response = rocking.peak_response(str(pulse), **inputs)
-            for field in RESPONSE_FIELDS:
+            for field in SOLVED_FIELDS:
                 name, values = field.name, getattr(response, field.name)
                 fields.setdefault(name, np.empty(len(rows), values.dtype))[rows] = values
         return rocking.Response(**fields)  # type: ignore[arg-type]  # the fields by name, each of its own dtype

@@ -82,7 +82,8 @@ def test_arcs_and_taylor_steps_agree(name):
     s, w, eta = cells(1000, list(PULSES).index(name))
     s, w = frequencies(pulse, s, w)
     arcs, steps = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None), by_steps(pulse, s, w, eta)
-    assert_agree(arcs, steps, s, eta)
+    # both are certain of overturning at other times
+    assert_agree(arcs, steps, s, eta, state=())
 
 
 @pytest.mark.parametrize("name", PULSES)

@@ -11,11 +11,6 @@ SAMPLES = {pulse.name: samples_file(pulse) for pulse, _ in ENTRIES if not isinst
 SAMPLED = {pulse.name: entry for pulse, entry in ENTRIES if not isinstance(pulse, str)}
 
 
-def samples_of(wildcards):
-    """The file of the samples of a pulse; none for a pulse of the catalogue."""
-    return SAMPLES.get(wildcards.pulse, [])
-
-
 wildcard_constraints:
     pulse="[a-z0-9_]+",
     angle="|".join(map(re.escape, ANGLES)),
@@ -75,7 +70,7 @@ rule samples:
 # one job for each pulse and angle traces the curves of all restitutions, which share the grid
 rule overturning_part:
     input:
-        samples=samples_of,
+        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
         part=temp(part_of("overturning/{pulse}-{angle}", OVERTURNING_PROVENANCE)),
     log:
@@ -102,7 +97,7 @@ rule overturning_part:
 rule overturning:
     input:
         parts=expand(rules.overturning_part.output.part, angle=ANGLES, allow_missing=True),
-        samples=samples_of,
+        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
         boundaries=overturning_files("{pulse}", ETAS),
         record=record_of("overturning/{pulse}", OVERTURNING_PROVENANCE),
@@ -128,7 +123,7 @@ rule overturning:
 rule spectrum_tile:
     input:
         boundaries=rules.overturning.output.boundaries,
-        samples=samples_of,
+        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
         # the cells that are not interpolated depend on the code of the boundaries too
         part=temp(part_of("spectra/{pulse}-rows-{band}", {**SPECTRUM_PROVENANCE, "boundaries": OVERTURNING_PROVENANCE})),
@@ -153,7 +148,7 @@ rule spectrum_tile:
 rule spectra:
     input:
         tiles=expand(rules.spectrum_tile.output.part, band=BANDS, allow_missing=True),
-        samples=samples_of,
+        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
         cubes=spectrum_files("{pulse}", ETAS),
         record=record_of("spectra/{pulse}", SPECTRUM_PROVENANCE),

@@ -12,7 +12,7 @@ from rocking.errors import in_range
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Method, Params, PulseName, TableFormat, Tolerance, check_value
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, PointResponse
+from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD, PointResponse
 
 RANGES = {
     "half_width": (1e-4, 1e4, "m"),
@@ -111,7 +111,7 @@ class BlockRows(Params):
 class BlocksResponse(BaseModel):
     """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
 
-    query: SerializeAsAny[BlocksParams] = QUERY
+    query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
     name: list[str] | None = Field(None, description="labels; null without any")
     half_width: list[float] = Field(description="b [m]")
     half_height: list[float] = Field(description="h [m]")

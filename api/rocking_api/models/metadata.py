@@ -9,7 +9,7 @@ ASSUMPTIONS = (
     "The motion is plane: the ground moves horizontally, parallel to a face of the block.",
     "The ground is rigid, and the block rocks about its corners; it neither slides nor leaves the ground.",
     "An impact is instantaneous: the angular velocity is multiplied by the coefficient of restitution.",
-    "The block starts at rest, and only the stated ground motion acts on it; there is no vertical ground motion.",
+    "The block starts at rest, and only the stated ground motion acts on it; horizontal, and vertical if stated.",
 )
 
 DISCLAIMER = (

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field, SerializeAsAny, create_model
+from pydantic import BaseModel, Field, SerializeAsAny, WithJsonSchema, create_model
 
 from rocking.model.fields import (
     COLUMN_FIELDS,
@@ -41,6 +41,7 @@ _EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can b
 _BOUND = Field(description=ERROR_BOUND.description())
 _SOURCE = Field(description=SOURCE.description())
 QUERY = Field(description="parameters of the request, defaults included")
+ECHO = WithJsonSchema({"type": "object", "additionalProperties": True})  # that of a pulse by samples has a digest
 VERSION_FIELD = Field(VERSION, description="version of the package")
 BY_SOLVER = Field("solver", description="what answered: always the solver")
 _DATA = Field(
@@ -115,7 +116,7 @@ class Curve(BaseModel):
 class OverturningResponse(BaseModel):
     """The boundary curves of a pulse and a restitution."""
 
-    query: SerializeAsAny[OverturningParams] = QUERY
+    query: Annotated[SerializeAsAny[OverturningParams], ECHO] = QUERY
     curves: list[Curve] = Field(description="boundary curves")
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
@@ -159,7 +160,7 @@ class Motion(BaseModel):
 class HistoryResponse(Motion):
     """A motion under a pulse."""
 
-    query: SerializeAsAny[HistoryParams] = QUERY
+    query: Annotated[SerializeAsAny[HistoryParams], ECHO] = QUERY
     tau: list[float] = Field(description="time p t from the start of the pulse [-]")
     metadata_url: str = METADATA_URL_FIELD
 

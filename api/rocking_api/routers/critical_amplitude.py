@@ -14,7 +14,7 @@ from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
 from rocking_api.models.pulses import body_of
-from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD
+from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -50,7 +50,7 @@ class AmplitudeThreshold(BaseModel):
 class AmplitudeResponse(BaseModel):
     """All amplitudes at which the outcome changes."""
 
-    query: SerializeAsAny[AmplitudeParams] = QUERY
+    query: Annotated[SerializeAsAny[AmplitudeParams], ECHO] = QUERY
     thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
     largest_safe_amplitude: float | None = Field(
         description="amplitude below which the block does not overturn [-]; null: no overturning was found"
