@@ -9,7 +9,8 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field, SerializeAsAny, WithJsonSchema, create_model
+from pydantic import BaseModel, Field, GetJsonSchemaHandler, SerializeAsAny, create_model
+from pydantic_core import core_schema
 
 from rocking.model.fields import (
     COLUMN_FIELDS,
@@ -41,7 +42,20 @@ _EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can b
 _BOUND = Field(description=ERROR_BOUND.description())
 _SOURCE = Field(description=SOURCE.description())
 QUERY = Field(description="parameters of the request, defaults included")
-ECHO = WithJsonSchema({"type": "object", "additionalProperties": True})  # that of a pulse by samples has a digest
+
+
+class Echo:
+    """The schema of an echoed query: its parameters, and what else a body has, such as the digest of samples."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        found = dict(handler.resolve_ref_schema(handler(schema)))
+        found.pop("additionalProperties", None)
+        return found
+
+
+ECHO = Echo()
 VERSION_FIELD = Field(VERSION, description="version of the package")
 BY_SOLVER = Field("solver", description="what answered: always the solver")
 _DATA = Field(
