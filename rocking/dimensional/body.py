@@ -15,6 +15,7 @@ from rocking.boundary.tracing import trace_curves
 from rocking.dimensional.body_problem import BodyProblem, checked_restitution
 from rocking.dimensional.body_response import BodyResponse, respond_bodies
 from rocking.dimensional.body_thresholds import BodyThresholds, thresholds_of
+from rocking.dimensional.curves import DEFAULT_SAMPLES, frequency_window, with_si_axes
 from rocking.dimensional.record_groups import HIGHEST_SCALE
 from rocking.errors import InvalidArgumentError, broadcast, in_range, integer, positive
 from rocking.excitation.pulses import AbstractPulse, as_pulse
@@ -32,10 +33,6 @@ from rocking.units import Scalar, Values
 Array = NDArray[np.float64]
 
 Motion = str | AbstractPulse | Record
-
-DEFAULT_SAMPLES = 400
-"""Uniform samples of a history under a pulse, unless another number is given."""
-
 
 STRENGTHS = {
     "peak_acceleration": Parameter("peak_acceleration", "a_g", "m/s2", 0.0, math.inf, "neither", "peak acceleration"),
@@ -220,29 +217,13 @@ class RespondingBody(AbstractBody):
         if isinstance(motion, Record):
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
-        window = (0.2, 15.0)
-        if period is not None:
-            ends = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
-            if ends.shape != (2,) or not ends[0] < ends[1]:
-                raise InvalidArgumentError("period", period, "the two ends of a window, ascending [s]")
-            window = unit / float(ends[1]), unit / float(ends[0])
+        window = frequency_window(period, lambda one: unit / one)
         problem, *_ = self._problem(motion, 1.0, unit, restitution=restitution)
         eta = float(problem.cells["eta"][0, 0])
         (curves,) = trace_curves(problem.solver(0, stop), np.array([eta]), window, (0.02, 1.0))
         uplift = float(self.uplift_acceleration)
         curves.attrs |= {"pulse": problem.motion.name, "body": self.description, "uplift_acceleration": uplift}
-        return curves.assign(
-            peak_acceleration=(
-                "point",
-                uplift / curves["slenderness"].values,
-                {"units": "m s-2", "long_name": "peak acceleration a_g"},
-            ),
-            period=(
-                "point",
-                unit / curves["frequency_ratio"].values,
-                {"units": "s", "long_name": "period of the pulse"},
-            ),
-        )
+        return with_si_axes(curves, uplift, unit)
 
     def history(
         self,

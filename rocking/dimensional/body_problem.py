@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +68,6 @@ class BodyProblem:
         p = self.body.right.frequency_parameter
         if isinstance(self.motion, Record):
             in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
-            reject_flight("scale", self.motion, float(self.vertical_scale.max(initial=0.0)))
         else:
             check(FREQUENCY_RATIO, 2.0 * math.pi / (self.period * p))
 
@@ -84,9 +84,9 @@ class BodyProblem:
             return np.zeros(())
         return np.asarray(self.acceleration / self.motion.peak_acceleration * (STANDARD_GRAVITY / self.body.gravity))
 
-    @property
+    @cached_property
     def cells(self) -> NDArray[np.void]:
-        """The cells `BODY_CELL` of the solver (size,)."""
+        """The cells `BODY_CELL` of the solver (size,), not to be changed."""
         body, right, left = self.body, self.body.right, self.body.left
         etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
         p = right.frequency_parameter
@@ -107,7 +107,8 @@ class BodyProblem:
         return cells.ravel()
 
     def solve(self, threads: int | None = None, stop: StopFlag | None = None) -> tuple[NDArray[np.void], Array]:
-        """`rocking.solver.bodies.solve_motion` of `cells`."""
+        """`rocking.solver.bodies.solve_motion` of `cells`; refused where the vertical acceleration reaches -g."""
+        self._reject_flight()
         return solve_motion(self.motion, self.cells, threads, stop)
 
     def solver(self, index: int = 0, stop: StopFlag | None = None) -> Solve:
@@ -127,7 +128,8 @@ class BodyProblem:
 
     def body_motion(self, duration: float | None = None, stop: StopFlag | None = None) -> BodyMotion:
         """The motion of one body as a function of time, up to a duration [s] or 8/p after the ground motion."""
-        cell: KernelRecord = self.cells[0]
+        self._reject_flight()
+        cell: KernelRecord = self.cells[:1].copy()[0]
         inertia = float(self.body.right.inertia_ratio), float(self.body.left.inertia_ratio)
         tilt = float(self.body.tilt)
         p = float(self.body.right.frequency_parameter)
@@ -143,6 +145,10 @@ class BodyProblem:
             rows = pulse_rows(motion, float(cell["rate"]))
             cell["rate"] = 1.0 / cell["rate"]
         return SamplesMotion(cell, horizon, stop, rows, inertia_ratio=inertia, tilt=tilt)
+
+    def _reject_flight(self) -> None:
+        if isinstance(self.motion, Record):
+            reject_flight("scale", self.motion, float(self.vertical_scale.max(initial=0.0)))
 
 
 def checked_restitution(restitution: Values) -> Array | None:

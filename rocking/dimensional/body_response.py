@@ -225,7 +225,8 @@ def respond_bodies(
     alphas = np.stack([np.broadcast_to(edge.alpha, shape).ravel() for edge in (body.right, body.left)], axis=1)
     angles = edges[:, :2] * alphas[:, :1]  # z has the scale of the right edge
     overturned = records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
-    larger = np.where((edges[:, :2] * (alphas[:, :1] / alphas))[:, 0] >= (angles / alphas)[:, 1], 1, -1)
+    over_alpha = angles / alphas
+    larger = np.where(over_alpha[:, 0] >= over_alpha[:, 1], 1, -1)
     larger[records["outcome"] == Outcome.NO_UPLIFT] = 0
     rotation = angles.max(axis=1).reshape(shape)
     p = np.broadcast_to(body.right.frequency_parameter, shape).ravel()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -259,29 +260,47 @@ def block_boundary(
     InvalidArgumentError
         If a value is out of range.
     """
-    window = (0.2, 15.0)
-    if period is not None:
-        ends = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
-        if ends.shape != (2,) or not ends[0] < ends[1]:
-            raise InvalidArgumentError("period", period, "the two ends of a window, ascending [s]")
-        low, high = ends.tolist()
-        window = frequency_ratio_of(block, high), frequency_ratio_of(block, low)
+    window = frequency_window(period, lambda one: frequency_ratio_of(block, one))
     eta = restitution_of(block, restitution)
     found = overturning_boundary(pulse, restitution=eta, alpha=block.equation_alpha, frequency_ratio=window, stop=stop)
     return add_si_axes(found, block)
 
 
+def frequency_window(
+    period: tuple[float, float] | None, frequency_ratio: Callable[[float], float]
+) -> tuple[float, float]:
+    """Window of frequency ratios of a window of periods [s], 0 < low < high; 0.2 to 15 without one.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a period is out of range, or they do not ascend.
+    """
+    if period is None:
+        return 0.2, 15.0
+    ends = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise InvalidArgumentError("period", period, "the two ends of a window, ascending [s]")
+    low, high = ends.tolist()
+    return frequency_ratio(high), frequency_ratio(low)
+
+
 def add_si_axes(curves: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
     """Boundary curves with peak_acceleration(point) [m/s2] and period(point) [s] of a block of their alpha."""
+    return with_si_axes(curves, block.uplift_acceleration, period_of(block, 1.0))
+
+
+def with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: float) -> xr.Dataset:
+    """The same, from the acceleration at slenderness 1 [m/s2] and the period at frequency ratio 1 [s]."""
     return curves.assign(
         peak_acceleration=(
             "point",
-            block.uplift_acceleration / curves["slenderness"].values,
+            uplift_acceleration / curves["slenderness"].values,
             {"units": "m s-2", "long_name": "peak acceleration a_g"},
         ),
         period=(
             "point",
-            period_of(block, 1.0) / curves["frequency_ratio"].values,
+            unit_period / curves["frequency_ratio"].values,
             {"units": "s", "long_name": "period of the pulse"},
         ),
     )

@@ -353,6 +353,18 @@ def test_equal_edges_with_vertical_motion_are_the_block():
         body.response(motion, scale=100.0)
 
 
+def test_thresholds_below_flight_are_found_where_the_record_itself_would_let_the_body_fly():
+    wave = samples("napa_HNE")[700:3000]
+    motion = rocking.Record(4.0 * wave, 0.005, "g", vertical=6.0 * wave)
+    body = rocking.RigidBody(0.05, 0.06, 0.5)
+    with pytest.raises(InvalidArgumentError, match="so that the body would fly"):
+        body.response(motion)
+    found = body.thresholds(motion)
+    assert 0.0 < found.searched[0] < found.searched[1] < 1.0
+    strongest = body.response(motion, scale=0.999 * float(found.searched[1]))
+    np.testing.assert_array_equal(strongest.thresholds.value, found.value)
+
+
 @pytest.mark.parametrize("tilt", [0.0, 0.03])
 def test_reactions_with_vertical_motion(tilt):
     """Newton's law by second differences, as without vertical motion."""
