@@ -12,7 +12,7 @@ sys.path[:0] = [str(ROOT / "docs" / "_extensions"), str(ROOT), str(ROOT / "api")
 os.environ.setdefault("ROCKING_RESULTS", str(ROOT / "results"))  # read by the examples
 os.environ.setdefault("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
 
-from rocking.version import __version__  # noqa: E402  (from this tree)
+from rocking._base.version import __version__  # noqa: E402  (from this tree)
 
 project = "rocking"
 author = project_copyright = "The rocking developers"

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import matplotlib.pyplot as plt
 import numpy as np
 
-from rocking.dimensional.body import RespondingBody
-from rocking.model.body import Edge, rigid_edge
+from rocking._dimensional.body import RespondingBody
+from rocking._model.body import Edge, rigid_edge
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import rocking
-from rocking.excitation.pulses import SmoothPulse, register
+from rocking._excitation.pulses import SmoothPulse, register
 
 
 @dataclass(frozen=True)

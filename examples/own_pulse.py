@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import rocking
-from rocking.excitation.pulses import SinusoidalPulse
+from rocking._excitation.pulses import SinusoidalPulse
 
 cycles = 2.5
 end = 2.0 * math.pi * cycles
@@ -30,6 +30,6 @@ rocking.plot.history(history, axes[1])
 plt.show()
 
 # %%
-# ``rocking.excitation.pulses.register(burst)`` makes it known by its name, also to a service of this process.
+# ``rocking._excitation.pulses.register(burst)`` makes it known by its name, also to a service of this process.
 
 print(rocking.critical_amplitude(burst, frequency_ratio=3.0, restitution=0.85))

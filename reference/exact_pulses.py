@@ -1,4 +1,4 @@
-"""The nine pulses in multi-precision arithmetic, defined independently of `rocking.excitation`.
+"""The nine pulses in multi-precision arithmetic, defined independently of `rocking._excitation`.
 
 The definitions are those of the table of pulses in docs/notation.md: f(phi) over a window of phase. Each pulse has its
 value, its Taylor series in time and the phases at which it is stationary, all in ball arithmetic.

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import product
 
-from rocking.errors import InvalidArgumentError, integer, one_of
+from rocking._base.errors import InvalidArgumentError, integer, one_of
 
 
 class Orientation(Enum):

@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
+from rocking._boundary.trends import load_entries
+from rocking._excitation.pulses import PULSE_NAMES, get_pulse
+from rocking._excitation.records.record import Record
+from rocking._history.record_history import record_history
+from rocking._history.time_history import time_history
+from rocking._lookup.cube import Cube
+from rocking._lookup.cube_slice import slice_of
 from rocking._numba.kernel_cache import NOT_KEPT, cache_folder
-from rocking.boundary.trends import load_entries
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
-from rocking.excitation.records.record import Record
-from rocking.history.record_history import record_history
-from rocking.history.time_history import time_history
-from rocking.lookup.cube import Cube
-from rocking.lookup.cube_slice import slice_of
-from rocking.solver.peak_response import peak_response
-from rocking.solver.records.record_response import record_response
-from rocking.spectra.cubes import spectra
+from rocking._solver.peak_response import peak_response
+from rocking._solver.records.record_response import record_response
+from rocking._spectra.cubes import spectra
 
 COMPLETE_MARKER = "complete"
 """File in the cache folder that marks it as complete."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
-from rocking.solver.bounded_response import solve_with_bound
+from rocking._solver.bounded_response import solve_with_bound
 from stress.families import BY_NAME
 from stress.solver import EPS, errors, solve, ulps_that_explain, wrong_events, wrong_outcomes
 from stress.speed import microseconds

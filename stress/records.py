@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from reference.exact_response import CAPPED
 from reference.records import response_and_amplification
-from rocking.excitation.records.record import Record
-from rocking.solver.records.record_response import record_response
+from rocking._excitation.records.record import Record
+from rocking._solver.records.record_response import record_response
 
 ROUNDING = 2.2e-16
 ALLOWED = 1000

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import rocking
 from reference.exact_response import ExactResponse
-from rocking.model.fields import SOLVED_FIELDS
+from rocking._model.fields import SOLVED_FIELDS
 from stress.cells import Cell, reference_response
 from stress.tables import INPUTS, Table
 

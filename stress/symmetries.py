@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
+from rocking._model.block import STANDARD_GRAVITY
 from rocking.groups import GroupSet, groups_of, problem_of_block
-from rocking.model.block import STANDARD_GRAVITY
 from stress.solver import EPS, solve
 from stress.tables import Table
 

@@ -29,8 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measure import progress, save
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.source_tree import PROJECT, SourceTree
+from rocking._base.source_tree import PROJECT, SourceTree
+from rocking._excitation.pulses import PULSE_NAMES
 from stress.tree_worker import INPUTS, RESULT
 
 RECORD = PROJECT / "workflow/motions/napa_HNE.csv"

@@ -1,11 +1,11 @@
 """Solver states for tests that call single kernels."""
 
+from rocking._excitation.pulses import AbstractPulse, get_pulse
 from rocking._numba.compilation import Record
-from rocking.excitation.pulses import AbstractPulse, get_pulse
-from rocking.solver.arcs.flight import set_angles
-from rocking.solver.kernels.event_loop import init_state, start_flight
-from rocking.solver.rules import SAFE, final_outcome, set_block, set_sign
-from rocking.solver.state import pulse_state
+from rocking._solver.arcs.flight import set_angles
+from rocking._solver.kernels.event_loop import init_state, start_flight
+from rocking._solver.rules import SAFE, final_outcome, set_block, set_sign
+from rocking._solver.state import pulse_state
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:

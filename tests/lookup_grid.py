@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rocking.boundary.cells import crossed_cells
-from rocking.boundary.tracing import overturning_boundary
+from rocking._boundary.cells import crossed_cells
+from rocking._boundary.tracing import overturning_boundary
 
 GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomspace(0.5, 12.0, 91)}
 

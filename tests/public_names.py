@@ -22,7 +22,7 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 import rocking
-from rocking.cli.app import app as command_line
+from rocking._cli.app import app as command_line
 
 STORED = Path(__file__).parent / "data" / "public_names.json"
 

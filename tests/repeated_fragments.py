@@ -28,12 +28,12 @@ from rocking_api.models.pulses import with_samples
 from rocking_api.routers.control_map import MapParams
 from rocking_api.settings import Settings
 
+from rocking._base.errors import InvalidArgumentError, positive
+from rocking._cli.fragility import read_suite
+from rocking._dimensional.table import read_table
+from rocking._excitation.records.readers.read_record import parse_record
+from rocking._excitation.sampled import SampledPulse
 from rocking._numba.cancellation import StopFlag
-from rocking.cli.fragility import read_suite
-from rocking.dimensional.table import read_table
-from rocking.errors import InvalidArgumentError, positive
-from rocking.excitation.records.readers.read_record import parse_record
-from rocking.excitation.sampled import SampledPulse
 from rocking.suites.configuration import suite_configuration
 from tests.api.fuzzer import Sent, exchange
 

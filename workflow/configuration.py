@@ -22,10 +22,10 @@ from pydantic import (
     model_validator,
 )
 
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.model.fields import DERIVED_FIELDS
-from rocking.spectra.bands import HALO_ABOVE, HALO_BELOW, bands
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._model.fields import DERIVED_FIELDS
+from rocking._spectra.bands import HALO_ABOVE, HALO_BELOW, bands
 from rocking.suites.configuration import suite_configuration
 from workflow.pulses import configured_pulse, different
 from workflow.scripts.axes import steps_between

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rocking.datasets.checksum import find_damage
-from rocking.datasets.provenance import settings_digest
+from rocking._datasets.checksum import find_damage
+from rocking._datasets.provenance import settings_digest
 
 FOLDER = Path("results/.parts")
 

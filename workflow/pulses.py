@@ -13,9 +13,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.excitation.sampled import SampledPulse
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._excitation.sampled import SampledPulse
 from workflow import parts
 
 KEYS = ("name", "acceleration", "time", "period", "file")

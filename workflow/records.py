@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from rocking.datasets.checksum import sha256_of_file
-from rocking.datasets.provenance import settings_digest
+from rocking._datasets.checksum import sha256_of_file
+from rocking._datasets.provenance import settings_digest
 
 FOLDER = Path("results/.records")
 
@@ -28,7 +28,7 @@ def _digest_of_values(path: Path) -> dict[str, str]:
     """The digest of the values of a data set that it states itself; nothing for other files."""
     if path.suffix != ".nc":
         return {}
-    from rocking.datasets.netcdf import open_netcdf  # noqa: PLC0415  # half a second, for jobs that have loaded it
+    from rocking._datasets.netcdf import open_netcdf  # noqa: PLC0415  # half a second, for jobs that have loaded it
 
     with open_netcdf(path, cache=False) as opened:
         return {"content_sha256": opened.attrs["content_sha256"]}

@@ -16,7 +16,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 from starlette.types import ASGIApp
 
-from rocking.lookup.collection import CubeCollection
+from rocking._lookup.collection import CubeCollection
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
 from rocking_api.http.host import HostCheck
 from rocking_api.http.memory_budget import MemoryBudgetMiddleware

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import anyio.to_thread
 
-from rocking.datasets.catalogue import UnknownDatasetError
-from rocking.lookup.collection import NO_CUBES, CubeCollection
+from rocking._datasets.catalogue import UnknownDatasetError
+from rocking._lookup.collection import NO_CUBES, CubeCollection
 
 LOG = logging.getLogger("rocking.service")
 

@@ -11,9 +11,9 @@ import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
+from rocking._base.errors import InvalidArgumentError
+from rocking._lookup.collection import CubeCollection
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError
-from rocking.lookup.collection import CubeCollection
 from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work

@@ -11,9 +11,9 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from rocking.datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache
-from rocking.datasets.cube import decode_dataset
-from rocking.errors import DatasetError
+from rocking._base.errors import DatasetError
+from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache
+from rocking._datasets.cube import decode_dataset
 from rocking.suites.intensity import measure_of
 from rocking.suites.summary import record_margins, rotation_quantiles
 from rocking_api.models.responses import Link, finite

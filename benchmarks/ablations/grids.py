@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from benchmarks.ablations.ablation import Ablation, measure_both
 from benchmarks.ablations.motion import RESTITUTION, control_plane
-from rocking.boundary import search as boundary_points
-from rocking.boundary.cells import crossed_cells
-from rocking.boundary.tracing import overturning_boundary
-from rocking.solver import peak_response as solve
-from rocking.solver.peak_response import peak_response
-from rocking.spectra import cubes as sweep
+from rocking._boundary import search as boundary_points
+from rocking._boundary.cells import crossed_cells
+from rocking._boundary.tracing import overturning_boundary
+from rocking._solver import peak_response as solve
+from rocking._solver.peak_response import peak_response
+from rocking._spectra import cubes as sweep
 
 PULSE = "sine"
 ANGLES = (0.0, math.radians(20.0))

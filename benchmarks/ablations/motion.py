@@ -14,18 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.ablations.ablation import Ablation, measure_both
+from rocking._excitation.pulses import get_pulse
+from rocking._history.body_motion import MAX_FREE_IMPACTS, MAX_ROTATION
+from rocking._history.sampling import REST_VELOCITY, sample_free_rocking
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
-from rocking.excitation.pulses import get_pulse
-from rocking.history.body_motion import MAX_FREE_IMPACTS, MAX_ROTATION
-from rocking.history.sampling import REST_VELOCITY, sample_free_rocking
-from rocking.solver.arcs.flight import state_at
-from rocking.solver.kernels.event_loop import advance, init_state
-from rocking.solver.peak_response import peak_response
-from rocking.solver.records.state import BLOCK_STATE
-from rocking.solver.rules import SAFE, set_block
-from rocking.solver.state import pulse_state, step_state
-from rocking.solver.taylor.step import take_step
+from rocking._solver.arcs.flight import state_at
+from rocking._solver.kernels.event_loop import advance, init_state
+from rocking._solver.peak_response import peak_response
+from rocking._solver.records.state import BLOCK_STATE
+from rocking._solver.rules import SAFE, set_block
+from rocking._solver.state import pulse_state, step_state
+from rocking._solver.taylor.step import take_step
 
 PULSE, RESTITUTION = "sine", 0.85
 ALPHA = {"slender": 0.0, "rigid, 20 degrees": math.radians(20.0)}

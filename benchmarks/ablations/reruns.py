@@ -47,19 +47,19 @@ def replaced(before: str, after: str) -> Callable[[Path], None]:
 CHANGES: dict[str, Callable[[Path], None]] = {
     "nothing": lambda _: None,
     "a page of docs/": appended("docs/numerics.md", "\nA change.\n"),
-    "the service side: rocking/lookup/cube.py": appended("rocking/lookup/cube.py"),
+    "the service side: rocking/_lookup/cube.py": appended("rocking/_lookup/cube.py"),
     "a setting of figure 7": replaced(
         "slenderness: 0.45, frequency_ratio: 5.5", "slenderness: 0.46, frequency_ratio: 5.5"
     ),
     "the script of figure 7": appended("workflow/figures/figure_07.py"),
     "the claims' settings": replaced("claims:\n  restitution: [0.85, 0.90]", "claims:\n  restitution: [0.85]"),
     "rocking/groups/scale_law.py": appended("rocking/groups/scale_law.py"),
-    "rocking/history/time_history.py": appended("rocking/history/time_history.py"),
+    "rocking/_history/time_history.py": appended("rocking/_history/time_history.py"),
     "the grid of the cubes": replaced("points: 161}", "points: 171}"),
     "one restitution more": replaced("restitution: [0.85, 0.90]\n\ngrid", "restitution: [0.85, 0.88, 0.90]\n\ngrid"),
-    "rocking/spectra/cubes.py": appended("rocking/spectra/cubes.py"),
-    "rocking/boundary/tracing.py": appended("rocking/boundary/tracing.py"),
-    "a kernel: rocking/solver/kernels/chatter.py": appended("rocking/solver/kernels/chatter.py"),
+    "rocking/_spectra/cubes.py": appended("rocking/_spectra/cubes.py"),
+    "rocking/_boundary/tracing.py": appended("rocking/_boundary/tracing.py"),
+    "a kernel: rocking/_solver/kernels/chatter.py": appended("rocking/_solver/kernels/chatter.py"),
 }
 """The changes, from few to many repeated jobs."""
 

@@ -21,7 +21,7 @@ STARTS = {
     "import rocking": "import rocking",
     **{
         f"rocking {command.split()[0]}": f"import sys; sys.argv[1:] = {command.split()}\n"
-        "from rocking.cli.app import app\n"
+        "from rocking._cli.app import app\n"
         "try: app()\n"
         "except SystemExit: pass"
         for command in ("--help", f"response {GROUPS}")
@@ -41,7 +41,7 @@ COUNT = "\nimport sys; print(len(sys.modules), file=sys.stderr)"
 CUBES = """
 import json, resource, sys, time
 from pathlib import Path
-from rocking.lookup.collection import CubeCollection
+from rocking._lookup.collection import CubeCollection
 results, everything = Path(sys.argv[1]), sys.argv[2] == "all"
 groups = dict(slenderness=0.5, frequency_ratio=5.0, restitution=0.85)
 CubeCollection(results).response("sine", method="solver", **groups)  # load the kernels

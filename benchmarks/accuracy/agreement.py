@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measure import progress, save, versions
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.solver.bounded_response import solve_with_bound
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._solver.bounded_response import solve_with_bound
 
 ROOT = Path(__file__).parents[2]
 

@@ -17,9 +17,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import rocking
-from rocking.boundary.search import MANY_IMPACTS
-from rocking.boundary.tracer import END
-from rocking.model.response import Outcome
+from rocking._boundary.search import MANY_IMPACTS
+from rocking._boundary.tracer import END
+from rocking._model.response import Outcome
 
 Array = NDArray[np.float64]
 

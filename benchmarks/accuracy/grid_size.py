@@ -24,12 +24,12 @@ from numpy.typing import NDArray
 
 from benchmarks.figures.grid_size import draw
 from benchmarks.measure import progress, publish, versions
-from rocking.boundary.cells import crossed_cells
-from rocking.datasets.cube import read_dataset, write_dataset
-from rocking.lookup.open import open_cube
-from rocking.lookup.points import Points
-from rocking.solver.peak_response import peak_response
-from rocking.spectra.cubes import spectra
+from rocking._boundary.cells import crossed_cells
+from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._lookup.open import open_cube
+from rocking._lookup.points import Points
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.cubes import spectra
 from workflow.scripts import overturning, overturning_part
 from workflow.scripts.axes import stepped
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from rocking.lookup.cube import Cube
-from rocking.lookup.open import open_cube
-from rocking.lookup.points import Points
-from rocking.solver.peak_response import peak_response
+from rocking._lookup.cube import Cube
+from rocking._lookup.open import open_cube
+from rocking._lookup.points import Points
+from rocking._solver.peak_response import peak_response
 
 KINDS = {
     "on slices": (False, False),

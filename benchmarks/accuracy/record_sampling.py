@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.constants import STANDARD_GRAVITY
-from rocking.excitation.records.readers.read_record import read_record
-from rocking.excitation.records.record import Record
-from rocking.solver.records.record_response import record_response
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._excitation.records.readers.read_record import read_record
+from rocking._excitation.records.record import Record
+from rocking._solver.records.record_response import record_response
 
 FOLDER = Path(__file__).parents[2] / "workflow" / "motions"
 FILES = [FOLDER / f"{name}.csv" for name in ("napa_HNE", "napa_HNN", "synthetic_31", "synthetic_32", "synthetic_33")]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from benchmarks.baselines import runge_kutta, scipy_ivp
 from benchmarks.baselines.event_loop import RICKER, SINE, respond, respond_many
 from benchmarks.cells import Cells
-from rocking.solver.peak_response import peak_response
+from rocking._solver.peak_response import peak_response
 
 OPTIONAL = ("heyoka", "numbalsoda", "diffrax")
 """Baselines that are not dependencies of the project; those that cannot be imported are omitted."""

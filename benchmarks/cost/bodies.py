@@ -18,8 +18,8 @@ import numpy as np
 import rocking
 from benchmarks.cost.made_up_records import made_up_record
 from benchmarks.measure import progress, save, spread, versions
-from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.rigid_body import RigidBody
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._dimensional.rigid_body import RigidBody
 
 TRIANGLE = rocking.SampledPulse([0.0, 1.0, 0.0], name="triangle")
 

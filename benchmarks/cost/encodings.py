@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from rocking.datasets.cube import DIMENSIONS
+from rocking._datasets.cube import DIMENSIONS
 
 Encoding = dict[str, dict[str, Any]]
 

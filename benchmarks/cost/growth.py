@@ -22,7 +22,7 @@ import numpy as np
 
 from benchmarks.figures.growth import draw
 from benchmarks.measure import progress, publish, spread, versions
-from rocking.solver.peak_response import peak_response
+from rocking._solver.peak_response import peak_response
 
 PULSE, RESTITUTION = "sine", 0.85
 FREQUENCY_RATIO, SLENDERNESS = (0.5, 12.0), (0.02, 0.85)

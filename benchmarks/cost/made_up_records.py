@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from rocking.excitation.records.record import Record
+from rocking._excitation.records.record import Record
 
 SAMPLES = 2_000, 18_000
 """Smallest and largest number of samples of a suite."""

@@ -22,15 +22,15 @@ from scipy.integrate import solve_ivp
 from benchmarks.cost.growth import memory
 from benchmarks.cost.made_up_records import made_up_record, made_up_suite
 from benchmarks.measure import progress, save, spread, versions
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.simd import LANES
-from rocking.constants import STANDARD_GRAVITY
-from rocking.excitation.records.record import Record
-from rocking.solver.records.batch import solve_by_steps, solve_slender
-from rocking.solver.records.record_response import record_response
-from rocking.solver.records.samples import motion_samples
-from rocking.solver.records.state import body_states, step_state
-from rocking.solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
+from rocking._solver.records.batch import solve_by_steps, solve_slender
+from rocking._solver.records.record_response import record_response
+from rocking._solver.records.samples import motion_samples
+from rocking._solver.records.state import body_states, step_state
+from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
 
 HALF_DIAGONAL = np.array([0.5, 1.0, 2.0, 4.0])
 FREQUENCY_PARAMETER = np.sqrt(0.75 * STANDARD_GRAVITY / HALF_DIAGONAL)

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.measure import progress, save, spread, versions
-from rocking.excitation.pulses import PULSE_NAMES
+from rocking._excitation.pulses import PULSE_NAMES
 
 ROOT = Path(__file__).parents[2]
 

@@ -29,7 +29,7 @@ from benchmarks.measure import progress, save, spread, versions
 from benchmarks.service.load import load
 
 NETCDF = "application/x-netcdf"
-SERVER = "import os; os.sched_setaffinity(0, {%d}); from rocking.cli.app import app; app()"
+SERVER = "import os; os.sched_setaffinity(0, {%d}); from rocking._cli.app import app; app()"
 
 
 class Worker:

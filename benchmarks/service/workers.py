@@ -102,7 +102,7 @@ def service(results: Path, workers: int, cache: Path) -> Iterator[Service]:
     """A service on a free port, once its workers respond."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
-        command = [sys.executable, "-m", "rocking.cli", "serve", "--port", "0", "--results", str(results)]
+        command = [sys.executable, "-m", "rocking._cli", "serve", "--port", "0", "--results", str(results)]
         environment = os.environ | {"ROCKING_CACHE": str(cache), "ROCKING_MAX_SECONDS": "600"}
         with (
             log.open("wb") as output,

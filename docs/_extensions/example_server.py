@@ -21,7 +21,7 @@ def start(app: Any) -> None:
     if not app.config.sphinx_gallery_conf["plot_gallery"] or "ROCKING_SERVER" in os.environ:
         return
     log = Path(tempfile.mkdtemp(prefix="rocking-guide-")) / "log"
-    command = [sys.executable, "-m", "rocking.cli", "serve", "--port", "0", "--results", os.environ["ROCKING_RESULTS"]]
+    command = [sys.executable, "-m", "rocking._cli", "serve", "--port", "0", "--results", os.environ["ROCKING_RESULTS"]]
     with log.open("w") as output:
         service = subprocess.Popen(command, stdout=output, stderr=output)
     atexit.register(stop, service)  # also if the build fails, of which extensions are not told

@@ -13,8 +13,8 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 from typer.cli import get_docs_for_click
 
-from rocking.cli.app import app as command_line
-from rocking.datasets.cube import AXES, VARIABLES
+from rocking._cli.app import app as command_line
+from rocking._datasets.cube import AXES, VARIABLES
 
 
 class Generated(Directive):

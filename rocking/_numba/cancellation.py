@@ -17,7 +17,7 @@ from numba import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from rocking.errors import StoppedError
+from rocking._base.errors import StoppedError
 
 T = TypeVar("T")
 

@@ -29,8 +29,8 @@ from typing import Any, Protocol
 import numba
 from llvmlite import binding  # type: ignore[import-untyped]
 
+from rocking._base.source_tree import SourceTree, imported_names
 from rocking._numba.way import INTERNALS
-from rocking.source_tree import SourceTree, imported_names
 
 PACKAGE = Path(__file__).parents[1]
 

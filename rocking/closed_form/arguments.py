@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import broadcast, float_array
-from rocking.model.checks import check
-from rocking.model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, Parameter
+from rocking._base.errors import broadcast, float_array
+from rocking._model.checks import check
+from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, Parameter
 
 Array = NDArray[np.float64]
 

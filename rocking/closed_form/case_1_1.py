@@ -10,14 +10,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._base.errors import in_range
+from rocking._model.checks import check
 from rocking.closed_form.arguments import POSITIVE_RESTITUTION, Array, checked
 from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end, uplift_phase
 from rocking.closed_form.first_arc import angular_velocity, arc_terms
 from rocking.closed_form.interval import AmplitudeInterval
 from rocking.closed_form.limit import limit_amplitude
 from rocking.closed_form.roots import find_maximum, find_root
-from rocking.errors import in_range
-from rocking.model.checks import check
 
 
 def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:

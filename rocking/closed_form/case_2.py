@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._model.checks import check
 from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, Array, checked
 from rocking.closed_form.coefficients import after_pulse_coefficients, cot_psi, pulse_end
 from rocking.closed_form.roots import find_root
-from rocking.model.checks import check
 
 
 def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:

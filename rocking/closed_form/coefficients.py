@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._model.checks import check
 from rocking.closed_form.arguments import AMPLITUDE, Array, checked
-from rocking.model.checks import check
 
 
 class Coefficients(NamedTuple):

@@ -17,9 +17,9 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._model.checks import check
 from rocking.closed_form.arguments import TIME, Array, checked
 from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end, uplift_phase
-from rocking.model.checks import check
 
 _SERIES_UNTIL = 1.0  # max(tau, omega tau) up to which the series is used; the error of ten terms is then 1e-19
 _SERIES_TERMS = 10

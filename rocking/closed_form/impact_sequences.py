@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
+from rocking._base.errors import InvalidArgumentError, integer
+from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
+from rocking._model.checks import check_number, check_window
+from rocking._model.parameters import RESTITUTION
 from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
 from rocking.closed_form.no_impact import first_uplift_phase, margin_after_impact
-from rocking.errors import InvalidArgumentError, integer
-from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking.model.checks import check_number, check_window
-from rocking.model.parameters import RESTITUTION
 
 _SAMPLES = 48
 """Points per radian of the pulse at which a change of sign of theta is looked for [-]: no two impacts are closer."""

@@ -13,11 +13,11 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
+from rocking._base.errors import number, positive
+from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
+from rocking._model.checks import check_number
+from rocking._model.parameters import RESTITUTION
 from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO
-from rocking.errors import number, positive
-from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking.model.checks import check_number
-from rocking.model.parameters import RESTITUTION
 
 _NEGLIGIBLE = 50.0  # time s beyond which e^-s < 2e-22 is neglected
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)

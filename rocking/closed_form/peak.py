@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._base.errors import in_range
 from rocking.closed_form.arguments import Array, checked
 from rocking.closed_form.case_1_2 import impact_velocity_squared
 from rocking.closed_form.case_2 import case_2_margin
-from rocking.errors import in_range
 
 
 def peak_of_velocity(velocity: ArrayLike) -> Array:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._model.checks import check
 from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, Array
 from rocking.closed_form.roots import find_root
-from rocking.model.checks import check
 
 
 def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:

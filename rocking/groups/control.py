@@ -12,9 +12,9 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.constants import STANDARD_GRAVITY
-from rocking.equality import EqualByValue
-from rocking.errors import in_range, positive
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import in_range, positive
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking.errors import float_array
+from rocking._base.errors import float_array
 from rocking.groups.control import Array, GroupSet, Problem
 
 

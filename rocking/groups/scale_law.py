@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, float_array
-from rocking.model.checks import check, check_number
-from rocking.model.parameters import RESTITUTION
+from rocking._base.errors import InvalidArgumentError, float_array
+from rocking._model.checks import check, check_number
+from rocking._model.parameters import RESTITUTION
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from rocking.model.outcome import Outcome
+from rocking._model.outcome import Outcome
 
 MAIN_IMPACTS = 1
 """Boundaries of overturning after at most so many impacts are drawn with the full line width [-]."""

@@ -11,7 +11,7 @@ from matplotlib.backends.registry import BackendFilter, backend_registry
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking.plot.style import STYLE
 
 FORMATS = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}

@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.equality import EqualByValue
-from rocking.errors import InvalidArgumentError, in_range, number, one_of, positive
-from rocking.excitation.records.processing import MAX_BASELINE_ORDER
-from rocking.excitation.records.readers.read_record import read_record
-from rocking.excitation.records.record import TIME_STEP, UNITS, Record
-from rocking.model.block import Block
-from rocking.model.checks import check_number
-from rocking.model.parameters import RESTITUTION
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
+from rocking._excitation.records.processing import MAX_BASELINE_ORDER
+from rocking._excitation.records.readers.read_record import read_record
+from rocking._excitation.records.record import TIME_STEP, UNITS, Record
+from rocking._model.block import Block
+from rocking._model.checks import check_number
+from rocking._model.parameters import RESTITUTION
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES

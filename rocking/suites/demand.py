@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from rocking.errors import InvalidArgumentError, number
+from rocking._base.errors import InvalidArgumentError, number
 
 MAX_THRESHOLD = 1e3
 """Largest threshold of max |theta|/alpha [-]; at 90 degrees a block of alpha = 0.1 degrees is at 900."""

@@ -15,16 +15,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.errors import number
+from rocking._base.units import Scalar
+from rocking._excitation.records.record import Record
+from rocking._model.block import AbstractBlock
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import number
-from rocking.excitation.records.record import Record
-from rocking.model.block import AbstractBlock
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import CurveFit, FitStatus, binomial_interval, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
-from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 

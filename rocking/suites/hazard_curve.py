@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.errors import InvalidArgumentError, in_range
+from rocking._base.errors import InvalidArgumentError, in_range
 
 Array = NDArray[np.float64]
 

@@ -25,9 +25,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rocking.errors import one_of
-from rocking.excitation.records.record import Record
-from rocking.model.block import AbstractBlock
+from rocking._base.errors import one_of
+from rocking._excitation.records.record import Record
+from rocking._model.block import AbstractBlock
 
 
 @dataclass(frozen=True)

@@ -12,18 +12,18 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError, in_range
+from rocking._base.units import Scalar
+from rocking._dimensional.problem import restitution_of
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.vertical import flight_text
+from rocking._model.block import AbstractBlock
+from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
-from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.problem import restitution_of
-from rocking.errors import InvalidArgumentError, in_range
-from rocking.excitation.records.record import Record
-from rocking.excitation.records.vertical import flight_text
-from rocking.model.block import AbstractBlock
-from rocking.model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
-from rocking.model.response import Response
-from rocking.solver.records.record_response import record_response
+from rocking._solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
-from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 

@@ -15,14 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError, float_array, one_of
+from rocking._boundary.amplitude import critical_amplitude
+from rocking._dimensional.record_scales import overturning_scale
+from rocking._excitation.pulses import AbstractPulse
+from rocking._excitation.records.record import Record
+from rocking._model.block import AbstractBlock, Block
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.amplitude import critical_amplitude
-from rocking.dimensional.record_scales import overturning_scale
-from rocking.equality import EqualByValue
-from rocking.errors import InvalidArgumentError, float_array, one_of
-from rocking.excitation.pulses import AbstractPulse
-from rocking.excitation.records.record import Record
-from rocking.model.block import AbstractBlock, Block
 from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
 
 Array = NDArray[np.float64]

@@ -3,7 +3,7 @@
 At each level every block is solved under every record four times: as `rocking.fragility` does, with a smaller and with
 a larger coefficient of restitution, and with the record interpolated band-limited at half its step. The largest
 friction demand |H|/N is that of the first of them, over the whole motion, impacts excluded
-(`rocking.history.contact.ContactExtremes`).
+(`rocking._history.contact.ContactExtremes`).
 
 The friction demand takes 94 % of the time, 4 to 33 ms for a record of 2,500 to 7,000 samples; the four outcomes take
 about 1.5 ms. All of these are therefore computed at a few levels, not at those of a fragility curve.
@@ -18,13 +18,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.errors import number
+from rocking._base.units import Scalar
+from rocking._excitation.records.record import Record
+from rocking._history.contact import contact_extremes
+from rocking._history.record_motion import build_record_motion
+from rocking._model.block import AbstractBlock
+from rocking._model.fields import OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import number
-from rocking.excitation.records.record import Record
-from rocking.history.contact import contact_extremes
-from rocking.history.record_motion import build_record_motion
-from rocking.model.block import AbstractBlock
-from rocking.model.fields import OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking.suites.fits import binomial_interval
 from rocking.suites.outcomes import (
     DIMENSIONS,
@@ -37,7 +38,6 @@ from rocking.suites.outcomes import (
     slenderness_of,
     vertical_scale_of,
 )
-from rocking.units import Scalar
 
 Array = NDArray[np.float64]
 

@@ -32,9 +32,9 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.optimize import least_squares
 
-from rocking.equality import EqualByValue
-from rocking.errors import InvalidArgumentError, float_array
-from rocking.excitation.pulses import AbstractPulse, SinusoidalPulse, get_pulse
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError, float_array
+from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, get_pulse
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ class Family:
     Attributes
     ----------
     name : str
-        Of the pulse of `rocking.excitation.pulses` whose acceleration is its derivative.
+        Of the pulse of `rocking._excitation.pulses` whose acceleration is its derivative.
     basis : callable
         From phi [rad], (n,), and gamma [-]: the basis functions, (1 or 2, n).
     half_window : callable

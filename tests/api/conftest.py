@@ -10,9 +10,9 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 import rocking
-from rocking.boundary.tracing import overturning_boundary
-from rocking.datasets.cube import describe, scalar_coordinates, write_dataset
-from rocking.spectra.cubes import spectrum
+from rocking._boundary.tracing import overturning_boundary
+from rocking._datasets.cube import describe, scalar_coordinates, write_dataset
+from rocking._spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.hazard import annual_rate
 from rocking.suites.margins import with_margins

@@ -33,8 +33,8 @@ from rocking_api.settings import Settings
 from typer.testing import CliRunner
 
 import rocking
-from rocking.cli.app import app as command_line
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._cli.app import app as command_line
 from rocking.groups import Groups, GroupSet, Problem
 from rocking.orientation import Orientation
 from tests.suites.motions import noise
@@ -271,7 +271,7 @@ def walk_python(walk: Walk, results: Path) -> None:
     functions: dict[str, Callable[..., Any]] = {
         name: value
         for name, value in named
-        if value in MADE or (inspect.isfunction(value) and value.__module__ != "rocking.errors")
+        if value in MADE or (inspect.isfunction(value) and value.__module__ != "rocking._base.errors")
     }
     objects = {"Block": BLOCK, "EquivalentBlock": equivalent, "Record": RECORD, "Cube": cube, "PulseFit": fit}
     objects["SampledPulse"] = rocking.SampledPulse(**PULSE)
@@ -432,7 +432,7 @@ def main() -> None:
         for name in ("rocking_api.command.main", "rocking.plot.output.save_figure"):
             stack.enter_context(patch(name))  # no server, and no files of pictures
         for name in ("POINTS", "ROWS"):
-            stack.enter_context(patch(f"rocking.cli.plot.{name}", 20))
+            stack.enter_context(patch(f"rocking._cli.plot.{name}", 20))
         stack.enter_context(patch.dict(rocking.overturning_boundary.__kwdefaults__, nodes=16))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         OBJECTS["path"] = str(folder / "record.csv")

@@ -23,7 +23,7 @@ import xarray as xr
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
-from rocking.excitation.pulses import PULSE_NAMES
+from rocking._excitation.pulses import PULSE_NAMES
 from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0

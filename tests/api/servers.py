@@ -46,7 +46,7 @@ class Server:
 
 
 @contextmanager
-def serving(results, log, command=(sys.executable, "-m", "rocking.cli"), cwd=ROOT, workers=1, **environment):
+def serving(results, log, command=(sys.executable, "-m", "rocking._cli"), cwd=ROOT, workers=1, **environment):
     """`rocking serve` in a separate process on a free port, with a cache folder beside its log."""
     arguments = [*command, "serve", "--port", "0", "--results", str(results)]
     if workers > 1:

@@ -7,10 +7,10 @@ import math
 import pytest
 from rocking_api.routers import blocks
 
-from rocking.constants import STANDARD_GRAVITY
-from rocking.history.time_history import time_history
-from rocking.model.block import Block
-from rocking.solver.peak_response import peak_response
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._history.time_history import time_history
+from rocking._model.block import Block
+from rocking._solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 
 QUERY = {

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rocking.boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import critical_amplitude
 from tests.api.conftest import assert_problem
 
 URL = "/v1/critical_amplitude"

@@ -8,11 +8,11 @@ import pytest
 import rocking_api.routers.overturning
 import xarray as xr
 
-from rocking.boundary.curves import join_curves
-from rocking.boundary.tracing import overturning_boundary
-from rocking.datasets.cube import read_dataset, write_dataset
-from rocking.history.time_history import time_history
-from rocking.solver.peak_response import peak_response
+from rocking._boundary.curves import join_curves
+from rocking._boundary.tracing import overturning_boundary
+from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._history.time_history import time_history
+from rocking._solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 
 BLOCK = {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}

@@ -16,9 +16,9 @@ import rocking_api.execution.kernels
 from rocking_api.execution.kernels import Kernels
 
 from rocking import precompile
+from rocking._excitation.pulses import PULSE_NAMES
 from rocking._numba.kernel_cache import cache_folder
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.solver.kernels.batch import solve_batch
+from rocking._solver.kernels.batch import solve_batch
 from tests.api.conftest import assert_problem, client_of
 from tests.api.servers import serving
 
@@ -91,7 +91,7 @@ def test_health_responds_while_the_kernels_are_compiled_and_loaded(installed, tm
     compiled = Path(cache_folder())
     missing = shutil.ignore_patterns(precompile.COMPLETE_MARKER, SOLVE_BATCH)
     copied = shutil.copytree(compiled, installed / "rocking/__pycache__" / compiled.name, ignore=missing)
-    program = "import rocking, sys; print(rocking.__file__); from rocking.cli.app import app; app()"
+    program = "import rocking, sys; print(rocking.__file__); from rocking._cli.app import app; app()"
     command, path = (sys.executable, "-c", program), {"PYTHONPATH": str(installed), "NUMBA_CACHE_DIR": ""}
     for granted, log in [(600, "compiled.log"), (60, "loaded.log")]:
         path["ROCKING_MAX_SECONDS"] = str(granted)

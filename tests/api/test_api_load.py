@@ -16,9 +16,9 @@ from rocking_api.models.params import ResponseParams
 from starlette.requests import ClientDisconnect
 
 import rocking
+from rocking._base.equality import equal_values
+from rocking._base.errors import StoppedError
 from rocking._numba.cancellation import StopFlag, run_with_timeout
-from rocking.equality import equal_values
-from rocking.errors import StoppedError
 from tests.api.conftest import assert_problem, client_of
 from tests.api.test_request_log import metrics_of
 

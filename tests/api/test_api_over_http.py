@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 from tests.api.servers import serving
 
 NAME = "spectra/sine/eta-0.85"

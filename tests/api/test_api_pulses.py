@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rocking.excitation.pulses import PULSE_NAMES, get_pulse
+from rocking._excitation.pulses import PULSE_NAMES, get_pulse
 from tests.api.conftest import assert_problem
 
 

@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking.dimensional.record_response import respond_to_record
-from rocking.dimensional.record_scales import scale_thresholds
-from rocking.excitation.records.record import UNITS
+from rocking._dimensional.record_response import respond_to_record
+from rocking._dimensional.record_scales import scale_thresholds
+from rocking._excitation.records.record import UNITS
 from tests.api.conftest import assert_problem, client_of
 from tests.excitation.record_files import at2, rows
 

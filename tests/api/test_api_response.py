@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.datasets.cube import write_dataset
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
-from rocking.spectra.cubes import spectra
+from rocking._datasets.cube import write_dataset
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.cubes import spectra
 from tests.api.conftest import assert_problem, client_of
 
 QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 from tests.api.conftest import assert_problem, client_of
 
 NAME = "spectra/sine/eta-0.85"

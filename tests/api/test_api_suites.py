@@ -6,7 +6,7 @@ import xarray as xr
 from rocking_api import suite_reader
 
 import rocking
-from rocking.datasets.cube import read_dataset, write_dataset
+from rocking._datasets.cube import read_dataset, write_dataset
 from rocking.suites.summary import record_margins
 from tests.api.conftest import assert_problem, client_of
 from tests.suites.motions import noise

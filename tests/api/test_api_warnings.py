@@ -13,7 +13,7 @@ from rocking_api.routers import records
 from typer.testing import CliRunner
 
 import rocking
-from rocking.cli.app import app
+from rocking._cli.app import app
 
 NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 
 WINDOW = {"frequency_ratio_min": 0.7, "frequency_ratio_max": 9.0, "slenderness_min": 0.1, "slenderness_max": 1.1}

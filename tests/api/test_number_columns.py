@@ -9,8 +9,8 @@ from rocking_api.http.batch import read_batch
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.number_columns import CHUNK_BYTES, cut_arrays, parse_array
 
+from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, StoppedError
 
 LIMIT = 1_000_000
 OPTIONS = {"pulse": "sine", "restitution": "0.85"}

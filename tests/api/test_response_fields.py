@@ -1,10 +1,10 @@
-"""The response models and the CSV columns have the fields that `rocking.model.fields` declares."""
+"""The response models and the CSV columns have the fields that `rocking._model.fields` declares."""
 
 import pytest
 from rocking_api.execution.evaluation import PointResult
 from rocking_api.models.responses import BatchResponse, PointResponse, SpectrumResponse
 
-from rocking.model.fields import BOUNDED_FIELDS, COLUMN_FIELDS
+from rocking._model.fields import BOUNDED_FIELDS, COLUMN_FIELDS
 
 NAMES = [field.name for field in COLUMN_FIELDS]
 

@@ -23,9 +23,9 @@ from rocking_api.http.metrics import FOLDER
 from typer.testing import CliRunner
 
 from benchmarks.service import workers as benchmark
-from rocking.cli.app import app
-from rocking.datasets.checksum import sha256_of_file
-from rocking.datasets.cube import read_spectrum, write_dataset
+from rocking._cli.app import app
+from rocking._datasets.checksum import sha256_of_file
+from rocking._datasets.cube import read_spectrum, write_dataset
 from tests.api.servers import processes_below, serving
 
 POINT = "/v1/response?pulse=sine&slenderness=0.6&frequency_ratio=6.0&restitution=0.85"

@@ -7,8 +7,8 @@ import xarray as xr
 
 import rocking
 from rocking import InvalidArgumentError, closed_form
-from rocking.errors import in_range
-from rocking.excitation.pulses import AbstractPulse
+from rocking._base.errors import in_range
+from rocking._excitation.pulses import AbstractPulse
 
 GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
 TIME = np.array(["2014-08-24T10:20:44"], dtype="datetime64[s]")

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.errors import StoppedError
+from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._history.motion import build_motion
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._numba.simd import LANES
-from rocking.boundary.frequency import critical_frequency_ratio
-from rocking.errors import StoppedError
-from rocking.history.motion import build_motion
-from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.peak_response import NO_BODIES
-from rocking.solver.stages.batch import LEFT, solve_by_arcs
-from rocking.solver.stages.remainder import solve_remainder
-from rocking.solver.stages.state import stage_state
-from rocking.solver.state import EDGE_COLUMNS, RESPONSE_RECORD, pulse_state, step_state
-from rocking.spectra.cubes import spectra
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.peak_response import NO_BODIES
+from rocking._solver.stages.batch import LEFT, solve_by_arcs
+from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.state import stage_state
+from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, pulse_state, step_state
+from rocking._spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
 """Slendernesses just below uplift: an elastic block then has 200,000 impacts."""

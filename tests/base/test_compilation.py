@@ -16,24 +16,24 @@ from numba.core.types.functions import BaseFunction
 
 import rocking
 from rocking import precompile
+from rocking._base.errors import InvalidArgumentError
+from rocking._boundary import trends
+from rocking._datasets.cube import write_dataset
+from rocking._excitation.pulses import SinusoidalPulse
+from rocking._excitation.sinusoids import MAX_SINUSOIDS
+from rocking._history import sampling
+from rocking._interpolation import kernel as lookup_kernel
+from rocking._interpolation import stencils as interpolation
+from rocking._interpolation import windows
+from rocking._lookup.open import open_cube
 from rocking._numba import kernel_cache
 from rocking._numba.compilation import contiguous_array, entry, kernel, specialised_kernel
 from rocking._numba.way import INTERNALS
-from rocking.boundary import trends
-from rocking.datasets.cube import write_dataset
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.pulses import SinusoidalPulse
-from rocking.excitation.sinusoids import MAX_SINUSOIDS
-from rocking.history import sampling
-from rocking.interpolation import kernel as lookup_kernel
-from rocking.interpolation import stencils as interpolation
-from rocking.interpolation import windows
-from rocking.lookup.open import open_cube
-from rocking.solver.arcs.arc import cosh_minus_one_and_sinh
-from rocking.solver.kernels import batch as rock_many
-from rocking.solver.stages import batch as stages
-from rocking.solver.stages import remainder
-from rocking.spectra.cubes import spectra
+from rocking._solver.arcs.arc import cosh_minus_one_and_sinh
+from rocking._solver.kernels import batch as rock_many
+from rocking._solver.stages import batch as stages
+from rocking._solver.stages import remainder
+from rocking._spectra.cubes import spectra
 
 ROOT = Path(__file__).parents[2]
 
@@ -112,10 +112,10 @@ def script(code, **environment):
 def test_compiling_process_and_cached_process_give_equal_bits(tmp_path):
     code = """
 import hashlib, numpy as np, rocking
-from rocking.model.fields import RESPONSE_FIELDS
-from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.stages.batch import solve_by_arcs
-from rocking.solver.stages.remainder import solve_remainder
+from rocking._model.fields import RESPONSE_FIELDS
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.stages.batch import solve_by_arcs
+from rocking._solver.stages.remainder import solve_remainder
 rng = np.random.default_rng(7)
 s, w, e = rng.uniform(0.02, 0.95, 20_000), np.exp(rng.uniform(-1.2, 2.5, 20_000)), rng.uniform(0.5, 0.95, 20_000)
 digest = hashlib.sha256()
@@ -242,7 +242,7 @@ def test_division_by_zero_raises_no_exception():
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system binds no process to a core")
 def test_only_the_cores_of_this_process_are_used():
     bind = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})"
-    code = f"{bind}; import rocking.solver.peak_response; print(rocking.solver.peak_response.AVAILABLE_CORES)"
+    code = f"{bind}; import rocking._solver.peak_response; print(rocking._solver.peak_response.AVAILABLE_CORES)"
     assert script(code) == "1\n"
 
 

@@ -12,13 +12,13 @@ import pytest
 
 import rocking
 from rocking import groups
-from rocking.boundary.frequency import critical_frequency_ratio
-from rocking.datasets.cube import write_dataset
-from rocking.dimensional.record_scales import scale_thresholds
-from rocking.equality import EqualByValue, equal_values
-from rocking.lookup.cube import Cube
-from rocking.solver.bounded_response import solve_with_bound
-from rocking.spectra.cubes import spectrum
+from rocking._base.equality import EqualByValue, equal_values
+from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._datasets.cube import write_dataset
+from rocking._dimensional.record_scales import scale_thresholds
+from rocking._lookup.cube import Cube
+from rocking._solver.bounded_response import solve_with_bound
+from rocking._spectra.cubes import spectrum
 from rocking.suites.configuration import suite_configuration
 from tests.lookup_grid import GRID
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rocking.errors import InvalidArgumentError, in_range
-from rocking.solver.peak_response import peak_response
+from rocking._base.errors import InvalidArgumentError, in_range
+from rocking._solver.peak_response import peak_response
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,10 @@ import pytest
 
 import rocking
 from rocking import precompile
+from rocking._base.source_tree import SourceTree
 from rocking._numba import kernel_cache
 from rocking._numba.compilation import entry
 from rocking._numba.way import INTERNALS
-from rocking.source_tree import SourceTree
 
 ROOT = Path(__file__).parents[2]
 
@@ -248,7 +248,7 @@ def test_a_copy_of_the_package_needs_no_compilation(tmp_path):
 import sys
 sys.path.insert(0, {str(tmp_path)!r})
 import rocking
-from rocking.solver.kernels.batch import solve_batch
+from rocking._solver.kernels.batch import solve_batch
 assert rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.8, alpha=0.3).impacts > 0
 print(rocking.__file__, sum(solve_batch.stats.cache_hits.values()), sum(solve_batch.stats.cache_misses.values()))"""
     kept = os.environ | {"NUMBA_CACHE_DIR": str(Path(kernel_cache.cache_folder()).parent)}

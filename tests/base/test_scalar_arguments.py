@@ -11,9 +11,9 @@ import pytest
 
 import rocking
 from rocking import EquivalentBlock, InvalidArgumentError, closed_form, groups, orientation
-from rocking.datasets.cube import write_dataset
+from rocking._datasets.cube import write_dataset
+from rocking._spectra.cubes import spectrum
 from rocking.orientation import Orientation
-from rocking.spectra.cubes import spectrum
 from tests.lookup_grid import GRID
 
 BLOCK = rocking.Block(0.2, 0.8)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking.source_tree import SourceTree
+from rocking._base.source_tree import SourceTree
 
 TREE = {
     "rocking/__init__.py": "import lazy_loader",

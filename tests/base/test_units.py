@@ -9,10 +9,10 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking.dimensional.table import read_table
-from rocking.errors import InvalidArgumentError, MissingUnitError, in_range, si_value
-from rocking.excitation.records.readers.lines import parse_unit
-from rocking.units import UNITS, unit_name
+from rocking._base.errors import InvalidArgumentError, MissingUnitError, in_range, si_value
+from rocking._base.units import UNITS, unit_name
+from rocking._dimensional.table import read_table
+from rocking._excitation.records.readers.lines import parse_unit
 
 REGISTRY = pint.UnitRegistry()
 QUANTITY = REGISTRY.Quantity

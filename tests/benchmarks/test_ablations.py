@@ -7,9 +7,9 @@ import pytest
 
 from benchmarks.ablations import grids, motion, suite
 from benchmarks.ablations.ablation import Ablation
-from rocking.boundary.tracing import overturning_boundaries, overturning_boundary
-from rocking.solver import peak_response as solve
-from rocking.solver.peak_response import peak_response
+from rocking._boundary.tracing import overturning_boundaries, overturning_boundary
+from rocking._solver import peak_response as solve
+from rocking._solver.peak_response import peak_response
 
 COUNTS_ONLY = 0
 """No timing rounds."""

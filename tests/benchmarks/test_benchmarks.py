@@ -25,8 +25,8 @@ from benchmarks.cost.equal_error import time_for
 from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.measure import accuracy
 from benchmarks.summary import page
-from rocking.lookup.open import open_cube
-from rocking.solver.peak_response import peak_response
+from rocking._lookup.open import open_cube
+from rocking._solver.peak_response import peak_response
 from tests.workflow_fixtures import snakemake
 
 ROOT = Path(__file__).parents[2]

@@ -7,9 +7,9 @@ import pytest
 
 import rocking
 from rocking import Outcome, closed_form
-from rocking.boundary.search import ELASTIC_RESOLUTION, MANY_IMPACTS, MOST_COUNTED, RESOLUTION, UNCOUNTED, region_code
-from rocking.boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD
-from rocking.model.outcome_code import outcome_codes
+from rocking._boundary.search import ELASTIC_RESOLUTION, MANY_IMPACTS, MOST_COUNTED, RESOLUTION, UNCOUNTED, region_code
+from rocking._boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD
+from rocking._model.outcome_code import outcome_codes
 
 
 def curves(boundary):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.boundary.cells import crossed_cells
+from rocking._boundary.cells import crossed_cells
 
 ROWS = np.sort(np.concatenate([np.linspace(0.1, 0.5, 9), np.linspace(0.52, 0.9, 21)]))  # of uneven spacing
 COLUMNS = np.geomspace(0.5, 12.0, 25)

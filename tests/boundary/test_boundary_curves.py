@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.boundary.curves import curves_at, join_curves
-from rocking.boundary.tracing import overturning_boundary
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._boundary.curves import curves_at, join_curves
+from rocking._boundary.tracing import overturning_boundary
 
 ANGLES_DEG = (0.0, 10.0, 20.0)
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from rocking.boundary.amplitude import critical_amplitude
-from rocking.boundary.frequency import critical_frequency_ratio
-from rocking.errors import InvalidArgumentError
-from rocking.solver.peak_response import peak_response
+from rocking._base.errors import InvalidArgumentError
+from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._solver.peak_response import peak_response
 
 WINDOW = (0.3, 20.0)
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rocking.boundary.chains import Chains, chains_of
-from rocking.boundary.columns import Column
+from rocking._boundary.chains import Chains, chains_of
+from rocking._boundary.columns import Column
 
 
 def chains(numbers):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rocking.boundary.columns import Column
-from rocking.boundary.matching import join_sides, learn_slopes, match_thresholds
+from rocking._boundary.columns import Column
+from rocking._boundary.matching import join_sides, learn_slopes, match_thresholds
 
 STEP = 0.01
 

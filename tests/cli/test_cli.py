@@ -13,13 +13,13 @@ import pytest
 from typer.testing import CliRunner
 
 import rocking
-from rocking.boundary.tracing import overturning_boundary
-from rocking.cli.app import app
-from rocking.errors import InvalidArgumentError, si_value
-from rocking.history.time_history import time_history
-from rocking.model.block import Block
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
+from rocking._base.errors import InvalidArgumentError, si_value
+from rocking._boundary.tracing import overturning_boundary
+from rocking._cli.app import app
+from rocking._history.time_history import time_history
+from rocking._model.block import Block
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
 
 GROUPS = ["--pulse", "sine", "--slenderness", "0.4", "--frequency-ratio", "5", "--restitution", "0.85"]
 UNITS = [
@@ -461,7 +461,7 @@ def test_help_and_version_import_nothing_heavy(option):
     code = (
         "import sys\n"
         "from typer.testing import CliRunner\n"
-        "from rocking.cli.app import app\n"
+        "from rocking._cli.app import app\n"
         f"result = CliRunner().invoke(app, [{option!r}])\n"
         "assert result.exit_code == 0\n"
         "print(result.stdout)\n"

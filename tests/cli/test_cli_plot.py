@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-from rocking.cli.app import app
+from rocking._cli.app import app
 from tests.cli.test_cli import GROUPS, UNITS, refused, run
 
 BLOCK = UNITS[:6]

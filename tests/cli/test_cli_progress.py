@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from rocking.cli import progress as module
-from rocking.cli.progress import progress
+from rocking._cli import progress as module
+from rocking._cli.progress import progress
 
 
 @pytest.fixture

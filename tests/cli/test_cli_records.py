@@ -12,8 +12,8 @@ import yaml
 from typer.testing import CliRunner
 
 import rocking
-from rocking.cli.app import app
-from rocking.dimensional.record_response import respond_to_record
+from rocking._cli.app import app
+from rocking._dimensional.record_response import respond_to_record
 from rocking.suites.configuration import suite_configuration
 from tests.excitation.record_files import at2, rows
 

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 from rocking import closed_form
+from rocking._base.errors import InvalidArgumentError
 from rocking.closed_form.arguments import checked
-from rocking.errors import InvalidArgumentError
 
 VALUES = {
     "amplitude": [2.0, 3.0],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rocking import closed_form as cf
-from rocking.solver.peak_response import peak_response
+from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 
 NONE = (np.nan, np.nan)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rocking import closed_form as cf
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from tests.direct_integration import integrate
 
 CASES = [(1.2, 1.0), (2.0, 3.0), (3.4, 2.3), (5.0, 8.0), (1.05, 0.6)]

@@ -8,8 +8,8 @@ from scipy.integrate import simpson
 
 import rocking
 from rocking import closed_form as cf
-from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
-from rocking.solver.peak_response import peak_response
+from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
+from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 from tests.excitation.test_smooth_pulse import Given
 

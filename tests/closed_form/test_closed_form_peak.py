@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rocking import closed_form as cf
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._solver.peak_response import peak_response
 from rocking.groups.scale_law import largest_deviation, restitution_exponent, scale_law_deviation
-from rocking.solver.peak_response import peak_response
 from tests.direct_integration import peak_of_free_rocking
 
 

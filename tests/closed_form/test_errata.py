@@ -10,7 +10,7 @@ import yaml
 
 import rocking
 from rocking import closed_form as cf
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking.orientation import Orientation, quantity_of
 from tests.direct_integration import integrate, peak_of_free_rocking
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from rocking import closed_form as cf
-from rocking.boundary.amplitude import critical_amplitude
-from rocking.errors import InvalidArgumentError
-from rocking.solver.peak_response import peak_response
+from rocking._base.errors import InvalidArgumentError
+from rocking._boundary.amplitude import critical_amplitude
+from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 
 PAGE = (Path(__file__).parents[2] / "docs/equations.md").read_text(encoding="utf-8")

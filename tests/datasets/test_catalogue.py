@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from rocking.datasets import catalogue
+from rocking._datasets import catalogue
 
 
 @pytest.fixture

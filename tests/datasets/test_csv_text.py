@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from rocking.datasets.csv_text import csv_rows, csv_text
+from rocking._datasets.csv_text import csv_rows, csv_text
 
 
 def test_cells_are_exact_and_missing_values_empty():

@@ -12,13 +12,13 @@ import xarray as xr
 from compliance_checker.runner import CheckSuite
 from netCDF4 import Dataset
 
-from rocking.datasets.cube import VARIABLES, read_dataset, read_spectrum, stored_pulse, write_dataset
-from rocking.errors import DatasetError, InvalidArgumentError
-from rocking.excitation.sampled import SampledPulse
-from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
-from rocking.spectra.cubes import spectrum
+from rocking._base.errors import DatasetError, InvalidArgumentError
+from rocking._datasets.cube import VARIABLES, read_dataset, read_spectrum, stored_pulse, write_dataset
+from rocking._excitation.sampled import SampledPulse
+from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.cubes import spectrum
 
 SLENDERNESS = np.linspace(0.1, 0.8, 29)
 FREQUENCY_RATIO = np.geomspace(0.8, 10.0, 41)
@@ -238,7 +238,7 @@ def test_threads_read_files_at_the_same_time(written: Path) -> None:
     program = (
         "import sys, threading\n"
         "from concurrent.futures import ThreadPoolExecutor\n"
-        "from rocking.datasets.cube import decode_dataset, read_content, read_slice\n"
+        "from rocking._datasets.cube import decode_dataset, read_content, read_slice\n"
         "path = sys.argv[1]\n"
         "content = read_content(path)\n"
         "def read(number):\n"

@@ -8,12 +8,12 @@ import time
 import numpy as np
 import pytest
 
-import rocking.datasets.catalogue
-from rocking.datasets.catalogue import Catalogue, FileVersion, UnknownDatasetError, version_of
-from rocking.datasets.cube import read_spectrum, write_dataset
-from rocking.errors import DatasetError
-from rocking.lookup.collection import CubeCollection
-from rocking.spectra.cubes import spectrum
+import rocking._datasets.catalogue
+from rocking._base.errors import DatasetError
+from rocking._datasets.catalogue import Catalogue, FileVersion, UnknownDatasetError, version_of
+from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._lookup.collection import CubeCollection
+from rocking._spectra.cubes import spectrum
 
 NAME = "spectra/sine/eta-0.85"
 POINT = {"slenderness": 0.7, "frequency_ratio": 7.0, "restitution": 0.85}
@@ -83,7 +83,7 @@ def test_opening_a_recently_changed_file_waits_one_clock_tick(path, monkeypatch)
     monkeypatch.setattr(time, "sleep", waited.append)
     path.touch()
     with Catalogue(path.parents[2]).open(NAME):
-        assert waited == [rocking.datasets.catalogue.CLOCK_TICK / 1e9]
+        assert waited == [rocking._datasets.catalogue.CLOCK_TICK / 1e9]
     assert not version_of(path).is_settled
     assert FileVersion(1, 2, 3, 4, changed=time.time_ns() - 10**9).is_settled
 
@@ -102,14 +102,14 @@ def test_file_that_changes_while_it_is_read_is_refused(path, monkeypatch):
 
 
 def test_response_names_the_version_it_was_read_from(cubes, path, contents, monkeypatch):
-    respond = rocking.lookup.cube.Cube.response
+    respond = rocking._lookup.cube.Cube.response
 
     def replacing(*args, **kwargs):
         response = respond(*args, **kwargs)
         replaced(path, contents[1])
         return response
 
-    monkeypatch.setattr(rocking.lookup.cube.Cube, "response", replacing)
+    monkeypatch.setattr(rocking._lookup.cube.Cube, "response", replacing)
     assert cubes.response("sine", **POINT)[1] == (sha256(contents[0]),)
 
 

@@ -1,6 +1,6 @@
 """Digests of settings change if and only if the settings do."""
 
-from rocking.datasets.provenance import settings_digest
+from rocking._datasets.provenance import settings_digest
 
 
 def test_settings_digest_ignores_order() -> None:

@@ -8,11 +8,11 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking.dimensional.problem import BlockProblem, frequency_ratio_of, period_of
-from rocking.dimensional.response import FIELDS
-from rocking.errors import InvalidArgumentError
-from rocking.model.block import STANDARD_GRAVITY
-from rocking.model.outcome import Outcome
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of
+from rocking._dimensional.response import FIELDS
+from rocking._model.block import STANDARD_GRAVITY
+from rocking._model.outcome import Outcome
 
 BLOCK = rocking.Block(half_width=0.2, half_height=0.8)
 MOTION = {"peak_acceleration": 4.0, "period": 0.5}

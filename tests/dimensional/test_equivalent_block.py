@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking
-from rocking.errors import InvalidArgumentError
-from rocking.model.linkage import VelocityField, restitution_of_impact
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.linkage import VelocityField, restitution_of_impact
 
 COLUMN = rocking.Block(half_width=0.3, half_height=2.0)
 ARCH = {"radius": 10.0, "thickness": 1.5, "embrace": math.radians(157.5), "voussoirs": 7}

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.errors import StoppedError
+from rocking._dimensional import record_assessment
 from rocking._numba.cancellation import StopFlag
-from rocking.dimensional import record_assessment
-from rocking.errors import StoppedError
 from tests.suites.motions import noise
 
 BLOCK = rocking.Block(0.25, 1.0)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.dimensional.record_scales import ScaleThresholds, overturning_scale, scale_thresholds
-from rocking.dimensional.threshold import Threshold, threshold_text
+from rocking._dimensional.record_scales import ScaleThresholds, overturning_scale, scale_thresholds
+from rocking._dimensional.threshold import Threshold, threshold_text
 from tests.suites.motions import noise
 
 BLOCKS = [rocking.Block(0.1, 0.5), rocking.Block(0.25, 1.0), rocking.Block(1.0, 5.0)]

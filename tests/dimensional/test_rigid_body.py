@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.body_problem import BodyProblem
-from rocking.errors import InvalidArgumentError
-from rocking.model.body import polygon_properties
-from rocking.solver.bodies import outcome_margin_of
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.body_problem import BodyProblem
+from rocking._model.body import polygon_properties
+from rocking._solver.bodies import outcome_margin_of
 from tests.solver.records.tables import TABLE, record, samples
 
 BODY = rocking.RigidBody(0.12, 0.18, 0.4)

@@ -5,9 +5,9 @@ import io
 
 import pytest
 
-from rocking.datasets.csv_text import csv_text
-from rocking.dimensional.table import read_table
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._datasets.csv_text import csv_text
+from rocking._dimensional.table import read_table
 
 HEADER = "name,width [m],height [m],peak_acceleration [g],period [s]\n"
 NAMES = ["vase, blue", 'say "no"', "two\nlines", "a\rb", "a\r\nb", " vase ", "", "vase; red", "6'", "=1+1", "'-1"]

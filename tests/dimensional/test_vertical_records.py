@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.record_groups import record_groups, uplift_scale
-from rocking.dimensional.record_scales import overturning_scale, scale_thresholds
-from rocking.errors import InvalidArgumentError
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.record_groups import record_groups, uplift_scale
+from rocking._dimensional.record_scales import overturning_scale, scale_thresholds
 from tests.solver.records.tables import samples
 from tests.suites.motions import noise
 

@@ -15,9 +15,9 @@ import warnings
 
 import numpy as np
 
-from rocking.errors import RecordFileError
-from rocking.excitation.records.readers.read_record import parse_record
-from rocking.excitation.records.record import UNITS, Record
+from rocking._base.errors import RecordFileError
+from rocking._excitation.records.readers.read_record import parse_record
+from rocking._excitation.records.record import UNITS, Record
 from tests.excitation.record_files import DAMAGED, GOOD, ODD, pairs, values
 
 FILES = [*GOOD.values(), *ODD.values(), *DAMAGED.values()]

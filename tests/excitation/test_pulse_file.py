@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import rocking
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.sampled import MAX_SAMPLES
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.sampled import MAX_SAMPLES
 
 VALUES, TIMES = [0.0, 1.0, -0.25, 0.0], [0.0, 0.5, 0.75, 2.0]
 TEXTS = {

@@ -10,17 +10,17 @@ from hypothesis import strategies as st
 from numpy import cos, exp, pi, sin, sqrt
 
 import rocking
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.pulses import (
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.pulses import (
     PULSE_NAMES,
     AbstractPulse,
     SinusoidalPulse,
     WaveletPulse,
     get_pulse,
 )
-from rocking.excitation.shapes import MAX_PIECES
-from rocking.excitation.sinusoids import MAX_SINUSOIDS
-from rocking.excitation.wavelets import MAX_POLYNOMIAL
+from rocking._excitation.shapes import MAX_PIECES
+from rocking._excitation.sinusoids import MAX_SINUSOIDS
+from rocking._excitation.wavelets import MAX_POLYNOMIAL
 
 PHI_1, PHI_2 = 0.0697034 * pi, 0.0409760 * pi
 BETA = sqrt(6) * sqrt(3 - sqrt(6)) * exp(-(3 - sqrt(6)) / 2)

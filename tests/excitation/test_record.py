@@ -10,9 +10,9 @@ import pytest
 from scipy.signal import resample_poly
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.records.record import UNITS
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.records.record import UNITS
 
 MOTIONS = Path(__file__).parents[2] / "workflow" / "motions"
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
+from rocking._excitation.records.readers.read_record import parse_record
+from rocking._excitation.records.record import UNITS
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, RecordFileError, StoppedError
-from rocking.excitation.records.readers.read_record import parse_record
-from rocking.excitation.records.record import UNITS
 from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, THREE, File, at2, esm, pairs, rows
 from tests.excitation.record_fuzzer import fuzz
 
@@ -63,7 +63,7 @@ def test_reading_can_be_cancelled(file: str) -> None:
 
 GROWTH = """
 import sys
-from rocking.excitation.records.readers.read_record import read_record
+from rocking._excitation.records.readers.read_record import read_record
 
 def most():
     (line,) = [line for line in open("/proc/self/status") if line.startswith("VmHWM")]

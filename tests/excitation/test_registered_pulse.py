@@ -11,14 +11,14 @@ from typer.testing import CliRunner
 
 import rocking
 from rocking import precompile
-from rocking.cli.app import app
-from rocking.datasets.cube import read_spectrum, write_dataset
-from rocking.errors import DatasetError, InvalidArgumentError
-from rocking.excitation import pulses
-from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
-from rocking.lookup.collection import CubeCollection
-from rocking.lookup.open import open_cube
-from rocking.spectra.cubes import spectrum
+from rocking._base.errors import DatasetError, InvalidArgumentError
+from rocking._cli.app import app
+from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._excitation import pulses
+from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
+from rocking._lookup.collection import CubeCollection
+from rocking._lookup.open import open_cube
+from rocking._spectra.cubes import spectrum
 from tests.direct_integration import integrate
 
 GROUPS = {"slenderness": 0.6, "frequency_ratio": 3.0, "restitution": 0.85}

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.errors import InvalidArgumentError
-from rocking.excitation import smooth
-from rocking.excitation.polynomials import DEGREE, MAX_POLYNOMIALS, turning_points
-from rocking.excitation.shapes import MAX_PIECES
-from rocking.excitation.smooth import SmoothPulse
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation import smooth
+from rocking._excitation.polynomials import DEGREE, MAX_POLYNOMIALS, turning_points
+from rocking._excitation.shapes import MAX_PIECES
+from rocking._excitation.smooth import SmoothPulse
 
 EPS = float(np.finfo(float).eps)
 

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking import groups
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.block import Block
+from rocking._solver.peak_response import peak_response
 from rocking.groups import Groups, GroupSet, Problem
-from rocking.model.block import Block
-from rocking.solver.peak_response import peak_response
 
 problems = st.builds(
     Problem,

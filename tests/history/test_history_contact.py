@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.history import contact
-from rocking.history.contact import MAX_FRICTION, MAX_STEP, MAX_STEPS, PRACTICAL_FRICTION, contact_extremes
-from rocking.history.motion import build_motion
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._history import contact
+from rocking._history.contact import MAX_FRICTION, MAX_STEP, MAX_STEPS, PRACTICAL_FRICTION, contact_extremes
+from rocking._history.motion import build_motion
 
 QUESTIONS = (
     {"slenderness": 0.45, "frequency_ratio": 4.0, "restitution": 0.85},

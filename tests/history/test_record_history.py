@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._numba.cancellation import StopFlag
-from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import InvalidArgumentError, StoppedError
 from tests.solver.records.tables import record
 
 MOTION = record("napa_HNE", 0.005)

@@ -5,10 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rocking._numba.simd import LANES
-from rocking.errors import InvalidArgumentError
-from rocking.interpolation.cells import pack_cells
-from rocking.interpolation.stencils import (
+from rocking._base.errors import InvalidArgumentError
+from rocking._interpolation.cells import pack_cells
+from rocking._interpolation.stencils import (
     NO_STENCIL,
     OVERTURNS,
     PEAK,
@@ -25,10 +24,11 @@ from rocking.interpolation.stencils import (
     slice_products,
     slice_window,
 )
-from rocking.interpolation.strips import STRIP_SIZE, STRIP_STEP, strips_of
-from rocking.interpolation.windows import AngleAxis, group_points
-from rocking.model.outcome import Outcome
-from rocking.model.outcome_code import overturning_code
+from rocking._interpolation.strips import STRIP_SIZE, STRIP_STEP, strips_of
+from rocking._interpolation.windows import AngleAxis, group_points
+from rocking._model.outcome import Outcome
+from rocking._model.outcome_code import overturning_code
+from rocking._numba.simd import LANES
 
 UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0.1])
 

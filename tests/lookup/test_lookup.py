@@ -7,16 +7,16 @@ from threading import Thread
 import numpy as np
 import pytest
 
-import rocking.lookup.cube
-from rocking.boundary.tracing import overturning_boundary
-from rocking.datasets.cube import read_spectrum, write_dataset
-from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.lookup.cube import SAFETY, Cube
-from rocking.lookup.open import open_cube
-from rocking.model.response import Outcome
-from rocking.solver.bounded_response import SOLVER_ERROR, solve_with_bound
-from rocking.solver.peak_response import peak_response
-from rocking.spectra.cubes import spectrum
+import rocking._lookup.cube
+from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
+from rocking._boundary.tracing import overturning_boundary
+from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._lookup.cube import SAFETY, Cube
+from rocking._lookup.open import open_cube
+from rocking._model.response import Outcome
+from rocking._solver.bounded_response import SOLVER_ERROR, solve_with_bound
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.cubes import spectrum
 from tests.lookup_grid import GRID, crossed, random_points
 
 ETA = 0.85
@@ -151,7 +151,7 @@ def test_method_solver_does_not_use_the_cube(cube):
     assert set(found.source) == {"solver"}
 
 
-@pytest.mark.parametrize("method", rocking.lookup.cube.METHODS)
+@pytest.mark.parametrize("method", rocking._lookup.cube.METHODS)
 def test_no_uplift_from_slenderness_one_on(cube, method):
     found = cube.response(slenderness=[1.0, 1.5, 1e308], frequency_ratio=[1.0, 99.0, 1e-3], method=method)
     assert set(found.outcome) == {Outcome.NO_UPLIFT}

@@ -5,15 +5,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from rocking._base.errors import InvalidArgumentError, StoppedError
+from rocking._datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
+from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, slice_window
+from rocking._lookup.cube import MIN_CHUNK, SAFETY, Cube
+from rocking._lookup.cube_slice import slice_of
+from rocking._lookup.points import Points
+from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking.datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
-from rocking.errors import InvalidArgumentError, StoppedError
-from rocking.interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, slice_window
-from rocking.lookup.cube import MIN_CHUNK, SAFETY, Cube
-from rocking.lookup.cube_slice import slice_of
-from rocking.lookup.points import Points
-from rocking.model.outcome import Outcome
-from rocking.solver.bounded_response import SOLVER_ERROR
+from rocking._solver.bounded_response import SOLVER_ERROR
 
 ETAS = np.array([0.70, 0.75, 0.78, 0.85, 0.90, 0.95])
 ALPHAS = np.radians([0.0, 4.0, 10.0, 15.0, 22.0])

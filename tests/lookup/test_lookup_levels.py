@@ -5,11 +5,11 @@ import shutil
 import numpy as np
 import pytest
 
-from rocking.datasets.cube import read_spectrum, write_dataset
-from rocking.errors import DatasetError, InvalidArgumentError, OutsideCubeError
-from rocking.lookup.open import open_cube
-from rocking.solver.peak_response import peak_response
-from rocking.spectra.cubes import spectra, spectrum
+from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
+from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._lookup.open import open_cube
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.cubes import spectra, spectrum
 from tests.lookup_grid import GRID, crossed, random_points
 
 ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 5.0, 10.0, 15.0, 20.0])

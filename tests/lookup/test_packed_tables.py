@@ -13,15 +13,15 @@ from collections import namedtuple
 import numpy as np
 import pytest
 
-import rocking.datasets.shared_cache
-import rocking.lookup.collection
-import rocking.lookup.packed_tables
-from rocking.datasets.catalogue import DataFile
-from rocking.datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, write_dataset
-from rocking.datasets.shared_cache import MAX_WRITE_SECONDS
-from rocking.lookup.collection import CubeCollection
-from rocking.lookup.packed_tables import LAYOUT, write_tables
-from rocking.spectra.cubes import spectra
+import rocking._datasets.shared_cache
+import rocking._lookup.collection
+import rocking._lookup.packed_tables
+from rocking._datasets.catalogue import DataFile
+from rocking._datasets.cube import AXES, DIMENSIONS, VARIABLES, build_spectrum_dataset, write_dataset
+from rocking._datasets.shared_cache import MAX_WRITE_SECONDS
+from rocking._lookup.collection import CubeCollection
+from rocking._lookup.packed_tables import LAYOUT, write_tables
+from rocking._spectra.cubes import spectra
 
 NAMES = ["spectra/sine/eta-0.85", "spectra/sine/eta-0.86"]
 GRID = {"slenderness": np.linspace(0.6, 0.8, 21), "frequency_ratio": np.geomspace(6.0, 8.0, 21)}
@@ -213,7 +213,7 @@ def folder_is_a_file(results, _):
 
 def disk_is_full(_, monkeypatch):
     usage = namedtuple("usage", "total used free")(10**12, 10**12, 1000)
-    monkeypatch.setattr(rocking.datasets.shared_cache.shutil, "disk_usage", lambda _: usage)
+    monkeypatch.setattr(rocking._datasets.shared_cache.shutil, "disk_usage", lambda _: usage)
 
 
 def writing_fails(_, monkeypatch):
@@ -221,7 +221,7 @@ def writing_fails(_, monkeypatch):
         file.write(b"a part of it")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(rocking.lookup.packed_tables, "write_tables", write)
+    monkeypatch.setattr(rocking._lookup.packed_tables, "write_tables", write)
 
 
 @pytest.mark.parametrize("fail", [folder_is_a_file, disk_is_full, writing_fails])
@@ -242,7 +242,7 @@ def test_without_a_cache_the_tables_are_in_memory(results, monkeypatch, caplog, 
 def test_tables_in_private_memory_are_limited(results, monkeypatch, reads):
     folder_is_a_file(results, monkeypatch)
     cubes = collection(results)
-    monkeypatch.setattr(rocking.lookup.collection, "MAX_PRIVATE_BYTES", cubes.slice_at("sine", 0.85).private_bytes)
+    monkeypatch.setattr(rocking._lookup.collection, "MAX_PRIVATE_BYTES", cubes.slice_at("sine", 0.85).private_bytes)
     kept = cubes.slice_at("sine", 0.86)
     assert not cubes.is_open("sine", 0.85)
     assert cubes.slice_at("sine", 0.86) is kept

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import cumulative_simpson
 
 import rocking
-from rocking.errors import InvalidArgumentError
-from rocking.model.reactions import impulse_ratio, reactions
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.reactions import impulse_ratio, reactions
 
 RADIUS = 0.75
 """R in units of g/p^2; masses are 1, so that forces are in units of m g."""

@@ -11,12 +11,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking
-from rocking.datasets.cube import read_spectrum, write_dataset
-from rocking.lookup.open import open_cube
-from rocking.model.fields import DERIVED_FIELDS
-from rocking.model.residual_energy import residual_energy
-from rocking.solver.bounded_response import solve_with_bound
-from rocking.spectra.cubes import spectrum
+from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._lookup.open import open_cube
+from rocking._model.fields import DERIVED_FIELDS
+from rocking._model.residual_energy import residual_energy
+from rocking._solver.bounded_response import solve_with_bound
+from rocking._spectra.cubes import spectrum
 
 ROOT = Path(__file__).parents[2]
 
@@ -32,7 +32,7 @@ SCRIPT = """
 import json, sys, types
 import importlib.util
 
-spec = importlib.util.find_spec("rocking.model.fields")
+spec = importlib.util.find_spec("rocking._model.fields")
 module = importlib.util.module_from_spec(spec)
 sys.modules[spec.name] = module
 exec(compile(sys.argv[1], spec.origin, "exec"), vars(module))
@@ -41,9 +41,9 @@ import numpy as np, rocking
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
-from rocking.spectra.cubes import spectrum
+from rocking._spectra.cubes import spectrum
 from typer.testing import CliRunner
-from rocking.cli.app import app
+from rocking._cli.app import app
 
 groups = {"slenderness": [0.4, 0.3], "frequency_ratio": 5.0, "restitution": 0.85}
 found = rocking.peak_response("sine", **groups)
@@ -68,7 +68,7 @@ print(json.dumps({
 
 
 def test_a_declaration_alone_makes_a_field_appear_everywhere(tmp_path):
-    source = (ROOT / "rocking/model/fields.py").read_text()
+    source = (ROOT / "rocking/_model/fields.py").read_text()
     declared = source.replace("\nDERIVED_FIELDS = (RESIDUAL_ENERGY,)\n", DECLARATION)
     assert declared != source
     done = subprocess.run(

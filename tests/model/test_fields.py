@@ -10,14 +10,14 @@ import xarray as xr
 from rocking_api.models.responses import Columns, PointResponse
 
 import rocking
-from rocking.datasets.cube import VARIABLES
-from rocking.model import fields
-from rocking.model.fields import BOUNDED_FIELDS, COLUMN_FIELDS, CUBE_FIELDS, RESPONSE_FIELDS, SOLVED_FIELDS
-from rocking.model.outcome import Outcome
-from rocking.model.outcome_code import SURVIVES, decode_outcomes, outcome_codes
-from rocking.solver.bounded_response import BoundedResponse, solve_with_bound
-from rocking.solver.peak_response import peak_response
-from rocking.solver.state import RESPONSE_RECORD
+from rocking._datasets.cube import VARIABLES
+from rocking._model import fields
+from rocking._model.fields import BOUNDED_FIELDS, COLUMN_FIELDS, CUBE_FIELDS, RESPONSE_FIELDS, SOLVED_FIELDS
+from rocking._model.outcome import Outcome
+from rocking._model.outcome_code import SURVIVES, decode_outcomes, outcome_codes
+from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
+from rocking._solver.peak_response import peak_response
+from rocking._solver.state import RESPONSE_RECORD
 
 NOTATION = Path(__file__).parents[2] / "docs" / "notation.md"
 TYPES = {"f8": np.float64, "i1": np.int8, "i4": np.int32, "?": np.bool_, "U": np.str_}

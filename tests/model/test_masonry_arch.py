@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from rocking.errors import InvalidArgumentError
-from rocking.model.block import Block
-from rocking.model.linkage import FourBarLinkage, Link, VelocityField, restitution_of_impact
-from rocking.model.masonry_arch import MasonryArch
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.block import Block
+from rocking._model.linkage import FourBarLinkage, Link, VelocityField, restitution_of_impact
+from rocking._model.masonry_arch import MasonryArch
 
 OPPENHEIM = MasonryArch(radius=10.0, thickness=1.5, embrace=math.radians(157.5), voussoirs=7, gravity=9.81)
 

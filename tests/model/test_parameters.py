@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from rocking.errors import InvalidArgumentError
-from rocking.model.checks import check, check_window
-from rocking.model.parameters import ALPHA, FREQUENCY_RATIO, GROUPS, SLENDERNESS
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.checks import check, check_window
+from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, GROUPS, SLENDERNESS
 
 
 @pytest.mark.parametrize("parameter", GROUPS, ids=[one.name for one in GROUPS])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking.orientation import (
     VARIABLES,
     Orientation,

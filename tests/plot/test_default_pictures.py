@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.dimensional.curves import block_boundary
-from rocking.spectra.cubes import spectrum
+from rocking._dimensional.curves import block_boundary
+from rocking._spectra.cubes import spectrum
 from tests.suites.motions import noise
 
 BLOCK = rocking.Block(half_width=0.2, half_height=0.8)

@@ -11,8 +11,8 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 import rocking
 from rocking import plot
-from rocking.dimensional.curves import block_boundary
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.curves import block_boundary
 from rocking.plot.output import new_figure, save_figure
 from tests.suites.motions import noise
 

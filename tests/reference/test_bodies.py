@@ -11,9 +11,9 @@ from flint import arb
 
 from reference.exact_response import CAPPED, SAFE, ExactResponse, working_precision
 from reference.records import BITS, RELATIVE_CHANGE, Edge, integrate_record
-from rocking.solver.records.record_response import solve_bodies
-from rocking.solver.records.samples import sample_rows
-from rocking.solver.state import BODY_CELL
+from rocking._solver.records.record_response import solve_bodies
+from rocking._solver.records.samples import sample_rows
+from rocking._solver.state import BODY_CELL
 from tests.solver.records.test_bodies import edge
 
 ROUNDING = 2.2e-16

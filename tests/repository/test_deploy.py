@@ -23,7 +23,7 @@ import pytest
 import typer
 from rocking_api.settings import Settings
 
-from rocking.cli.app import app
+from rocking._cli.app import app
 from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
@@ -194,7 +194,7 @@ def test_service_works_with_the_system_calls_of_the_unit(unit, tmp_path):
     done = subprocess.run([*filtered, "-c", chroot], stdout=subprocess.PIPE, text=True, check=True)
     assert done.stdout == "refused\n"
     question = "slenderness=0.4&frequency_ratio=5&restitution=0.85"
-    with serving(tmp_path, tmp_path / "log", command=(*filtered, "-m", "rocking.cli"), workers=2) as server:
+    with serving(tmp_path, tmp_path / "log", command=(*filtered, "-m", "rocking._cli"), workers=2) as server:
         response = httpx2.get(f"{server.address}/v1/response?pulse=sine&{question}", timeout=120)
         assert response.json()["outcome"] == "SAFE"
         assert "process_open_fds" in httpx2.get(server.address + "/metrics", timeout=120).text

@@ -17,9 +17,9 @@ from typer.testing import CliRunner
 
 import rocking
 from rocking import plot
+from rocking._cli.app import app
+from rocking._excitation import pulses
 from rocking._numba.simd import LANES
-from rocking.cli.app import app
-from rocking.excitation import pulses
 from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]

@@ -16,20 +16,20 @@ LAYERS = (
     ("tests",),
     ("stress",),
     ("benchmarks",),
-    ("api/rocking_api", "rocking/cli", "workflow"),
+    ("api/rocking_api", "rocking/_cli", "workflow"),
     ("rocking/plot",),
     ("rocking/precompile",),
-    ("rocking/lookup", "rocking/suites"),
-    ("rocking/dimensional",),
-    ("rocking/spectra",),
-    ("rocking/datasets",),
-    ("rocking/boundary", "rocking/history", "rocking/interpolation"),
-    ("rocking/solver", "rocking/closed_form", "rocking/groups"),
-    ("rocking/model", "rocking/excitation", "rocking/orientation"),
+    ("rocking/_lookup", "rocking/suites"),
+    ("rocking/_dimensional",),
+    ("rocking/_spectra",),
+    ("rocking/_datasets",),
+    ("rocking/_boundary", "rocking/_history", "rocking/_interpolation"),
+    ("rocking/_solver", "rocking/closed_form", "rocking/groups"),
+    ("rocking/_model", "rocking/_excitation", "rocking/orientation"),
     ("rocking/_numba",),
-    ("rocking/errors", "rocking/equality"),
-    ("rocking/units",),
-    ("rocking/constants", "rocking/version", "rocking/source_tree"),
+    ("rocking/_base/errors", "rocking/_base/equality"),
+    ("rocking/_base/units",),
+    ("rocking/_base/constants", "rocking/_base/version", "rocking/_base/source_tree"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as in pyproject.toml
@@ -105,7 +105,10 @@ def test_the_documented_files_exist() -> None:
 
 def test_every_module_of_the_package_has_a_layer() -> None:
     paths = [*(ROOT / "rocking").rglob("*.py"), *(ROOT / "api").rglob("*.py"), *(ROOT / "workflow").rglob("*.py")]
-    assert {path for path in paths if folder_of(path) is None} == {ROOT / "rocking/__init__.py"}
+    assert {path for path in paths if folder_of(path) is None} == {
+        ROOT / "rocking/__init__.py",
+        ROOT / "rocking/_base/__init__.py",
+    }
 
 
 @pytest.mark.parametrize("path", MODULES, ids=NAMES)
@@ -116,7 +119,7 @@ def test_imports_point_to_own_folder_or_lower_layers(path: Path) -> None:
         if other is None:
             # the public names, and the independent integrator, which imports nothing of the package
             assert file == ROOT / "rocking/__init__.py" or file.is_relative_to(ROOT / "reference")
-            assert LAYER_OF[own] < LAYER_OF["rocking/lookup"], f"{path} imports {file}"
+            assert LAYER_OF[own] < LAYER_OF["rocking/_lookup"], f"{path} imports {file}"
         else:
             assert own == other or LAYER_OF[own] < LAYER_OF[other], f"{path} imports {file}"
 

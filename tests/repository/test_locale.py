@@ -39,11 +39,11 @@ def test_the_locale_of_these_tests_knows_ascii_only(folder):
 
 @pytest.mark.parametrize("locale", [{}, {"PYTHONUTF8": "1"}], ids=["ascii", "utf-8"])
 def test_commands_and_the_service_are_imported(folder, locale):
-    assert "response" in run(folder, "-m", "rocking.cli", "--help", **locale)
+    assert "response" in run(folder, "-m", "rocking._cli", "--help", **locale)
     run(folder, "-c", "import rocking_api.settings, rocking_api.command", **locale)
 
 
-RESPONSE = ("-m", "rocking.cli", "response", "--pulse", "sine", "--csv", "--blocks")
+RESPONSE = ("-m", "rocking._cli", "response", "--pulse", "sine", "--csv", "--blocks")
 
 
 @pytest.mark.parametrize("file", ["-", "blocs_é.csv"])

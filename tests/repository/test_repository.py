@@ -75,7 +75,7 @@ def test_files_have_at_most_600_lines() -> None:
 
 
 def test_command_line_starts_without_heavy_imports() -> None:
-    program = "import json, sys, rocking.cli.app; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})))"
+    program = "import json, sys, rocking._cli.app; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})))"
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
     assert not {"numba", "xarray", "matplotlib", "scipy", "fastapi"} & set(json.loads(done.stdout))
 
@@ -96,7 +96,7 @@ def test_package_import_is_lazy() -> None:
 )
 def test_a_response_loads_the_solver_only(command: str) -> None:
     program = (
-        "import sys\nfrom rocking.cli import progress\nfrom rocking.cli.app import app\n"
+        "import sys\nfrom rocking._cli import progress\nfrom rocking._cli.app import app\n"
         "progress.DELAY = 1e6  # no command is long\n"
         f"app({command.split()}, standalone_mode=False)\n"
         "heavy = ('scipy.', 'pint', 'xarray', 'pandas', 'netCDF4', 'matplotlib', 'rich')\n"

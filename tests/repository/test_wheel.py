@@ -76,7 +76,7 @@ def test_serve_without_its_packages_names_the_extra(wheel: Path, tmp_path: Path)
         f"        if name.split('.')[0] in {sorted(OPTIONAL['service'])}:\n"
         "            raise ModuleNotFoundError(f'No module named {name!r}', name=name)\n"
         "sys.meta_path.insert(0, Absent())\n"
-        "from rocking.cli.app import app\n"
+        "from rocking._cli.app import app\n"
         "app(['serve'])"
     )
     done = subprocess.run(

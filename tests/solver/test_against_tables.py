@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking.model.fields import SOLVED_FIELDS
+from rocking._model.fields import SOLVED_FIELDS
 
 Record = Callable[[str, object], None]
 DATA = Path(__file__).parents[1] / "data"

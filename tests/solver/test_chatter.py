@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 import rocking
 from rocking import Outcome
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.solver.arcs.events import long_flight
-from rocking.solver.kernels.chatter import chatter_ends_in_rest
-from rocking.solver.state import IMPACT, step_state
-from rocking.solver.taylor.flight import flight_by_steps
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._solver.arcs.events import long_flight
+from rocking._solver.kernels.chatter import chatter_ends_in_rest
+from rocking._solver.state import IMPACT, step_state
+from rocking._solver.taylor.flight import flight_by_steps
 from tests.kernels import cell, flight_from
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))

@@ -8,9 +8,9 @@ import pytest
 
 import rocking
 from rocking import Outcome
-from rocking.excitation.pulses import SinusoidalPulse
-from rocking.model import parameters
-from rocking.solver.kernels.event_loop import on_impact, start_flight
+from rocking._excitation.pulses import SinusoidalPulse
+from rocking._model import parameters
+from rocking._solver.kernels.event_loop import on_impact, start_flight
 from tests.kernels import cell
 
 SLENDERNESS = (parameters.SLENDERNESS.lower, 1e-3, 0.5, 0.999, 1 - 1e-15)

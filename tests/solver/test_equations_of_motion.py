@@ -8,7 +8,7 @@ import pytest
 import rocking
 from rocking import closed_form as cf
 from rocking import groups
-from rocking.model.block import Block
+from rocking._model.block import Block
 from tests.direct_integration import integrate
 
 G = 9.81

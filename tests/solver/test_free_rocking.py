@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rocking
-from rocking.solver.free_rocking import highest_rotation
+from rocking._solver.free_rocking import highest_rotation
 from tests.kernels import free_outcome
 
 ALPHAS = st.one_of(st.just(0.0), st.floats(-8, 0.19).map(lambda x: 10**x))

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse, get_pulse
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, splat, store
-from rocking.excitation.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse, get_pulse
-from rocking.solver.excitation import shapes_and_slopes
+from rocking._solver.excitation import shapes_and_slopes
 from tests.kernels import cell
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))

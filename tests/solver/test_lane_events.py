@@ -6,12 +6,12 @@ import pytest
 import rocking
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, load, store
-from rocking.solver.kernels.event_loop import init_state, start_flight
-from rocking.solver.rules import set_block
-from rocking.solver.state import MAX_ORDER, pulse_state, step_state
-from rocking.solver.taylor import events
-from rocking.solver.taylor.flight import free_lanes, highest_peak, impact_in_step, start_steps
-from rocking.solver.taylor.lane_events import (
+from rocking._solver.kernels.event_loop import init_state, start_flight
+from rocking._solver.rules import set_block
+from rocking._solver.state import MAX_ORDER, pulse_state, step_state
+from rocking._solver.taylor import events
+from rocking._solver.taylor.flight import free_lanes, highest_peak, impact_in_step, start_steps
+from rocking._solver.taylor.lane_events import (
     NO_IMPACT,
     UNDECIDED,
     evaluate,
@@ -20,7 +20,7 @@ from rocking.solver.taylor.lane_events import (
     second_derivative_bounds,
     values_and_slopes,
 )
-from rocking.solver.taylor.step import take_step
+from rocking._solver.taylor.step import take_step
 
 
 @kernel

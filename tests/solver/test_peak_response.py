@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import rocking
 from rocking import PULSE_NAMES, Outcome, get_pulse
-from rocking.model.fields import RESPONSE_FIELDS
-from rocking.solver.peak_response import MAX_CHUNK, peak_response
+from rocking._model.fields import RESPONSE_FIELDS
+from rocking._solver.peak_response import MAX_CHUNK, peak_response
 
 FIELDS = tuple(field.name for field in RESPONSE_FIELDS)
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))

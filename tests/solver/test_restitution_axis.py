@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rocking import PULSE_NAMES
-from rocking.model.fields import RESPONSE_FIELDS
-from rocking.solver.peak_response import peak_response
+from rocking._model.fields import RESPONSE_FIELDS
+from rocking._solver.peak_response import peak_response
 
 ETAS = np.array([0.85, 0.0, 1.0, 0.45, 0.2, 0.95, 0.6, 0.75])
 """Not sorted: a response must not depend on the one before, whether that block came to rest or not."""

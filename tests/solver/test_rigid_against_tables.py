@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.model.fields import OVERTURNED, RESPONSE_FIELDS
+from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS
 
 DATA = Path(__file__).parents[1] / "data"
 EPS = float(np.finfo(float).eps)

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.errors import SearchError
 from rocking._numba.simd import LANES
-from rocking.errors import SearchError
-from rocking.solver.kernels.event_loop import on_impact
-from rocking.solver.peak_response import SolverState
-from rocking.solver.rules import IMPACT_LIMIT
-from rocking.solver.state import step_state
-from rocking.solver.taylor.events import first_crossing
-from rocking.solver.taylor.flight import flight_by_steps
+from rocking._solver.kernels.event_loop import on_impact
+from rocking._solver.peak_response import SolverState
+from rocking._solver.rules import IMPACT_LIMIT
+from rocking._solver.state import step_state
+from rocking._solver.taylor.events import first_crossing
+from rocking._solver.taylor.flight import flight_by_steps
 from tests.kernels import first_flight
 
 ALPHA = 0.3
@@ -67,8 +67,8 @@ def test_flights_side_by_side_end(monkeypatch):
         steps["log_precision"] = -3000.0
         return steps
 
-    monkeypatch.setattr("rocking.solver.peak_response.step_state", without_length)
-    monkeypatch.setattr("rocking.solver.peak_response.solver_state", SolverState())
+    monkeypatch.setattr("rocking._solver.peak_response.step_state", without_length)
+    monkeypatch.setattr("rocking._solver.peak_response.solver_state", SolverState())
     with pytest.raises(SearchError, match="flight"):
         rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.9, alpha=ALPHA)
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
-from rocking.solver.arcs.arc import (
+from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
+from rocking._solver.arcs.arc import (
     MAX_EXPONENT,
     SERIES_RADIUS,
     arc_state,
@@ -15,10 +15,10 @@ from rocking.solver.arcs.arc import (
     rotation,
     velocity,
 )
-from rocking.solver.arcs.events import long_flight, short_flight
-from rocking.solver.arcs.flight import set_angles, state_at
-from rocking.solver.state import IMPACT, step_state
-from rocking.solver.taylor.flight import flight_by_steps
+from rocking._solver.arcs.events import long_flight, short_flight
+from rocking._solver.arcs.flight import set_angles, state_at
+from rocking._solver.state import IMPACT, step_state
+from rocking._solver.taylor.flight import flight_by_steps
 from tests.kernels import first_flight, flight_from
 
 SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(get_pulse(name), SinusoidalPulse))

@@ -17,10 +17,10 @@ from reference.conditioning import integrate_with_conditioning
 from reference.exact_pulses import ExactPulse, _newton
 from reference.exact_response import working_precision
 from rocking import precompile
-from rocking.cli.app import app
+from rocking._base.errors import InvalidArgumentError
+from rocking._cli.app import app
+from rocking._excitation import pulses
 from rocking.closed_form import margin_without_impact
-from rocking.errors import InvalidArgumentError
-from rocking.excitation import pulses
 from tests.excitation.test_smooth_pulse import CHIRP, Given
 
 SINE = Given("own_sine", 0.0, 2.0 * math.pi, np.sin)

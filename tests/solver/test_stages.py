@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._excitation.pulses import SinusoidalPulse
 from rocking._numba.compilation import kernel
-from rocking.excitation.pulses import SinusoidalPulse
-from rocking.solver.kernels.event_loop import advance_by_arc, init_state
-from rocking.solver.rules import set_block, write_response
-from rocking.solver.stages.batch import LEFT, solve_by_arcs
-from rocking.solver.stages.remainder import solve_remainder
-from rocking.solver.stages.state import BLOCK_SIZE, stage_state
-from rocking.solver.state import RESPONSE_RECORD, pulse_state
+from rocking._solver.kernels.event_loop import advance_by_arc, init_state
+from rocking._solver.rules import set_block, write_response
+from rocking._solver.stages.batch import LEFT, solve_by_arcs
+from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.state import BLOCK_SIZE, stage_state
+from rocking._solver.state import RESPONSE_RECORD, pulse_state
 
 SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.get_pulse(name).series.has_exact_arcs]
 SIGNED = [sign + name for name in SINUSOIDS for sign in ("", "-")]

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import rocking
 from rocking import PULSE_NAMES, get_pulse
-from rocking.excitation.pulses import SinusoidalPulse
+from rocking._excitation.pulses import SinusoidalPulse
 
 EVEN = (
     *("peak_rotation", "peak_mode", "outcome", "impacts", "chatter", "exceeded_alpha"),

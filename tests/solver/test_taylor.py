@@ -9,12 +9,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rocking
+from rocking._excitation.pulses import PULSE_NAMES
 from rocking._numba.simd import LANES
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.solver.peak_response import SolverState
-from rocking.solver.state import FULL_PRECISION, MAX_ORDER, pulse_state, step_state
-from rocking.solver.taylor.events import evaluate_series, first_crossing, refine_root, value_and_slope
-from rocking.solver.taylor.step import set_edge_lane, take_step
+from rocking._solver.peak_response import SolverState
+from rocking._solver.state import FULL_PRECISION, MAX_ORDER, pulse_state, step_state
+from rocking._solver.taylor.events import evaluate_series, first_crossing, refine_root, value_and_slope
+from rocking._solver.taylor.step import set_edge_lane, take_step
 from tests.kernels import edge
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
@@ -250,8 +250,8 @@ def test_terms_beyond_the_degree_are_not_used(pulse, monkeypatch):
         steps["rate"][order:] = np.nan
         return steps
 
-    monkeypatch.setattr("rocking.solver.peak_response.step_state", spoilt)
-    monkeypatch.setattr("rocking.solver.peak_response.solver_state", SolverState())
+    monkeypatch.setattr("rocking._solver.peak_response.step_state", spoilt)
+    monkeypatch.setattr("rocking._solver.peak_response.solver_state", SolverState())
     found = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
     for name in ("peak_rotation", "outcome", "impacts", "end_rotation", "end_velocity"):
         np.testing.assert_array_equal(getattr(found, name), getattr(clean, name))

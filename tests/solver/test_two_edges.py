@@ -7,10 +7,10 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking.solver.bodies import solve_motion
-from rocking.solver.records.record_response import solve_bodies
-from rocking.solver.records.samples import pulse_samples
-from rocking.solver.state import BODY_CELL, block_cells
+from rocking._solver.bodies import solve_motion
+from rocking._solver.records.record_response import solve_bodies
+from rocking._solver.records.samples import pulse_samples
+from rocking._solver.state import BODY_CELL, block_cells
 
 
 def under_pulse(name: str, cells: NDArray[np.void]) -> tuple[NDArray[np.void], NDArray[np.float64]]:

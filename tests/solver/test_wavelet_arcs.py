@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.excitation.pulses import WaveletPulse
-from rocking.solver.families.wavelets import WAVELET_SERIES_LENGTH
-from rocking.solver.kernels.batch import solve_batch
-from rocking.solver.peak_response import NO_BODIES, solve_cells, solver_state
-from rocking.solver.stages.batch import LEFT
-from rocking.solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
+from rocking._excitation.pulses import WaveletPulse
+from rocking._solver.families.wavelets import WAVELET_SERIES_LENGTH
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.peak_response import NO_BODIES, solve_cells, solver_state
+from rocking._solver.stages.batch import LEFT
+from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
 from tests.solver.test_stages import assert_agree, assert_equal, by_stages, cells
 
 NAMES = ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"]

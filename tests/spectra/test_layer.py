@@ -6,10 +6,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from rocking.interpolation.stencils import OVERTURNS, Mesh
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
-from rocking.spectra.layer import GridLayer
+from rocking._interpolation.stencils import OVERTURNS, Mesh
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.layer import GridLayer
 
 WAYS = [(Outcome.SAFE, 0), (Outcome.SAFE, 2), (Outcome.OVERTURNED_DIRECTLY, 0)] + [
     (Outcome.OVERTURNED_AFTER_IMPACT, impacts) for impacts in (1, 2)

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rocking.interpolation.stencils import OVERTURNS, SQUARED, Mesh
-from rocking.model.outcome_code import SURVIVES, overturning_code
-from rocking.model.response import Outcome
-from rocking.spectra.cubes import BESIDE
-from rocking.spectra.layer import CELL_CENTRE, UNKNOWN, GridLayer, largest_in_neighbourhood
-from rocking.spectra.level_interval import LevelInterval
+from rocking._interpolation.stencils import OVERTURNS, SQUARED, Mesh
+from rocking._model.outcome_code import SURVIVES, overturning_code
+from rocking._model.response import Outcome
+from rocking._spectra.cubes import BESIDE
+from rocking._spectra.layer import CELL_CENTRE, UNKNOWN, GridLayer, largest_in_neighbourhood
+from rocking._spectra.level_interval import LevelInterval
 
 MESH = Mesh.of(np.linspace(0.3, 0.4, 6), np.geomspace(5.0, 6.0, 6))
 ETAS = np.array([0.80, 0.82, 0.84, 0.86, 0.88, 0.90])

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.datasets.cube import write_dataset
-from rocking.errors import DatasetError
-from rocking.spectra.bands import bands, rows_with_halo
-from rocking.spectra.cubes import REFINE_TOL, spectra
-from rocking.spectra.tiles import join_tiles, spectrum_tile
+from rocking._base.errors import DatasetError
+from rocking._datasets.cube import write_dataset
+from rocking._spectra.bands import bands, rows_with_halo
+from rocking._spectra.cubes import REFINE_TOL, spectra
+from rocking._spectra.tiles import join_tiles, spectrum_tile
 
 # with bands of two rows, a halo smaller by one row on either side changes an error in the cubes of this grid
 ROWS = np.linspace(0.3, 0.7, 41)

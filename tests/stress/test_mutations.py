@@ -87,7 +87,7 @@ def test_imports_are_counted_through_public_names_helpers_and_fixtures(tmp_path:
 
 def test_tests_of_each_module_are_those_that_import_it() -> None:
     imported = imported_by_tests(ROOT)
-    assert imported["tests/model/test_masonry_arch.py"]["rocking/model/linkage.py"] == 1
+    assert imported["tests/model/test_masonry_arch.py"]["rocking/_model/linkage.py"] == 1
     known = {module for found in imported.values() for module in found}
     missing = {path.relative_to(ROOT).as_posix() for path in modules(["rocking", "api/rocking_api"])} - known
     assert {Path(path).name for path in missing} <= {"__init__.py", "__main__.py"}  # docstrings, and `-m`

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.source_tree import PROJECT
+from rocking._base.source_tree import PROJECT
 from stress.tree_worker import INPUTS, draw
 from stress.versions import Tree, compare_chunk, summary, unexplained
 

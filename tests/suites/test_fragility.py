@@ -7,9 +7,9 @@ import pytest
 from scipy.stats import norm
 
 import rocking
+from rocking._base.errors import InvalidArgumentError, StoppedError
+from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.frequency import critical_frequency_ratio
-from rocking.errors import InvalidArgumentError, StoppedError
 from rocking.suites.fits import FitStatus
 from rocking.suites.fragility import fragility_of_outcomes
 from tests.suites.motions import BLOCK, noise, sampled

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking.suites.hazard import annual_rate
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.dimensional.record_scales import overturning_scale, scale_thresholds
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.record_scales import overturning_scale, scale_thresholds
 from tests.suites.motions import BLOCK, noise, sampled
 
 

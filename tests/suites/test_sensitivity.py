@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, StoppedError
 from rocking.suites.table import sensitivity_table
 from tests.suites.motions import BLOCK, noise, sampled
 

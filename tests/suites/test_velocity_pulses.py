@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
 
 STEP = 0.01

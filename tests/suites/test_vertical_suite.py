@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.record_scales import overturning_scale
-from rocking.errors import InvalidArgumentError
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.record_scales import overturning_scale
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from tests.suites.motions import noise

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.boundary.amplitude import Thresholds
+from rocking._boundary.amplitude import Thresholds
+from rocking._model.response import Outcome
 from rocking.closed_form import limit_amplitude, overturning_amplitudes
-from rocking.model.response import Outcome
 from rocking.orientation import Scaling
 from workflow.claims import boundaries, impact_times, non_slender, similarity, small_rotations, spectra
 from workflow.claims.area import node_areas, share_of_area

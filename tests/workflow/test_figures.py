@@ -12,14 +12,14 @@ import pytest
 import xarray as xr
 import yaml
 
-from rocking.boundary.curves import curves_at, join_curves
+from rocking._boundary.curves import curves_at, join_curves
+from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._model.block import Block
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
 from rocking.closed_form import overturning_amplitudes
-from rocking.datasets.cube import read_dataset, write_dataset
-from rocking.model.block import Block
-from rocking.model.response import Outcome
 from rocking.plot.boundary_lines import Lines
 from rocking.plot.output import style
-from rocking.solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT, SMOKE
 from workflow.figures import figure_04, figure_09, figure_10, similar_histories
 from workflow.figures.boundary_lines import lines_of

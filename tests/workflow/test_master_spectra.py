@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 import yaml
 
-from rocking.model.block import Block
-from rocking.solver.peak_response import peak_response
+from rocking._model.block import Block
+from rocking._solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT
 from workflow.claims.area import node_areas, share_of_area
 from workflow.figures import master_spectra

@@ -13,8 +13,8 @@ import pytest
 import yaml
 
 import rocking
-from rocking.datasets.cube import read_dataset, read_spectrum, stored_pulse
-from rocking.lookup.collection import CubeCollection
+from rocking._datasets.cube import read_dataset, read_spectrum, stored_pulse
+from rocking._lookup.collection import CubeCollection
 from tests.workflow_fixtures import SMOKE, rules_to_run, snakemake
 from workflow.configuration import ConfigurationError, check
 from workflow.pulses import configured_pulse, write_samples

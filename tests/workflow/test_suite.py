@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 import rocking
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 from rocking.suites.configuration import SuiteConfiguration, suite_configuration
 from tests.workflow_fixtures import PROJECT, snakemake
 from workflow.configuration import ConfigurationError, check

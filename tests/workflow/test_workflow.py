@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from rocking.datasets.cube import read_spectrum
+from rocking._datasets.cube import read_spectrum
 from tests.workflow_fixtures import PROJECT, SMOKE, reproduce, rules_to_run, snakemake
 
 

@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 import workflow.run
-from rocking.datasets.cube import read_dataset, write_dataset
+from rocking._datasets.cube import read_dataset, write_dataset
 from stress.kills import KILLED, content, interrupt, project
 from stress.kills import reproduce as make_reproduce
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake

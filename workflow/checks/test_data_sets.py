@@ -12,14 +12,14 @@ import pytest
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary.curves import curves_at
-from rocking.boundary.search import RESOLUTION, region_code
-from rocking.boundary.tracing import CHORD
+from rocking._boundary.curves import curves_at
+from rocking._boundary.search import RESOLUTION, region_code
+from rocking._boundary.tracing import CHORD
+from rocking._datasets.cube import read_dataset, read_spectrum, stored_pulse
+from rocking._model.outcome_code import outcome_codes
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
 from rocking.closed_form import case_1_1_margin, case_1_2_margin, overturning_amplitudes
-from rocking.datasets.cube import read_dataset, read_spectrum, stored_pulse
-from rocking.model.outcome_code import outcome_codes
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
 STEPS = (1e-6, 3e-6, 1e-7, 1e-8, 1e-10, 2 * RESOLUTION)

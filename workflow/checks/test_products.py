@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rocking._history.time_history import time_history
 from rocking.closed_form import (
     ad_hoc_impact_time,
     ad_hoc_sine,
@@ -22,7 +23,6 @@ from rocking.closed_form import (
     uplift_phase,
     within_pulse,
 )
-from rocking.history.time_history import time_history
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import ABOUT, CLOSE, FAIR, SAME, SMALL, Claim, percent, verdict_of
 

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from rocking.boundary.amplitude import Thresholds, critical_amplitude
+from rocking._boundary.amplitude import Thresholds, critical_amplitude
+from rocking._model.block import STANDARD_GRAVITY, Block
+from rocking._model.response import Outcome
+from rocking._solver.peak_response import peak_response
 from rocking.closed_form import overturning_amplitudes
-from rocking.model.block import STANDARD_GRAVITY, Block
-from rocking.model.response import Outcome
-from rocking.solver.peak_response import peak_response
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import SMALL, Claim, percent, verdict_of
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from rocking.excitation.pulses import PULSE_NAMES
-from rocking.history.time_history import time_history
-from rocking.model.block import Block
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._history.time_history import time_history
+from rocking._model.block import Block
 from rocking.orientation import (
     Orientation,
     Scaling,

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from rocking.history.contact import PRACTICAL_FRICTION, ContactExtremes, contact_extremes
-from rocking.history.motion import build_motion
-from rocking.solver.peak_response import peak_response
+from rocking._history.contact import PRACTICAL_FRICTION, ContactExtremes, contact_extremes
+from rocking._history.motion import build_motion
+from rocking._solver.peak_response import peak_response
 from workflow.claims.area import MEASURE, Flags, Floats, node_areas, share_of_area
 from workflow.claims.claim import SMALL, Claim, percent, verdict_of
 

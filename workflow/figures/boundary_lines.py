@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from rocking.boundary.curves import curves_at
-from rocking.datasets.cube import read_dataset
+from rocking._boundary.curves import curves_at
+from rocking._datasets.cube import read_dataset
 from rocking.plot.boundary_lines import Lines, outcome_lines
 from workflow.figures.style import plotted
 

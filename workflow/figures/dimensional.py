@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from rocking.excitation.pulses import get_pulse
-from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking._excitation.pulses import get_pulse
+from rocking._model.block import STANDARD_GRAVITY, Block
 
 Array = NDArray[np.float64]
 

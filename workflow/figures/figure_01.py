@@ -8,8 +8,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.excitation.pulses import get_pulse
-from rocking.model.block import Block
+from rocking._excitation.pulses import get_pulse
+from rocking._model.block import Block
 from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.style import panel_letters, plotted
 

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.history.time_history import time_history
+from rocking._history.time_history import time_history
 from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.style import plotted
 

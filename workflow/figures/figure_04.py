@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.boundary.curves import curves_at
+from rocking._boundary.curves import curves_at
+from rocking._datasets.cube import read_dataset
 from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
-from rocking.datasets.cube import read_dataset
 from rocking.plot.boundary_lines import Lines, outcome_lines
 from rocking.plot.style import BLACK, GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted

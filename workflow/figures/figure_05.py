@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.model.block import STANDARD_GRAVITY, Block
+from rocking._model.block import STANDARD_GRAVITY, Block
 from rocking.plot.style import BLUE, VERMILION, WIDTH
 from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import panel_letters, plotted

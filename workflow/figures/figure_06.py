@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.history.time_history import time_history
-from rocking.model.block import STANDARD_GRAVITY
+from rocking._history.time_history import time_history
+from rocking._model.block import STANDARD_GRAVITY
 from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures import figure_05
 from workflow.figures.style import panel_letters, plotted

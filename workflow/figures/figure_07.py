@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.history.time_history import time_history
+from rocking._history.time_history import time_history
 from rocking.plot.style import GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted
 

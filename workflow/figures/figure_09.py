@@ -12,13 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rocking.boundary.amplitude import critical_amplitude
-from rocking.datasets.cube import read_dataset
+from rocking._boundary.amplitude import critical_amplitude
+from rocking._datasets.cube import read_dataset
+from rocking._model.block import STANDARD_GRAVITY, Block
+from rocking._solver.peak_response import peak_response
 from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
-from rocking.model.block import STANDARD_GRAVITY, Block
 from rocking.plot.boundary_lines import Lines, draw_lines
 from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, WIDTH
-from rocking.solver.peak_response import peak_response
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import panel_letters, plotted

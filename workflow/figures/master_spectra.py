@@ -12,11 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from rocking.boundary.tracing import overturning_boundary
-from rocking.model.block import Block
+from rocking._boundary.tracing import overturning_boundary
+from rocking._model.block import Block
+from rocking._solver.peak_response import peak_response
 from rocking.plot.boundary_lines import Lines, draw_lines, outcome_lines
 from rocking.plot.style import BLACK, WIDTH, shades
-from rocking.solver.peak_response import peak_response
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.figure_13 import scale_of
 from workflow.figures.style import panel_letters, plotted

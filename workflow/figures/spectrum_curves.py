@@ -14,9 +14,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking.boundary.frequency import critical_frequency_ratio
-from rocking.boundary.search import RESOLUTION
-from rocking.solver.peak_response import peak_response
+from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._boundary.search import RESOLUTION
+from rocking._solver.peak_response import peak_response
 from workflow.figures.style import plotted
 
 Floats = NDArray[np.float64]

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from rocking.datasets.cube import MODEL_RESULT
+from rocking._datasets.cube import MODEL_RESULT
 from rocking.plot.style import STYLE
 
 mpl.rcParams.update(STYLE)

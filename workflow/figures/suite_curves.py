@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 from rocking.plot.pictures.fragility import CURVES, POINTS, draw_fractions
 from rocking.plot.style import WIDTH
 from rocking.suites.curve import curve_probability

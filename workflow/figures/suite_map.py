@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 from rocking.plot.style import UNITS
 from workflow.figures.style import plotted
 

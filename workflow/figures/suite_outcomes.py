@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
-from rocking.datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset
 from rocking.plot.style import WIDTH, label_of, plain_numbers, shades
 from workflow.figures.style import panel_letters, plotted
 

@@ -10,8 +10,8 @@ PROJECT = Path(str(workflow.basedir))
 sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
-from rocking.datasets.provenance import settings_digest
-from rocking.source_tree import SourceTree
+from rocking._datasets.provenance import settings_digest
+from rocking._base.source_tree import SourceTree
 from rocking.suites.configuration import DEFAULTS, suite_configuration
 from workflow import parts, records
 from workflow.configuration import (

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from rocking.boundary.curves import curves_at
+from rocking._boundary.curves import curves_at
+from rocking._datasets.cube import read_dataset, read_spectrum
 from rocking.closed_form import limit_amplitude
-from rocking.datasets.cube import read_dataset, read_spectrum
 from workflow.claims import boundaries as curves
 from workflow.claims import impact_times, non_slender, similarity, small_rotations, spectra
 from workflow.claims.claim import ABOUT, CLOSE, FAIR, PART, SAME, SMALL, VERDICTS, Claim, percent

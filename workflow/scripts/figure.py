@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rocking.datasets.cube import describe, write_dataset
+from rocking._datasets.cube import describe, write_dataset
 from rocking.plot.output import save_figure
 from workflow.scripts.job import run
 

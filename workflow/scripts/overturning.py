@@ -6,9 +6,9 @@ from typing import Any
 
 import xarray as xr
 
-from rocking.boundary.curves import join_curves
-from rocking.boundary.search import RESOLUTION
-from rocking.datasets.cube import (
+from rocking._boundary.curves import join_curves
+from rocking._boundary.search import RESOLUTION
+from rocking._datasets.cube import (
     AXES,
     MODEL_RESULT,
     VARIABLES,
@@ -17,8 +17,8 @@ from rocking.datasets.cube import (
     scalar_coordinates,
     write_dataset,
 )
-from rocking.excitation.pulses import as_pulse
-from rocking.excitation.sampled import SampledPulse
+from rocking._excitation.pulses import as_pulse
+from rocking._excitation.sampled import SampledPulse
 from workflow.parts import delete_former_parts
 from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run
@@ -73,7 +73,7 @@ def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float)
         "omega within which the ends of the latter are known: end_distance; largest distance of the nodes in 1/a, "
         "below which a region can be missed: node_distance; ends of regions that are known to a step of the grid "
         "only: open_ends.",
-        history="rocking.boundary.tracing.overturning_boundaries",
+        history="rocking._boundary.tracing.overturning_boundaries",
         id=f"overturning/{name}/eta-{restitution:.2f}",
     )
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from rocking.boundary.curves import join_curves
-from rocking.boundary.tracing import overturning_boundaries
-from rocking.datasets.cube import MODEL_RESULT, write_dataset
-from rocking.excitation.sampled import SampledPulse
-from rocking.model.response import Outcome
+from rocking._boundary.curves import join_curves
+from rocking._boundary.tracing import overturning_boundaries
+from rocking._datasets.cube import MODEL_RESULT, write_dataset
+from rocking._excitation.sampled import SampledPulse
+from rocking._model.response import Outcome
 from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run
 

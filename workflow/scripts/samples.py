@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from workflow.pulses import configured_pulse, samples_file, write_samples
 from workflow.scripts.job import run
 

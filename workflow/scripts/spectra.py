@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from rocking.datasets.cube import describe, write_dataset
-from rocking.spectra.tiles import join_tiles
+from rocking._datasets.cube import describe, write_dataset
+from rocking._spectra.tiles import join_tiles
 from workflow.parts import delete_former_parts
 from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.boundary.cells import crossed_cells
-from rocking.datasets.cube import read_dataset, write_dataset
-from rocking.spectra.tiles import rows_with_halo, spectrum_tile
+from rocking._boundary.cells import crossed_cells
+from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._spectra.tiles import rows_with_halo, spectrum_tile
 from workflow.pulses import pulse_of_job
 from workflow.scripts.axes import stepped
 from workflow.scripts.job import run

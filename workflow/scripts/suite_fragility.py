@@ -6,8 +6,8 @@ from typing import Any
 
 import xarray as xr
 
-from rocking.datasets.csv_text import csv_text
-from rocking.datasets.cube import describe, read_dataset, write_dataset
+from rocking._datasets.csv_text import csv_text
+from rocking._datasets.cube import describe, read_dataset, write_dataset
 from rocking.suites.configuration import suite_configuration
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.hazard import annual_rate

@@ -7,9 +7,9 @@ from typing import Any
 
 import xarray as xr
 
-from rocking.datasets.cube import describe, write_dataset
-from rocking.excitation.records.record import Record
-from rocking.model.block import Block
+from rocking._datasets.cube import describe, write_dataset
+from rocking._excitation.records.record import Record
+from rocking._model.block import Block
 from rocking.suites.configuration import BlockMap, SuiteConfiguration, suite_configuration
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes

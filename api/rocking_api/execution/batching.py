@@ -15,8 +15,8 @@ import time
 from collections.abc import Hashable, Sequence
 from functools import partial
 
+from rocking._lookup.collection import CubeCollection
 from rocking._numba.cancellation import StopFlag
-from rocking.lookup.collection import CubeCollection
 from rocking_api.execution.evaluation import PointResult, evaluate, point_results
 from rocking_api.execution.executor import BoundedExecutor
 from rocking_api.models.params import ResponseParams, check_point

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from rocking._lookup.collection import CubeCollection
+from rocking._model.checks import check
+from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, FROM_CUBE
 from rocking._numba.cancellation import StopFlag
-from rocking.lookup.collection import CubeCollection
-from rocking.model.checks import check
-from rocking.model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, FROM_CUBE
-from rocking.solver.bounded_response import BoundedResponse
+from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.models.params import FREQUENCY_RATIO, SLENDERNESS, LookupOptions, alpha_of
 
 CHUNK_SIZE = 50_000

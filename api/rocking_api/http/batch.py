@@ -16,8 +16,8 @@ from fastapi import Request, Response
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.execution.executor import BusyError
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_stream, dataset_of, json_stream, netcdf_response

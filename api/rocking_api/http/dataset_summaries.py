@@ -8,9 +8,9 @@ from pathlib import Path
 
 import xarray as xr
 
-from rocking.datasets.catalogue import Catalogue, DatasetFile, VersionCache
-from rocking.datasets.cube import DIMENSIONS
-from rocking.datasets.netcdf import open_netcdf
+from rocking._datasets.catalogue import Catalogue, DatasetFile, VersionCache
+from rocking._datasets.cube import DIMENSIONS
+from rocking._datasets.netcdf import open_netcdf
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from pydantic import BaseModel
 from pydantic_core import to_json
 
-from rocking.datasets.csv_text import csv_header, csv_rows, csv_text
-from rocking.datasets.cube import MODEL_RESULT, VARIABLES
-from rocking.model.fields import DERIVED_FIELDS, ERROR_BOUND
+from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
+from rocking._datasets.cube import MODEL_RESULT, VARIABLES
+from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
 
 Form = Literal["json", "csv", "nc"]

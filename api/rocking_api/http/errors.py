@@ -19,8 +19,8 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field, ValidationError
 from starlette.exceptions import HTTPException
 
-from rocking.datasets.catalogue import UnknownDatasetError
-from rocking.errors import DatasetError, InvalidArgumentError, SeveralArgumentsError
+from rocking._base.errors import DatasetError, InvalidArgumentError, SeveralArgumentsError
+from rocking._datasets.catalogue import UnknownDatasetError
 from rocking_api.execution.executor import BusyError, TimeLimitError
 from rocking_api.execution.kernels import NotReadyError
 from rocking_api.models.params import Params

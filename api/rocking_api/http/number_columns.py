@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
+from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError
 from rocking_api.http.errors import TooLargeError
 
 Columns = dict[str, NDArray[np.float64]]

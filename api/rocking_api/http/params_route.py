@@ -19,7 +19,7 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import json_response
 from rocking_api.http.errors import STATUS, InvalidQueryError, error_response

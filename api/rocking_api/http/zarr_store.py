@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 from zarr.storage import MemoryStore
 
-from rocking.datasets.catalogue import Catalogue
+from rocking._datasets.catalogue import Catalogue
 
 MAX_KEPT = 4
 """Stores in memory; an older one is made again on request."""

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
-from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import in_range
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import in_range
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Method, Params, PulseName, TableFormat, Tolerance, check_value
 from rocking_api.models.pulses import GivenPulse

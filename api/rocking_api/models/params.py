@@ -10,11 +10,11 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from rocking.errors import InvalidArgumentError, SeveralArgumentsError, in_range
-from rocking.excitation.pulses import PULSE_NAMES, as_pulse, pulse_names
-from rocking.model import parameters
-from rocking.model.checks import check
-from rocking.model.parameters import RESTITUTION, Parameter
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range
+from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names
+from rocking._model import parameters
+from rocking._model.checks import check
+from rocking._model.parameters import RESTITUTION, Parameter
 
 # Ranges of the service, far outside of practice and inside those of the library: searches around a point, and points
 # shifted by rounding for the error bound, stay in the latter.

@@ -17,7 +17,7 @@ from pydantic import (
     create_model,
 )
 
-from rocking.excitation.sampled import SampledPulse
+from rocking._excitation.sampled import SampledPulse
 from rocking_api.models.params import Params, PulseName
 
 P = TypeVar("P", bound=Params)

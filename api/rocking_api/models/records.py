@@ -6,11 +6,11 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, Field
 
-from rocking.constants import STANDARD_GRAVITY
-from rocking.dimensional.record_groups import HIGHEST_SCALE
-from rocking.errors import in_range, one_of
-from rocking.excitation.records.processing import MAX_BASELINE_ORDER
-from rocking.excitation.records.record import TIME_STEP, UNITS
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import in_range, one_of
+from rocking._dimensional.record_groups import HIGHEST_SCALE
+from rocking._excitation.records.processing import MAX_BASELINE_ORDER
+from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.blocks import RANGES, HousnerOrNumber, check_block_value, quantity
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field, GetJsonSchemaHandler, SerializeAsAny, create_model
 from pydantic_core import core_schema
 
-from rocking.model.fields import (
+from rocking._model.fields import (
     COLUMN_FIELDS,
     DERIVED_FIELDS,
     ERROR_BOUND,
@@ -23,7 +23,7 @@ from rocking.model.fields import (
     PEAK_ROTATION,
     SOURCE,
 )
-from rocking.model.response import Outcome
+from rocking._model.response import Outcome
 from rocking_api.execution.evaluation import BatchResult, PointResult
 from rocking_api.http.encoding import Column
 from rocking_api.models.metadata import METADATA_URL_FIELD

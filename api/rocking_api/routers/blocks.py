@@ -8,13 +8,13 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._base.errors import InvalidArgumentError, in_range
+from rocking._dimensional.assessment import Assessment, assess
+from rocking._dimensional.margins import Margins as FoundMargins
+from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.table import BlockTable, read_table, respond_table
+from rocking._model.block import Block
 from rocking._numba.cancellation import StopFlag
-from rocking.dimensional.assessment import Assessment, assess
-from rocking.dimensional.margins import Margins as FoundMargins
-from rocking.dimensional.problem import BlockProblem
-from rocking.dimensional.table import BlockTable, read_table, respond_table
-from rocking.errors import InvalidArgumentError, in_range
-from rocking.model.block import Block
 from rocking_api.execution.evaluation import evaluate, point_results
 from rocking_api.http.batch import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form

@@ -11,12 +11,12 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
+from rocking._base.errors import in_range
+from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES
+from rocking._model.checks import check_window
+from rocking._model.response import Response as Found
 from rocking._numba.cancellation import StopFlag
-from rocking.datasets.cube import AXES, MODEL_RESULT, VARIABLES
-from rocking.errors import in_range
-from rocking.model.checks import check_window
-from rocking.model.response import Response as Found
-from rocking.solver.peak_response import peak_response
+from rocking._solver.peak_response import peak_response
 from rocking_api.http.caching import not_modified
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError

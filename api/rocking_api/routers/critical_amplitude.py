@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field, SerializeAsAny
 
+from rocking._boundary.amplitude import Thresholds, critical_amplitude
+from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking.boundary.amplitude import Thresholds, critical_amplitude
-from rocking.model.response import Outcome
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of

@@ -12,8 +12,8 @@ import xarray as xr
 from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.exceptions import HTTPException
 
-from rocking.datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError
-from rocking.errors import DatasetError
+from rocking._base.errors import DatasetError
+from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
 from rocking_api.http.dataset_summaries import Summary
 from rocking_api.http.encoding import json_response

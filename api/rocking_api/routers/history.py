@@ -7,9 +7,9 @@ from typing import Annotated, Any
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._history.contact import ATTRIBUTES, COLUMNS
+from rocking._history.time_history import time_history
 from rocking._numba.cancellation import StopFlag
-from rocking.history.contact import ATTRIBUTES, COLUMNS
-from rocking.history.time_history import time_history
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute

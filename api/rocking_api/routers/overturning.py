@@ -11,11 +11,11 @@ import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 
+from rocking._base.errors import DatasetError
+from rocking._boundary.curves import curves_at
+from rocking._boundary.tracing import overturning_boundary
+from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._numba.cancellation import StopFlag, run_with_timeout
-from rocking.boundary.curves import curves_at
-from rocking.boundary.tracing import overturning_boundary
-from rocking.datasets.catalogue import UnknownDatasetError
-from rocking.errors import DatasetError
 from rocking_api.execution.executor import TimeLimitError
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.params_route import ParamsRoute

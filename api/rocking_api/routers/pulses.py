@@ -10,8 +10,8 @@ import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from rocking.errors import in_range
-from rocking.excitation import pulses
+from rocking._base.errors import in_range
+from rocking._excitation import pulses
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.params import Params
 from rocking_api.models.responses import VERSION_FIELD

@@ -9,19 +9,19 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.problem import restitution_of
+from rocking._dimensional.record_groups import checked_scale, record_groups, search_range
+from rocking._dimensional.record_response import respond_to_record
+from rocking._dimensional.record_scales import ScaleThresholds, scale_thresholds
+from rocking._excitation.records.readers.read_record import parse_record
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.vertical import reject_flight
+from rocking._history.record_history import record_history
+from rocking._model.block import Block
+from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking.dimensional.problem import restitution_of
-from rocking.dimensional.record_groups import checked_scale, record_groups, search_range
-from rocking.dimensional.record_response import respond_to_record
-from rocking.dimensional.record_scales import ScaleThresholds, scale_thresholds
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.records.readers.read_record import parse_record
-from rocking.excitation.records.record import Record
-from rocking.excitation.records.vertical import reject_flight
-from rocking.history.record_history import record_history
-from rocking.model.block import Block
-from rocking.model.outcome import Outcome
-from rocking.solver.records.record_response import record_response
+from rocking._solver.records.record_response import record_response
 from rocking.suites.pulse_fit import PulseFit, fit_pulse
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError

@@ -8,9 +8,9 @@ import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 
+from rocking._base.errors import in_range
+from rocking._model.checks import check_window
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import in_range
-from rocking.model.checks import check_window
 from rocking_api.execution.evaluation import evaluate_many
 from rocking_api.http.encoding import CONTENT, csv_stream, dataset_of, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError

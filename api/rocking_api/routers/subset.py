@@ -12,8 +12,8 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import Field
 
-from rocking.datasets.cube import DIMENSIONS
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
+from rocking._datasets.cube import DIMENSIONS
 from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute

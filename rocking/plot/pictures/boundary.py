@@ -7,8 +7,8 @@ from typing import Any
 import xarray as xr
 from matplotlib.axes import Axes
 
-from rocking.errors import InvalidArgumentError
-from rocking.model.outcome import Outcome
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.outcome import Outcome
 from rocking.plot.boundary_lines import draw_lines, outcome_lines
 from rocking.plot.style import BLACK, LABELS, VERMILION, axes_of, plain_numbers
 

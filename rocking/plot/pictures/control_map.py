@@ -13,8 +13,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.patches import Patch
 
-from rocking.errors import InvalidArgumentError
-from rocking.model.outcome import Outcome
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.outcome import Outcome
 from rocking.plot.style import LABELS, axes_of, label_of, plain_numbers
 
 _COLOURS = {

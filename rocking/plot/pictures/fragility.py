@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from rocking.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError
 from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, axes_of, label_of, plain_numbers
 
 POINTS = 300

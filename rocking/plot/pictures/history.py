@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from rocking.errors import InvalidArgumentError
-from rocking.model.outcome import Outcome
+from rocking._base.errors import InvalidArgumentError
+from rocking._model.outcome import Outcome
 from rocking.plot.style import BLUE, GREY, VERMILION, axes_of, label_of
 
 

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from rocking.boundary.amplitude import critical_amplitude
-from rocking.dimensional.response import BlockResponse
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.pulses import AbstractPulse
-from rocking.model.outcome import Outcome
-from rocking.model.response import Response
+from rocking._base.errors import InvalidArgumentError
+from rocking._boundary.amplitude import critical_amplitude
+from rocking._dimensional.response import BlockResponse
+from rocking._excitation.pulses import AbstractPulse
+from rocking._model.outcome import Outcome
+from rocking._model.response import Response
+from rocking._solver.peak_response import peak_response
 from rocking.plot.pictures.spectrum import shade_overturned
 from rocking.plot.style import BLUE, GREY, LABELS, VERMILION, axes_of
-from rocking.solver.peak_response import peak_response
 
 SAMPLES = 600
 """Amplitudes at which the curve is computed, beside the thresholds [-]."""

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import expect
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from tests.api.explorer.reading import BLOCK, pixels, query, settle
 
 

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import expect
 
 import rocking
-from rocking.dimensional.record_scales import scale_thresholds
-from rocking.excitation.records.readers.read_record import parse_record
+from rocking._dimensional.record_scales import scale_thresholds
+from rocking._excitation.records.readers.read_record import parse_record
 
 NAPA = Path(__file__).parents[3] / "workflow/motions/napa_HNE.csv"
 BLOCK = rocking.Block(0.25, 1.0)  # that of the form

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.excitation.records.record import Record
+from rocking._excitation.records.record import Record
 
 ROOT = Path(__file__).parents[3]
 MOTIONS = ROOT / "workflow" / "motions"

@@ -10,10 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
-from rocking.solver.records.record_response import solve_bodies
-from rocking.solver.records.samples import motion_samples, sample_rows
-from rocking.solver.state import BODY_CELL, block_cells
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._solver.records.record_response import solve_bodies
+from rocking._solver.records.samples import motion_samples, sample_rows
+from rocking._solver.state import BODY_CELL, block_cells
 from tests.solver.records.tables import TABLE, record, samples
 
 ROUNDING = 2.2e-16

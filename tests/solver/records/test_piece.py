@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from rocking.solver.records.piece import follow_piece, hyperbolic, piece_state
+from rocking._solver.records.piece import follow_piece, hyperbolic, piece_state
 
 
 @pytest.mark.parametrize("s", [1e-9, 1e-3, 0.0499, 0.0501, 0.3, 0.999, 1.001, 3.0, 20.0, 49.0])

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 import rocking
+from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._numba.cancellation import StopFlag
-from rocking.errors import InvalidArgumentError, StoppedError
-from rocking.solver.records.samples import BLOCKS, LATER, SHAPE, motion_samples
-from rocking.solver.records.state import taylor_order
+from rocking._solver.records.samples import BLOCKS, LATER, SHAPE, motion_samples
+from rocking._solver.records.state import taylor_order
 from tests.solver.records.tables import record
 
 MOTION = record("synthetic_31", 0.01)

@@ -9,7 +9,7 @@ import pytest
 
 import rocking
 from reference.records import response_and_amplification
-from rocking.excitation.shapes import AbstractPulse
+from rocking._excitation.shapes import AbstractPulse
 
 TRIANGLE = rocking.SampledPulse([0.0, 1.0, 0.0], name="triangle")
 SAW = rocking.SampledPulse([0.0, 1.0, -1.0, 1.0, -1.0, 0.0], name="saw")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking.constants import STANDARD_GRAVITY
-from rocking.errors import InvalidArgumentError
-from rocking.excitation.records.vertical import highest_vertical_scale
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.records.vertical import highest_vertical_scale
 from tests.solver.records.tables import samples
 
 ALPHAS = [None, 0.25]

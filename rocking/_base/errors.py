@@ -1,0 +1,381 @@
+"""Exceptions and argument checks. A message has three parts: which argument, its value, what is allowed.
+
+Every public function checks its arguments with these functions, so that Python, the command line and the HTTP service
+report the same errors. Physical outcomes such as overturning are results and raise nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import re
+import sys
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from decimal import Decimal
+from numbers import Real
+from types import NoneType
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.units import EXAMPLES, UNITS, USUAL, Quantity, split_quantity, unit_name
+
+_MAX_FLOAT = sys.float_info.max
+
+
+class InvalidArgumentError(ValueError):
+    """An invalid argument: its name, its value and what is allowed.
+
+    Parameters
+    ----------
+    parameter : str
+        Name of the argument, as the caller knows it.
+    value : object
+        The offending value.
+    allowed : str
+        Accepted values, in words or as an interval.
+    index : tuple of int
+        Place of the value in an argument with several.
+    """
+
+    def __init__(self, parameter: str, value: Any, allowed: str, index: tuple[int, ...] = ()) -> None:
+        self.parameter = parameter
+        self.value = value
+        self.allowed = allowed
+        self.index = index
+        place = f" at index {index if len(index) > 1 else index[0]}" if index else ""
+        super().__init__(f"`{parameter}` = {value!r}{place} is not allowed; allowed: {allowed}")
+
+    def __reduce__(self) -> tuple[type[InvalidArgumentError], tuple[Any, ...]]:
+        return type(self), (self.parameter, self.value, self.allowed, self.index)
+
+
+class MissingUnitError(InvalidArgumentError):
+    """A text with a number and no unit."""
+
+    def __init__(self, parameter: str, value: str, allowed: str) -> None:
+        super().__init__(parameter, value, allowed)
+        self.args = (f"`{parameter}` = {value!r}: {allowed}",)
+
+    def __reduce__(self) -> tuple[type[MissingUnitError], tuple[Any, ...]]:
+        return type(self), (self.parameter, self.value, self.allowed)
+
+
+class SeveralArgumentsError(InvalidArgumentError):
+    """Several invalid arguments; parameter, value and allowed are those of the first.
+
+    Parameters
+    ----------
+    errors : sequence of InvalidArgumentError
+        One for each, at least one.
+    """
+
+    def __init__(self, errors: Sequence[InvalidArgumentError]) -> None:
+        super().__init__(errors[0].parameter, errors[0].value, errors[0].allowed)
+        self.errors = list(errors)
+        self.args = ("; ".join(map(str, errors)),)
+
+    def __reduce__(self) -> tuple[type[SeveralArgumentsError], tuple[Any, ...]]:
+        return type(self), (self.errors,)
+
+
+class DatasetError(RuntimeError):
+    """A data set file is missing, damaged or of another schema; the message names the file and the remedy."""
+
+
+class SearchError(RuntimeError):
+    """A search of the solver exceeded the number of steps that is proved to suffice: a defect of this package."""
+
+
+class StoppedError(RuntimeError):
+    """The work was cancelled through its flag (`rocking._numba.cancellation.StopFlag`)."""
+
+
+class OutsideCubeError(InvalidArgumentError, LookupError):
+    """A point for which a cube gives no response with an error bound: outside its axes, or in a mixed cell."""
+
+
+def in_range(
+    parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
+) -> NDArray[np.float64]:
+    """Return `value` as a float64 array (shape kept) after checking that all of it is finite and in the range.
+
+    Parameters
+    ----------
+    parameter : str
+        Name for the error message.
+    value : array_like of real numbers, any shape; a quantity; or a text with a unit
+        Numbers without a unit are in `unit`. Quantities (pint, astropy), also in lists, and a text such as "40 cm" are
+        converted to it. Boolean, complex, date and other text values, which numpy would convert, are rejected, and so
+        are masked entries.
+    low, high : float
+        Range; `high` may be infinite.
+    closed : {"both", "left", "right", "neither"}
+        Which ends belong to the range.
+    unit : str
+        Unit of the result.
+
+    Raises
+    ------
+    InvalidArgumentError
+        With the first offending entry and its index.
+    """
+    array = float_array(parameter, value, low, high, closed=closed, unit=unit)
+    if array.ndim == 0:
+        if not _within(float(array), low, high, closed):
+            reject_range(parameter, float(array), low, high, closed, unit)
+    # two comparisons instead of arrays of them; min and max are nan if an entry is
+    elif array.size and not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
+        places = np.ndenumerate(array)
+        index, wrong = next((place, entry) for place, entry in places if not _within(float(entry), low, high, closed))
+        reject_range(parameter, float(wrong), low, high, closed, unit, index)
+    return array
+
+
+def number(
+    parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
+) -> float:
+    """Return `value` as a float after checking that it is one finite number in the range; as `in_range`."""
+    if isinstance(value, list | tuple) or (hasattr(value, "ndim") and value.ndim):
+        raise InvalidArgumentError(parameter, value, f"one number in {_interval(low, high, closed, unit)}")
+    return float(in_range(parameter, value, low, high, closed=closed, unit=unit))
+
+
+def positive(parameter: str, value: ArrayLike | Quantity, unit: str) -> float:
+    """Return `value` as a float after checking that it is one finite number > 0; as `in_range`."""
+    return number(parameter, value, 0.0, math.inf, closed="neither", unit=unit)
+
+
+def integer(parameter: str, value: ArrayLike | Quantity, low: float, high: float) -> int:
+    """Return `value` as an int after checking that it is one whole number from `low` to `high`; as `in_range`."""
+    found = number(parameter, value, low, high)
+    if not found.is_integer():
+        raise InvalidArgumentError(parameter, value, f"a whole number in {_interval(low, high, 'both', '-')}")
+    return int(found)
+
+
+def si_value(parameter: str, text: str, unit: str) -> float:
+    """The value of a quantity in an SI unit.
+
+    Parameters
+    ----------
+    parameter : str
+        Name for the error message.
+    text : str
+        A number and a unit, such as "1.2 m", "30cm", "4 m/s^2", "0.4 g", "400 gal", "20 deg", "45 %".
+    unit : str
+        Unit of the result, a key of `rocking._base.units.UNITS`.
+
+    Raises
+    ------
+    MissingUnitError
+        If there is no unit; the message proposes one.
+    InvalidArgumentError
+        If the unit is unknown or of another quantity, or the value is not finite.
+    """
+    percentage = "a number, or a percentage such as '45 %'"
+    allowed = percentage if unit == "-" else f"a number with its unit, such as {EXAMPLES[unit]}"
+    value, written = split_quantity(text) or (math.nan, "")
+    if not written and math.isfinite(value) and unit in USUAL:
+        proposed = " or ".join(f"{text.strip()}{usual}" for usual in USUAL[unit])
+        raise MissingUnitError(parameter, text, f"missing unit: write {proposed} (such as {EXAMPLES[unit]})")
+    name = unit_name(written, unit)
+    value = value * UNITS[unit][name] if name else math.nan
+    if not math.isfinite(value):
+        raise InvalidArgumentError(parameter, text, allowed)
+    return value
+
+
+def plain_number(parameter: str, text: str) -> float:
+    """The value of a text without a unit, such as "0.45", "1e-3" or "45 %".
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is neither a number nor a percentage.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        return si_value(parameter, text, "-")
+
+
+def float_array(
+    parameter: str,
+    value: Any,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    closed: str = "neither",
+    unit: str = "-",
+) -> NDArray[np.float64]:
+    """Return `value` as a float64 array, as `in_range` but not compared with the range, nan and infinity included."""
+    if isinstance(value, str) and unit in UNITS:
+        return np.asarray(si_value(parameter, value, unit))
+    given = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
+    if not _is_real(given):
+        allowed = f"real numbers, none of them masked, in {_interval(low, high, closed, unit)}"
+        raise InvalidArgumentError(parameter, value, allowed)
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        reject_range(parameter, value, low, high, closed, unit)
+    except OverflowError:  # an integer beyond the range of doubles
+        wrong = next(entry for entry in np.asarray(given, dtype=object).flat if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
+        reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
+
+
+_PLAIN_TYPES = {float, int, np.float64, str, bytes, bool, NoneType}
+"""Types without a unit."""
+
+
+def _without_unit(parameter: str, value: Any, unit: str) -> Any:
+    """The value of a quantity of any library, or of a list with some, in `unit`; other values as they are."""
+    if isinstance(value, np.ndarray) and value.dtype.kind != "O" and not hasattr(value, "unit"):
+        return value
+    if isinstance(value, list | tuple):
+        if set(map(type, value)) <= _PLAIN_TYPES:
+            return value
+        entries = [_without_unit(parameter, entry, unit) for entry in value]
+        return value if all(map(operator.is_, entries, value)) else entries
+    if type(value) is np.ndarray and any(_has_unit(entry) for entry in value.flat):
+        return _without_unit(parameter, value.tolist(), unit)
+    quantity = value.variable.data if hasattr(value, "variable") else value  # in a labelled array of xarray
+    if not _has_unit(quantity):
+        return value
+    si_unit = next((key for key, names in UNITS.items() if unit in names), unit)  # other libraries' g is a gram
+    try:
+        converted = quantity.to("" if unit == "-" else re.sub(r"(?<=[a-z])2", "**2", si_unit))
+    except Exception:  # noqa: BLE001  (each library has its own errors)
+        raise InvalidArgumentError(parameter, quantity, f"a quantity that can be converted to [{unit}]") from None
+    value = converted.magnitude if hasattr(converted, "magnitude") else converted.value
+    return value if unit == si_unit else value / UNITS[si_unit][unit]
+
+
+def _has_unit(value: Any) -> bool:
+    return hasattr(value, "to") and (hasattr(value, "units") or hasattr(value, "unit"))
+
+
+def _is_real(value: ArrayLike) -> bool:
+    """Whether all entries are real numbers; booleans are not."""
+    if type(value) in (float, int):
+        return True
+    if np.ma.is_masked(value):
+        return False
+    try:
+        array = np.asarray(value)
+    except ValueError:  # lists of different lengths
+        return False
+    if array.dtype.kind == "O":
+        return all(isinstance(entry, Real | Decimal) and not isinstance(entry, bool) for entry in array.flat)
+    return array.dtype.kind in "iuf"
+
+
+def _within(value: float, low: float, high: float, closed: str) -> bool:
+    above = value >= low if closed in ("both", "left") else value > low
+    below = value <= high if closed in ("both", "right") else value < high
+    return above and below and math.isfinite(value)
+
+
+def reject_range(
+    parameter: str, value: Any, low: float, high: float, closed: str, unit: str, index: tuple[int, ...] = ()
+) -> NoReturn:
+    """Raise `InvalidArgumentError` with the allowed range in words."""
+    allowed = _interval(low, high, closed, unit)
+    if unit == "rad" and isinstance(value, float) and value > high and _within(math.radians(value), low, high, closed):
+        allowed += "; numpy.radians converts degrees" if index else f"; write '{value:g} deg' if degrees were meant"
+    raise InvalidArgumentError(parameter, value, allowed, index)
+
+
+def _interval(low: float, high: float, closed: str, unit: str) -> str:
+    left = "[" if closed in ("both", "left") else "("
+    right = "]" if closed in ("both", "right") and np.isfinite(high) else ")"
+    return f"{left}{low:g}, {high:g}{right} [{unit}]"
+
+
+def broadcast(
+    given: Mapping[str, ArrayLike | Quantity | None], checked: Sequence[NDArray[np.float64]]
+) -> list[NDArray[np.float64]]:
+    """The `checked` arrays of some arguments, broadcast against each other.
+
+    Parameters
+    ----------
+    given : mapping
+        The arguments by name, as given by the caller.
+    checked : sequence of float arrays
+        Their values.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the shapes do not broadcast; also if labelled arguments (xarray, pandas) differ in their dimensions, in the
+        order of these, or in their indexes: numpy would combine entries by position.
+    """
+    pairs = zip(given.items(), checked, strict=False)  # an argument that is None may be left out at the end
+    labelled = {name: _labels(value) for (name, value), array in pairs if array.ndim}
+    first: list[tuple[Hashable, Any]] = []
+    for labels in labelled.values():
+        first = first or labels
+        if labels and not _same_labels(labels, first):
+            dims = tuple(tuple(dim for dim, _ in one) for one in labelled.values())
+            raise InvalidArgumentError(
+                ", ".join(labelled), dims, "equal dimensions and indexes: use xarray.broadcast or align first"
+            )
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in checked))
+    except ValueError:
+        shapes = tuple(array.shape for array in checked)
+        raise InvalidArgumentError(", ".join(given), shapes, "shapes that broadcast against each other") from None
+    # copies, because kernels need contiguous arrays
+    return [array if array.shape == shape else np.array(np.broadcast_to(array, shape)) for array in checked]
+
+
+def _labels(value: Any) -> list[tuple[Hashable, Any]]:
+    """Dimensions of an xarray or pandas object, each with its index or None; empty for other objects."""
+    if hasattr(value, "dims"):
+        indexes = getattr(value, "indexes", {})
+        return [(dim, indexes.get(dim)) for dim in value.dims]
+    return list(enumerate(getattr(value, "axes", ())))
+
+
+def _same_labels(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable, Any]]) -> bool:
+    return len(labels) == len(others) and all(
+        dim == other and (index is None or one is None or index.equals(one))
+        for (dim, index), (other, one) in zip(labels, others, strict=True)
+    )
+
+
+def one_of(parameter: str, value: str, choices: Iterable[str]) -> str:
+    """Return `value` if it is among `choices`, else raise `InvalidArgumentError` listing them."""
+    names = list(choices)
+    if value not in names:
+        raise InvalidArgumentError(parameter, value, "one of " + ", ".join(names))
+    return value
+
+
+class RecordFileError(InvalidArgumentError):
+    """A file of a recorded motion that is damaged, ambiguous or of an unknown format.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file.
+    line : int or None
+        Number of the line, from 1; None for the whole file.
+    found : object
+        What was found there.
+    expected : str
+        What was expected.
+    """
+
+    def __init__(self, file: str, line: int | None, found: Any, expected: str) -> None:
+        super().__init__("record", found, expected)
+        self.file, self.line, self.expected = file, line, expected
+        text = str(found)
+        shown = text if len(text) <= 60 else f"{text[:60]}..."
+        place = file if line is None else f"{file}, line {line}"
+        self.args = (f"{place}: found {shown}; expected {expected}",)
+
+    def __reduce__(self) -> tuple[type[RecordFileError], tuple[Any, ...]]:
+        return type(self), (self.file, self.line, self.value, self.expected)

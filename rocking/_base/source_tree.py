@@ -1,0 +1,124 @@
+"""The Python files that a module imports, directly or indirectly, and digests of them.
+
+The imports are read from the syntax tree of the source text: nothing is executed.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+from collections.abc import Iterable
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+"""Folder of the package and, in a checkout, of `workflow/` and `environment.lock`."""
+
+
+class SourceTree:
+    """The Python files of a folder as they are now: each is read once, for any number of digests.
+
+    Parameters
+    ----------
+    root : Path
+        Folder that holds the files and the lock, and from which absolute imports are resolved.
+    """
+
+    def __init__(self, root: Path = PROJECT) -> None:
+        self.root = root.resolve()
+        self._contents: dict[Path, bytes] = {}
+        self._syntax: dict[Path, ast.Module] = {}
+        self._imported: dict[Path, list[Path]] = {}
+
+    def package(self) -> list[Path]:
+        """All files of the package, sorted."""
+        return sorted(_package(self.root))
+
+    def files(self, *paths: Path) -> list[Path]:
+        """All files under `root` that the given files import, directly or indirectly, and these files; sorted.
+
+        `rocking/__init__.py` only loads names lazily. Importing a module through it does not add a dependency on every
+        public name; importing a name that is not a module does, and then all files of the package are included.
+        """
+        seen: set[Path] = set()
+        waiting = [path.resolve() for path in paths]
+        while waiting:
+            path = waiting.pop()
+            if path not in seen:
+                seen.add(path)
+                waiting += self._imports(path)
+        return sorted(seen)
+
+    def digest(self, *paths: Path) -> str:
+        """sha256 (hex) of the `files` of `paths`, none: of the whole package, and of `environment.lock` if there."""
+        files = self.files(*(paths or self.package()))
+        lock = self.root / "environment.lock"
+        return self.digest_of([*files, *([lock] if lock.exists() else [])])
+
+    def digest_of(self, files: Iterable[Path]) -> str:
+        """sha256 (hex) of the names below `root` and the contents of these files alone."""
+        digest = hashlib.sha256()
+        for path in files:
+            content = self.content(path)
+            digest.update(f"{path.relative_to(self.root).as_posix()} {len(content)}\n".encode())
+            digest.update(content)
+        return digest.hexdigest()
+
+    def content(self, path: Path) -> bytes:
+        """What a file holds."""
+        if path not in self._contents:
+            self._contents[path] = path.read_bytes()
+        return self._contents[path]
+
+    def syntax(self, path: Path) -> ast.Module:
+        """The syntax tree of a file."""
+        if path not in self._syntax:
+            self._syntax[path] = ast.parse(self.content(path))
+        return self._syntax[path]
+
+    def _imports(self, path: Path) -> list[Path]:
+        if path not in self._imported:
+            self._imported[path] = sorted({*_imported_files(path, self.syntax(path), self.root)})
+        return self._imported[path]
+
+
+def imported_names(syntax: ast.Module) -> Iterable[tuple[str, str | None, int]]:
+    """The names that a module imports, with the module of which each may be an attribute, and the relative level."""
+    for node in ast.walk(syntax):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, None, 0
+        elif isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                yield alias.name, node.module or "", node.level
+
+
+def _package(root: Path) -> Iterable[Path]:
+    return (root / "rocking").rglob("*.py")
+
+
+def _imported_files(path: Path, syntax: ast.Module, root: Path) -> Iterable[Path]:
+    for name, base, level in imported_names(syntax):
+        if base is None:
+            yield from _module_files(name, root)
+            continue
+        parts = path.relative_to(root).parts[:-level] if level else ()
+        full = ".".join([*parts, *([base] if base else [])])
+        yield from _module_files(f"{full}.{name}", root, attribute_of=full)
+
+
+def _module_files(name: str, root: Path, attribute_of: str | None = None) -> Iterable[Path]:
+    """Files of a dotted name; if it is not a module, those of the module that has it as an attribute."""
+    place = root.joinpath(*name.split("."))
+    module = place.with_suffix(".py") if place.name else place
+    initial = place / "__init__.py"
+    if name == "rocking":
+        yield from _package(root)
+    elif module.is_file():
+        yield module
+    elif initial.is_file():
+        yield initial
+    elif attribute_of:
+        yield from _module_files(attribute_of, root)
+    parent = name.rpartition(".")[0]
+    if "." in parent and (root.joinpath(*parent.split(".")) / "__init__.py").is_file():
+        yield root.joinpath(*parent.split(".")) / "__init__.py"

@@ -1,0 +1,117 @@
+"""Names of units, for quantities that people type and for the headers of files.
+
+A unit is looked up by its name and never evaluated. The case of its letters does not matter: no two units of one
+quantity differ by it. Blanks, brackets, underscores and the signs of a power may be written or left out, so that
+"m/s^2", "m/s**2", "M/S2", "m s-2" and "(m/s²)" are one unit.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any, Protocol
+
+from numpy.typing import ArrayLike
+
+from rocking._base.constants import STANDARD_GRAVITY
+
+
+class Quantity(Protocol):
+    """A number with a unit, or several, as the library pint has them."""
+
+    def to(self, unit: Any, /) -> Any:
+        """The same in another unit."""
+
+
+Scalar = float | str | Quantity
+"""A number in the SI unit, a text such as "40 cm", or a quantity."""
+Values = ArrayLike | Quantity
+"""The same, or an array."""
+
+UNITS: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048},
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "in/s": 0.0254, "ft/s": 0.3048},
+    "m/s2": {
+        "m/s2": 1.0,
+        "cm/s2": 0.01,
+        "gal": 0.01,
+        "mm/s2": 0.001,
+        "g": STANDARD_GRAVITY,
+        "in/s2": 0.0254,
+        "ft/s2": 0.3048,
+    },
+    "s": {"s": 1.0, "ms": 0.001, "min": 60.0},
+    "rad": {"rad": 1.0, "deg": math.pi / 180.0, "mrad": 0.001},
+    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
+    "-": {"%": 0.01},
+}
+"""Units of each quantity, by its SI unit, with their values in that unit."""
+
+EXAMPLES = {
+    "m": "0.3 m, 30 cm",
+    "m/s": "0.5 m/s, 50 cm/s",
+    "m/s2": "4 m/s^2, 0.4 g, 400 gal",
+    "s": "0.5 s, 500 ms",
+    "rad": "20 deg, 0.35 rad",
+    "rad/s": "2.5 rad/s",
+}
+"""Quantities that an error proposes."""
+
+USUAL = {"m": ("m",), "m/s": ("m/s",), "m/s2": ("m/s2", "g"), "s": ("s",), "rad": ("deg",), "rad/s": ("rad/s",)}
+"""The units that an error proposes where there is none."""
+
+MAX_LENGTH = 64
+"""Longest text that is read as a quantity or a unit [characters]."""
+
+_OTHER_NAMES = {
+    "m": ("metre", "metres", "meter", "meters"),
+    "cm": ("centimetre", "centimetres", "centimeter", "centimeters"),
+    "mm": ("millimetre", "millimetres", "millimeter", "millimeters"),
+    "km": ("kilometre", "kilometres", "kilometer", "kilometers"),
+    "in": ("inch", "inches"),
+    "ft": ("foot", "feet"),
+    "gal": ("gals",),
+    "g": ("gs", "gravity"),
+    "min": ("minute", "minutes"),
+    "rad": ("radian", "radians"),
+    "deg": ("degree", "degrees", "°"),
+    "%": ("percent",),
+}
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
+
+
+def _forms(name: str) -> tuple[str, ...]:
+    """The ways to write a unit, as `_plain` leaves them."""
+    length, _, time = name.partition("/")
+    if time == "s2":
+        return (name, f"{length}/s/s", f"{length}s-2", f"{length}/s-2", f"{length}s2")
+    return (name, f"{length}s-1") if time else (name, *_OTHER_NAMES.get(name, ()))
+
+
+def _plain(text: str) -> str:
+    """A unit in lower case without what may be left out; second is s."""
+    plain = re.sub(r"\*\*|\*(?=\s*s-)|[\s_^()\[\]]", "", text.lower().replace("²", "2"))
+    return re.sub(r"sec(?:ond)?s?", "s", plain)
+
+
+_NAMES = {unit: {form: name for name in names for form in _forms(name)} for unit, names in UNITS.items()}
+
+
+def unit_name(text: str, unit: str) -> str | None:
+    """The name in `UNITS` of a unit that a text names; None if it names none of this quantity.
+
+    Parameters
+    ----------
+    text : str
+        Such as "cm", "M/S^2", "m s-2".
+    unit : str
+        SI unit of the quantity, a key of `UNITS`.
+    """
+    return _NAMES[unit].get(_plain(text)) if len(text) <= MAX_LENGTH else None
+
+
+def split_quantity(text: str) -> tuple[float, str] | None:
+    """The number that a text starts with, and what follows; None if it starts with none, or is too long."""
+    text = text.strip()
+    found = _NUMBER.match(text) if len(text) <= MAX_LENGTH else None
+    return (float(found[0]), text[found.end() :].strip()) if found else None

@@ -1,0 +1,61 @@
+"""Which cells of a grid the traced boundaries cross."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from rocking._boundary.curves import curves_at
+
+MARGIN = 0.1
+"""Share of a cell by which a curve is widened: a chord of a curve lies that close to it [-]."""
+
+STEP = 0.2
+"""Distance of the points by which a curve is followed, in cells [-]."""
+
+Array = NDArray[np.float64]
+
+
+def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Array) -> NDArray[np.bool_]:
+    """Cells of a spectrum grid through which an overturning boundary passes, or next to which it does.
+
+    Parameters
+    ----------
+    boundary : Dataset
+        Ragged curves as of `overturning_boundary`, with `alpha` (curve) [rad].
+    alpha : float
+        Slenderness angle [rad], 0 for the slender limit.
+    rows, columns : float arrays (n,), (m,)
+        slenderness and frequency_ratio.
+
+    Returns
+    -------
+    bool array (n - 1, m - 1)
+    """
+    curves = curves_at(boundary, alpha)
+    row = _index(rows, curves["slenderness"].values)
+    column = _index(np.log(columns), np.log(curves["frequency_ratio"].values))
+    ends = np.cumsum(curves["row_size"].values)
+    inner = np.ones(row.size, dtype=bool)
+    inner[ends - 1] = False  # no chord from the last point of a curve
+    start = np.flatnonzero(inner)
+    step = np.stack([np.diff(row), np.diff(column)])[:, start]
+    count = np.ceil(np.abs(step).max(axis=0) / STEP).astype(int) + 1
+    chord = np.repeat(np.arange(start.size), count)
+    share = (np.arange(chord.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count, count)
+    points = np.stack([row, column])[:, start[chord]] + share * step[:, chord]
+    points = np.concatenate([points, np.stack([row, column])], axis=1)
+    crossed = np.zeros((rows.size - 1, columns.size - 1), dtype=bool)
+    for d_row in (-MARGIN, 0.0, MARGIN):
+        for d_column in (-MARGIN, 0.0, MARGIN):
+            i, j = np.floor(points[0] + d_row).astype(int), np.floor(points[1] + d_column).astype(int)
+            inside = (i >= 0) & (j >= 0) & (i < crossed.shape[0]) & (j < crossed.shape[1])
+            crossed[i[inside], j[inside]] = True
+    return crossed
+
+
+def _index(axis: Array, value: Array) -> Array:
+    """Fractional index on an axis, carried on beyond its ends as the outermost cells go."""
+    cell = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
+    return cell + (value - axis[cell]) / (axis[cell + 1] - axis[cell])

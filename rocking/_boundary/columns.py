@@ -1,0 +1,167 @@
+"""Columns: the regions of outcome along a line omega = const, as runs of 1/a with one region code each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, refine_lines, without_layers
+
+THINNEST = 1e-6
+"""Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
+
+Index = NDArray[np.intp]
+
+
+@dataclass(eq=False)
+class Column:
+    """Regions along one line omega = const between two values of 1/a, ascending, and the thresholds between them.
+
+    Attributes
+    ----------
+    eta, log_omega : float
+        Restitution and log omega of the line [-].
+    below, above : float arrays (thresholds,)
+        1/a where the region below a threshold ends and where the one above it begins: `RESOLUTION` apart, or up to
+        `THINNEST` where thinner regions lie between them [-].
+    codes : list of int (thresholds + 1,)
+        Region codes, see `region_code`.
+    bottom, top : float
+        1/a at the two ends [-].
+    thinnest : float
+        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
+    middle : float array (thresholds,)
+        1/a of each threshold, halfway between its two regions [-].
+    regions : int array (thresholds + 1,)
+        The codes as an array.
+    trends : float array (2, thresholds, 4)
+        How the boundary curve goes that ends at each threshold, see `rocking._boundary.trends`: known from the left
+        (row 0) and from the right (row 1); nan where unknown.
+    whole, offset : Column, int
+        The column that this one is a part of, and the index of its first threshold there.
+    """
+
+    eta: float
+    log_omega: float
+    below: Floats
+    above: Floats
+    codes: list[int]
+    bottom: float
+    top: float
+    thinnest: float = THINNEST
+    middle: Floats = field(init=False)
+    regions: Codes = field(init=False)
+    trends: Floats = field(init=False)
+    whole: Column = field(init=False)
+    offset: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self.regions = np.array(self.codes, dtype=np.int64)
+        self.trends = np.full((2, self.below.size, 4), np.nan)
+        self.whole = self
+        self.middle = 0.5 * (self.below + self.above)
+
+    def code_at(self, x: Floats) -> Codes:
+        """Region code at points between the two ends."""
+        return self.regions[np.searchsorted(self.middle, x)]
+
+    def least_width(self, inner: Index) -> Floats:
+        """Widths in 1/a below which the regions above some thresholds are not resolved [-]."""
+        below, own, above = (self.regions[inner + k] == UNCOUNTED for k in range(3))
+        return np.where(own | (below & above), self.thinnest, THINNEST)
+
+    def between(self, first: int, last: int) -> Column:
+        """The thresholds from `first` to before `last`, and the regions beside them."""
+        bottom = self.above[first - 1] if first else self.bottom
+        top = self.below[last] if last < self.below.size else self.top
+        cut = slice(first, last)
+        part = Column(
+            self.eta,
+            self.log_omega,
+            self.below[cut],
+            self.above[cut],
+            self.codes[first : last + 1],
+            bottom,
+            top,
+            self.thinnest,
+        )
+        part.trends = self.trends[:, cut]
+        part.whole, part.offset = self.whole, self.offset + first
+        return part
+
+
+class Lines:
+    """Classified nodes on many lines omega = const, every change of outcome between them refined.
+
+    Parameters
+    ----------
+    points : float array (lines, 3)
+        1/a (any), log omega and eta of each line.
+    classify : Classify
+        The solver, with layer codes or region codes.
+    thinnest : float array (lines,)
+        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
+    """
+
+    def __init__(self, points: Floats, classify: Classify, thinnest: Floats) -> None:
+        self.points = points
+        self.classify = classify
+        self.thinnest = thinnest
+        self.nodes: dict[int, Nodes] = {}
+
+    def add(self, new: Nodes) -> dict[int, Column]:
+        """Take in classified nodes, refine all changes between neighbours, and give the columns of these lines."""
+        touched = np.unique(new.line).tolist()
+        nodes = Nodes.merged([new, *(self.nodes[k] for k in touched if k in self.nodes)])
+        nodes = refine_lines(0, self.points, nodes, self.classify, THINNEST, 0.5 * self.thinnest)
+        edge = (np.diff(nodes.line) != 0) | (np.diff(nodes.codes) != 0)
+        nodes = nodes.take(np.append(True, edge) | np.append(edge, True))  # the ends of every run
+        bounds = np.append(np.searchsorted(nodes.line, touched), nodes.line.size).tolist()
+        for k, first, last in zip(touched, bounds[:-1], bounds[1:], strict=True):
+            self.nodes[k] = nodes.take(slice(first, last))
+        return dict(zip(touched, self._columns(nodes.line, nodes.x, nodes.codes), strict=True))
+
+    def _columns(self, line: Index, x: Floats, codes: Codes) -> list[Column]:
+        """A column for each line of some nodes, without the regions that are too thin."""
+        codes = without_layers(codes)
+        start, end = _runs(line, codes)
+        line, codes, low, high = line[start], codes[start], x[start], x[end]
+        for many in (False, True):  # first the safe bands between two regions of many impacts, then such regions
+            thinnest = np.full(codes.size, THINNEST)
+            uncounted = codes == UNCOUNTED
+            coarse = uncounted if many else _between(uncounted)
+            thinnest[coarse] = self.thinnest[line[coarse]]
+            edge = np.diff(line) != 0
+            kept = np.append(True, edge) | np.append(edge, True) | (high - low >= thinnest)
+            line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]
+            start, end = _runs(line, codes)
+            line, codes, low, high = line[start], codes[start], low[start], high[end]
+        first = np.flatnonzero(np.append(True, np.diff(line) != 0))
+        return [
+            Column(
+                float(self.points[line[a], 2]),
+                float(self.points[line[a], 1]),
+                high[a : b - 1],
+                low[a + 1 : b],
+                codes[a:b].tolist(),
+                float(low[a]),
+                float(high[b - 1]),
+                float(self.thinnest[line[a]]),
+            )
+            for a, b in zip(first, np.append(first[1:], line.size), strict=True)
+        ]
+
+
+def _between(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether both neighbours of an entry are set."""
+    found = np.zeros(flags.size, dtype=bool)
+    found[1:-1] = flags[:-2] & flags[2:]
+    return found
+
+
+def _runs(line: Index, codes: Codes) -> tuple[Index, Index]:
+    """First and last index of each run of one outcome on one line."""
+    edge = (np.diff(line) != 0) | (np.diff(codes) != 0)
+    return np.flatnonzero(np.append(True, edge)), np.flatnonzero(np.append(edge, True))

@@ -1,0 +1,49 @@
+"""Boundary curves of several slenderness angles in one ragged data set: put together, and taken out by angle.
+
+A file `results/overturning/PULSE/eta-0.85.nc` holds polylines one after the other, the curves of all angles, each with
+its angle in alpha(curve) [rad]; 0 stands for the slender limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from rocking._model.checks import check_one_alpha
+
+ALPHA_TOLERANCE = 1e-12
+"""Difference up to which two slenderness angles are the same one, written in degrees and in radians [rad]."""
+
+
+def join_curves(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """The curves of all parts, one part after the other.
+
+    Parameters
+    ----------
+    parts : sequence of xarray.Dataset
+        Contiguous ragged polylines with equal variables over `curve` or `point`, `row_size` points each.
+    """
+    curves, points = ([part.drop_dims(other) for part in parts] for other in ("point", "curve"))
+    return xr.merge([xr.concat(curves, dim="curve"), xr.concat(points, dim="point")])
+
+
+def curves_at(curves: xr.Dataset, alpha: float) -> xr.Dataset:
+    """The curves of one slenderness angle, of size 0 if there are none.
+
+    Parameters
+    ----------
+    curves : xarray.Dataset
+        Contiguous ragged polylines with row_size(curve) and alpha(curve) [rad].
+    alpha : float
+        Slenderness angle [rad], [0, pi/2); 0 for the slender limit.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an angle out of range.
+    """
+    wanted = np.abs(curves["alpha"].values - check_one_alpha(alpha)) <= ALPHA_TOLERANCE
+    points = np.repeat(wanted, curves["row_size"].values)
+    return curves.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points))

@@ -1,0 +1,98 @@
+"""Frequencies at which the outcome changes while the amplitude of the pulse stays: other periods, other sizes.
+
+At one slenderness a longer pulse or a larger block of the same shape changes the frequency ratio omega_g/p only: omega
+is inversely proportional to T_p and proportional to the square root of R (2.2). So one line through the control space
+gives the critical periods of a block and the critical sizes of a shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import Scalar
+from rocking._boundary.search import Floats, block_solver, classifier, counted_code, outcomes_along
+from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._model.checks import check_number
+from rocking._model.outcome_code import SURVIVES
+from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking._numba.cancellation import StopFlag
+
+NODES_PER_DECADE = 1000
+"""Nodes on which outcomes are first computed, before their changes are refined [-]."""
+
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyThresholds(EqualByValue):
+    """Frequency ratios at which the outcome for a block changes, ascending; arrays (thresholds,).
+
+    Attributes
+    ----------
+    frequency_ratio : float array [-]
+        omega = omega_g/p; the block overturns at it, and survives within a relative `RESOLUTION` of it.
+    overturns_above : bool array
+        True where the block overturns just above the threshold and survives just below it.
+    overturns_at_ends : (bool, bool)
+        Whether it overturns at the lower and at the upper end of the window.
+    """
+
+    frequency_ratio: Floats
+    overturns_above: Flags
+    overturns_at_ends: tuple[bool, bool]
+
+
+def critical_frequency_ratio(
+    pulse: str | AbstractPulse,
+    *,
+    slenderness: Scalar,
+    restitution: Scalar,
+    window: tuple[float, float],
+    alpha: Scalar | None = None,
+    stop: StopFlag | None = None,
+) -> FrequencyThresholds:
+    """Every frequency ratio of a window at which the outcome changes, the amplitude being fixed.
+
+    Parameters
+    ----------
+    pulse, slenderness, restitution, alpha
+        As for `peak_response`; scalars.
+    window : (float, float)
+        Smallest and largest omega = omega_g/p considered [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
+
+    Returns
+    -------
+    FrequencyThresholds
+        Each good to a relative `RESOLUTION`, or to `ELASTIC_RESOLUTION` where an elastic block overturns after more
+        than `MOST_COUNTED` impacts. A region narrower than 1/1000 of a decade that lies between equal outcomes can be
+        missed; a safe band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are one,
+        is not, unless it is narrower than `RESOLUTION`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    StoppedError
+        If `stop` was set.
+    """
+    made = as_pulse(pulse)
+    low, high = (check_number(FREQUENCY_RATIO, end, "window") for end in window)
+    if not low < high <= 1e4 * low:
+        raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
+
+    nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
+    point = check_number(SLENDERNESS, slenderness), float(nodes[0]), check_number(RESTITUTION, restitution)
+    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, alpha, stop), counted_code))
+    overturns = codes != SURVIVES
+    edge = np.flatnonzero(overturns[1:] != overturns[:-1])
+    above = overturns[edge + 1]
+    return FrequencyThresholds(
+        np.exp(grid[np.where(above, edge + 1, edge)]), above, (bool(overturns[0]), bool(overturns[-1]))
+    )

@@ -1,0 +1,442 @@
+"""Points where the outcome changes, found with the solver itself: on one line of the control space, or on many.
+
+A point is 1/a, log omega and the restitution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._base.units import Scalar
+from rocking._excitation.pulses import AbstractPulse
+from rocking._model.checks import check_one_alpha
+from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
+from rocking._model.outcome_margin import outcome_margin
+from rocking._model.parameters import FREQUENCY_RATIO
+from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import contiguous_array
+from rocking._solver.peak_response import solve_cells
+from rocking._solver.state import FULL_PRECISION
+
+RESOLUTION = 1e-12
+"""Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
+
+ELASTIC_RESOLUTION = 1e-6
+"""In place of `RESOLUTION` for elastic blocks, where one of the two regions has uncounted impacts [-].
+
+Where a wavelet has just uplifted an elastic block, it strikes 200,000 times before the main part of the pulse.
+"""
+
+ROUNDS = 32
+"""Times that brackets on a line are refined: each may uncover a further outcome between the two at its ends."""
+
+MANY_IMPACTS = 12
+"""Overturning after more impacts than this, or after impacts that accumulate to rest, is one region [-]."""
+
+MOST_IMPACTS = 32
+"""Overturning after more impacts than this is not told apart even on one line [-]."""
+
+MOST_COUNTED = 200
+"""Overturning after more impacts than this is not told apart where the outcomes of one block are listed [-].
+
+Of 495 lines of all pulses, 5 lose thresholds against an unlimited count, 22 with 64; without a limit 12 lines at
+restitutions of 0.99 and more take over 5 s, since each of thousands of counts is a region of its own.
+"""
+
+UNCOUNTED = -1
+"""Region code of overturning whose impacts are not counted, and the `impacts` of its curves."""
+
+LARGE_MARGIN = 10.0
+"""Margin beyond which its logarithm counts where points are interpolated [-].
+
+On the brackets of the cosine at 0 and 20 degrees the mean number of points differs by less than 5 % from 3 to 30, and
+from that without the logarithm, with which fewer brackets take more than 25 points: 8 in place of 10 %.
+"""
+
+Floats = NDArray[np.float64]
+Codes = NDArray[np.int64]
+Index = NDArray[np.intp]
+Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
+"""From 1/a, log omega and eta, which broadcast, to the code of the outcome and its margin to another."""
+Solve = Callable[[Floats, Floats, Floats], tuple[NDArray[np.void], Floats]]
+"""From arrays (size,) of 1/a, omega and eta to response records and the margin of the outcome to another."""
+
+
+class Outcomes(Protocol):
+    """What the codes are made from: a `Response`, or records of the solver; arrays of one shape."""
+
+    @property
+    def outcome(self) -> NDArray[np.int8]:
+        """Code of `Outcome`."""
+
+    @property
+    def impacts(self) -> NDArray[np.int32]:
+        """Number of impacts."""
+
+    @property
+    def chatter(self) -> NDArray[np.bool_]:
+        """Whether impacts were replaced by their sum."""
+
+
+def outcome_code(found: Outcomes) -> Codes:
+    """One integer for the outcome, see `rocking._model.outcome_code`."""
+    return outcome_codes(found.outcome, found.impacts)
+
+
+def layer_code(found: Outcomes) -> Codes:
+    """The code of the outcome, but `UNCOUNTED` for overturning after chatter or more than `MOST_IMPACTS` impacts.
+
+    After chatter the count says when the solver replaced the remaining impacts by their sum, not what the block did.
+    """
+    codes = outcome_code(found)
+    many = found.chatter | (found.impacts > MOST_IMPACTS)
+    return np.where((codes != SURVIVES) & many, UNCOUNTED, codes)
+
+
+def region_code(found: Outcomes) -> Codes:
+    """`layer_code`, with the code `UNCOUNTED` for overturning after more than `MANY_IMPACTS` impacts too.
+
+    After many impacts the regions of one count are layers thinner than any figure shows.
+    """
+    return without_layers(layer_code(found))
+
+
+def without_layers(codes: Codes) -> Codes:
+    """Region codes from layer codes."""
+    return np.where(impacts_of_code(codes) > MANY_IMPACTS, UNCOUNTED, codes)
+
+
+def counted_code(found: Outcomes) -> Codes:
+    """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
+    codes = outcome_code(found)
+    return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
+
+
+class Work:
+    """Impacts that the solver has followed, and blocks, at each restitution: what the search for curves has cost.
+
+    Parameters
+    ----------
+    etas : float array (restitutions,)
+        Ascending, each once [-].
+    """
+
+    def __init__(self, etas: Floats) -> None:
+        self._etas = etas
+        self._done = np.zeros(etas.size)
+
+    def add(self, eta: Floats, impacts: NDArray[np.int32]) -> None:
+        """Count blocks and their impacts, arrays of one shape."""
+        which = np.searchsorted(self._etas, eta.ravel())
+        self._done += np.bincount(which, 1.0 + impacts.ravel(), self._etas.size)
+
+    def at(self, eta: float) -> float:
+        """Impacts and blocks at one restitution so far."""
+        return float(self._done[np.searchsorted(self._etas, eta)])
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What the solver has found for some blocks, see `Outcomes`; arrays of one shape."""
+
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    chatter: NDArray[np.bool_]
+
+
+def block_solver(pulse: AbstractPulse, alpha: Scalar | None, stop: StopFlag | None = None) -> Solve:
+    """The solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
+
+    It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an angle out of range.
+    """
+    angle = check_one_alpha(alpha)
+
+    def solve(slenderness: Floats, omega: Floats, eta: Floats) -> tuple[NDArray[np.void], Floats]:
+        cells = [slenderness, omega, eta, np.full(eta.size, angle)]
+        records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
+        return records, outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
+
+    return solve
+
+
+def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code, work: Work | None = None) -> Classify:
+    """A solver as a `Classify`, which notes its work in `work`."""
+
+    def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
+        omega = np.clip(
+            np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
+        )  # rounding must not lead out of the range
+        groups = np.broadcast_arrays(slenderness, omega, eta)
+        cells = [contiguous_array(group).ravel() for group in groups]
+        records, margin = solve(*cells)
+        if work is not None:
+            work.add(cells[2], records["impacts"])
+        codes = code_of(Found(*(records[name] for name in ("outcome", "impacts", "chatter"))))
+        return codes.reshape(groups[0].shape), margin.reshape(groups[0].shape)
+
+    return classify
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Classified points on lines of the control space; arrays (nodes,).
+
+    Attributes
+    ----------
+    line : int array
+        Index of the line.
+    x : float array
+        Coordinate on it.
+    codes : int array
+        Outcome there.
+    margin : float array
+        Its margin to another outcome.
+    """
+
+    line: Index
+    x: Floats
+    codes: Codes
+    margin: Floats
+
+    def take(self, index: Index | NDArray[np.bool_] | slice) -> Nodes:
+        """The nodes of some indices."""
+        return Nodes(self.line[index], self.x[index], self.codes[index], self.margin[index])
+
+    @classmethod
+    def joined(cls, parts: Iterable[Nodes]) -> Nodes:
+        """The nodes of one part after the other."""
+        columns = ((part.line, part.x, part.codes, part.margin) for part in parts)
+        return cls(*map(np.concatenate, zip(*columns, strict=True)))
+
+    @classmethod
+    def merged(cls, parts: Iterable[Nodes]) -> Nodes:
+        """The nodes of all parts in ascending order of line, then coordinate, each once."""
+        together = cls.joined(parts)
+        nodes = together.take(np.lexsort((together.x, together.line)))
+        first = np.ones(nodes.x.size, dtype=bool)
+        first[1:] = (np.diff(nodes.line) != 0) | (np.diff(nodes.x) != 0.0)
+        return nodes.take(first)
+
+
+@dataclass(frozen=True, eq=False)
+class Brackets:
+    """Brackets of changes of outcome: the outcome of each bracket holds at the first end only.
+
+    Attributes
+    ----------
+    ends, margins : float arrays (points, 2)
+        Coordinates of the two ends, and the margins there.
+    met : int array (points,)
+        Outcomes at the second end.
+    """
+
+    ends: Floats
+    margins: Floats
+    met: Codes
+
+
+def refine_brackets(
+    axis: int,
+    points: Floats,
+    ends: Floats,
+    margins: Floats,
+    code: Codes,
+    met: Codes,
+    classify: Classify,
+    resolution: Floats | float = RESOLUTION,
+) -> Brackets:
+    """Shrink brackets along one axis of the control space.
+
+    Parameters
+    ----------
+    axis : int
+        0 for brackets in 1/a, 1 for brackets in log omega.
+    points : float array (points, 3)
+        1/a, log omega and eta of each bracket; the coordinate along the axis does not count.
+    ends : float array (points, 2)
+        Coordinates of the two ends; the outcome `code` holds at the first one only.
+    margins : float array (points, 2)
+        Margins there.
+    code, met : int arrays (points,)
+        Outcomes there.
+    classify : Classify
+        The solver.
+    resolution : float or float array (points,)
+        Width of the final brackets [-].
+
+    Returns
+    -------
+    Brackets
+        Their ends at most `resolution` apart.
+
+    Notes
+    -----
+    Chandrupatla's method: the outcome alone decides on which side a point lies; the margin in energy, which is
+    continuous through the change of outcome as a rule, makes it a third of the work of bisection. The first point lies
+    halfway: there it shows regions between the two ends more often than near one of them.
+    """
+    place, ends, margins, met = points.copy(), ends.copy(), margins.copy(), met.copy()
+    # b is the newest end of the bracket, a the other one, c the point before them
+    active = np.arange(len(code))
+    b, a = ends.T.copy()
+    fb, fa = _distance(margins[:, 0]), -_distance(margins[:, 1])
+    c, fc = a, fa
+    share = np.full(len(code), 0.5)
+    least_width = np.broadcast_to(resolution, len(code))
+    while active.size:
+        x = a + share * (b - a)
+        place[active, axis] = x
+        here, margin = classify(*place[active].T)
+        within = here == code[active]
+        end = np.where(within, 0, 1)
+        ends[active, end], margins[active, end] = x, margin
+        met[active[~within]] = here[~within]
+        fx = np.where(within, 1.0, -1.0) * _distance(margin)
+        same = within == (fa > 0.0)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = x, fx
+        width = np.abs(b - a)
+        left = width > least_width[active]
+        active, a, b, c, fa, fb, fc, width = (each[left] for each in (active, a, b, c, fa, fb, fc, width))
+        share = _next_share(a, b, c, fa, fb, fc)
+        least = 0.5 * least_width[active] / width
+        share = np.clip(share, least, 1.0 - least)
+    return Brackets(ends, margins, met)
+
+
+def _distance(margin: Floats) -> Floats:
+    """A positive measure of the distance from a change of outcome: the margin, its logarithm where it is large."""
+    distance: Floats = np.log1p(np.abs(margin) / LARGE_MARGIN) + 1e-300
+    return distance
+
+
+def _next_share(a: Floats, b: Floats, c: Floats, fa: Floats, fb: Floats, fc: Floats) -> Floats:
+    """Where the next point lies between a and b: by inverse quadratic interpolation if it is safe, else halfway."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        safe = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    return np.where(safe & np.isfinite(share), share, 0.5)
+
+
+def refine_lines(
+    axis: int,
+    points: Floats,
+    nodes: Nodes,
+    classify: Classify,
+    thinnest: float = RESOLUTION,
+    layers: Floats | float = RESOLUTION,
+) -> Nodes:
+    """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
+
+    Where `layers` or `ELASTIC_RESOLUTION` hold, they may lie so far apart.
+
+    Parameters
+    ----------
+    axis : int
+        0 for lines along 1/a, 1 for lines along log omega.
+    points : float array (lines, 3)
+        1/a, log omega and eta of each line; the coordinate along the axis does not count.
+    nodes : Nodes
+        On these lines, in ascending order of line, then coordinate.
+    classify : Classify
+        The solver.
+    thinnest : float
+        Width below which a region between two others need not be found [-].
+    layers : float or float array (lines,)
+        Distance of the two nodes where two layers of one region meet, see `region_code` [-].
+
+    Returns
+    -------
+    Nodes
+        The nodes and both ends of every bracket in which the outcome changes.
+    """
+    layers = np.broadcast_to(layers, len(points))
+    uncounted = np.where(points[:, 2] == 1.0, ELASTIC_RESOLUTION, RESOLUTION)
+
+    def resolution_at(line: Index, below: Codes, above: Codes) -> Floats:
+        many = np.where((below == UNCOUNTED) | (above == UNCOUNTED), uncounted[line], RESOLUTION)
+        return np.where(without_layers(below) == without_layers(above), layers[line], many)
+
+    def refined(inner: Nodes, outer: Nodes) -> tuple[Nodes, Nodes]:
+        """Where the outcome at the inner nodes ends before the outer ones: the last node within, the first beyond."""
+        resolution = resolution_at(inner.line, inner.codes, outer.codes)
+        ends, margins = (np.stack(each, axis=1) for each in ((inner.x, outer.x), (inner.margin, outer.margin)))
+        found = refine_brackets(axis, points[inner.line], ends, margins, inner.codes, outer.codes, classify, resolution)
+        (x, beyond), (margin, margin_beyond) = found.ends.T, found.margins.T
+        return Nodes(inner.line, x, inner.codes, margin), Nodes(inner.line, beyond, found.met, margin_beyond)
+
+    for _ in range(ROUNDS):
+        change = (np.diff(nodes.codes) != 0) & (np.diff(nodes.line) == 0)
+        width = np.diff(nodes.x)
+        resolution = resolution_at(nodes.line[:-1], nodes.codes[:-1], nodes.codes[1:])
+        exact = np.concatenate([[False], change & (width <= 2 * resolution), [False]])  # where a region is known to end
+        narrow = width <= thinnest
+        edge = change & (width > 2 * resolution) & ~(narrow & exact[:-2] & exact[2:])
+        if not edge.any():
+            break
+
+        # where the region at the lower end stops ...
+        first = np.flatnonzero(edge & ~(narrow & exact[:-2]))
+        upper = nodes.take(first + 1)
+        inside, outside = refined(nodes.take(first), upper)
+        # ... and, where another one than that at the upper end begins there, where that at the upper end begins
+        other = outside.codes != upper.codes
+        after = np.flatnonzero(edge & narrow & exact[:-2])
+        upper = Nodes.joined([upper.take(other), nodes.take(after + 1)])
+        lower = Nodes.joined([outside.take(other), nodes.take(after)])
+        last, before = refined(upper, lower)
+        wide = before.x - lower.x > 2 * thinnest
+        on, low, high = before.line[wide], lower.x[wide], before.x[wide]
+        between = [
+            Nodes(on, x, *_classify_at(axis, points[on], x, classify))
+            for x in (low + thinnest, 0.5 * (low + high), high - thinnest)
+        ]
+        nodes = Nodes.merged([nodes, inside, outside, last, before, *between])
+    return nodes
+
+
+def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tuple[Codes, Floats]:
+    """Codes and margins at points whose coordinate along the axis is replaced."""
+    place = points.copy()
+    place[:, axis] = x
+    return classify(*place.T)
+
+
+def outcomes_along(
+    axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
+) -> tuple[Floats, Codes]:
+    """Outcomes along one line of the control space, and where they change, see `refine_lines`.
+
+    Parameters
+    ----------
+    axis : int
+        0 for a line of 1/a, 1 for one of log omega.
+    point : (float, float, float)
+        Of the line; its coordinate along the axis does not count.
+    nodes : float array
+        Ascending; where outcomes are looked for first.
+    classify : Classify
+        The solver.
+
+    Returns
+    -------
+    grid, codes : arrays (points,)
+        The nodes and both ends of every bracket in which the outcome changes, ascending, with the outcome at each.
+    """
+    places = np.tile(point, (nodes.size, 1))
+    places[:, axis] = nodes
+    known = Nodes(np.zeros(nodes.size, dtype=np.intp), nodes, *classify(*places.T))
+    found = refine_lines(axis, np.array([point]), known, classify)
+    return found.x, found.codes

@@ -1,0 +1,283 @@
+"""Curves between regions of outcome, followed from column to column.
+
+A column holds the regions along a line omega = const, see `Column`. Regions that one column has and its neighbour
+lacks are searched for where their slopes lead, so a thin region seen anywhere is followed as long as it is wider than
+`THINNEST`. Where two columns still differ, a region ends, divides or begins between them: further columns follow,
+halfway or near its predicted end, until that place is known to `END`. The ends of equal regions in neighbouring
+columns, joined, are the boundary curves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Iterable
+
+import numpy as np
+
+from rocking._boundary.columns import THINNEST, Column, Lines
+from rocking._boundary.courses import probes_for_lost_regions
+from rocking._boundary.matching import Side, join_sides, learn_slopes, learn_smooth_slopes, match_thresholds
+from rocking._boundary.panels import Panel
+from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
+from rocking._model.outcome_code import impacts_of_code
+
+BATCH_SIZE = 500_000
+"""Blocks that are solved in one call, about: a hundred megabytes [-]."""
+
+END = 1e-4
+"""Distance in log omega within which the end of a region is known [-]."""
+
+CHORD = 1e-4
+"""Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
+
+FINER = 8
+"""Parts into which the distance of two nodes is divided where blocks overturn after two impacts or more [-]."""
+
+NEARLY_ELASTIC = 0.9
+"""Restitution above which regions of overturning after many impacts are resolved less finely than others [-].
+
+There they lie in ever more layers, on which blocks strike a hundred times: the resolution of the others takes several
+times the work.
+"""
+
+UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD = 3e-4, 3e-3, 3e-4
+"""Above `NEARLY_ELASTIC`, for regions of many impacts: in place of `THINNEST`, of `END` and of `CHORD` [-]."""
+
+EFFORT = 10_000_000
+"""Impacts and blocks after which regions are no longer followed, and, as many later, steps no longer halved [-].
+
+It bounds the time for blocks that strike hundreds of times; `open_ends` counts what is left then.
+"""
+
+SEARCHES = 4
+"""Times that a region which goes on beyond a column may start the search in the next ones anew [-]."""
+
+
+class Tracer:
+    """Columns at some restitutions, and the joins between the regions of neighbouring ones.
+
+    The restitutions do not influence each other: they are traced side by side so that the solver gets many blocks in
+    one call.
+
+    Parameters
+    ----------
+    log_omega : float array (columns,)
+        Lines omega = const of the grid, ascending [-].
+    etas : float array (restitutions,)
+        Restitutions, each once [-].
+    classify, classify_regions : Classify
+        The solver with layer codes and with region codes.
+    work : Work
+        Where both note their work.
+
+    Attributes
+    ----------
+    columns : list of Column
+        Of the lines of the grid, for one restitution after the other.
+    joins : dict of lists
+        By panel, the index of its left column: pairs of ends of regions that follow each other on a curve.
+    thinnest : float array (restitutions,)
+        Width in 1/a below which a region of many impacts is not resolved [-].
+    ends : float array (restitutions,)
+        Distance in log omega within which the end of such a region is known [-].
+    chords : float array (restitutions,)
+        Largest distance of a chord from the curve of such a region [-].
+    """
+
+    def __init__(
+        self, log_omega: Floats, etas: Floats, classify: Classify, classify_regions: Classify, work: Work
+    ) -> None:
+        self.size = log_omega.size
+        lines = np.arange(etas.size * self.size)
+        self.points = np.stack([np.zeros(lines.size), np.tile(log_omega, etas.size), np.repeat(etas, self.size)], 1)
+        self.classify = classify
+        self.classify_regions = classify_regions
+        self.work = work
+        elastic = etas > NEARLY_ELASTIC
+        self.thinnest = np.where(elastic, UNCOUNTED_THINNEST, THINNEST)
+        self.ends = np.where(elastic, UNCOUNTED_END, END)
+        self.chords = np.where(elastic, UNCOUNTED_CHORD, CHORD)
+        self.lines = Lines(self.points, classify, np.repeat(self.thinnest, self.size))
+        self.columns: list[Column] = []
+        self.panels = lines[lines % self.size != self.size - 1].tolist()
+        self.joins: dict[int, list[tuple[Side, Side]]] = {}
+        self._open: Counter[int] = Counter()
+        self._tried: set[tuple[int, int, float, int]] = set()
+
+    def trace(self, rows: Floats) -> None:
+        """Find all joins, from nodes of 1/a (nodes, columns)."""
+        self._classify_grid(rows)
+        smooth = set(self.panels)
+        for k in self.panels:
+            if k - 1 in smooth:
+                learn_smooth_slopes((self.columns[k - 1], self.columns[k], self.columns[k + 1]))
+        followed = {eta: self.work.at(eta) + EFFORT for eta in self.points[:: self.size, 2].tolist()}
+        halved = {eta: most + EFFORT for eta, most in followed.items()}
+        changed = set(self.panels)
+        for _ in range(SEARCHES):
+            changed |= self._follow(changed, followed)
+            ends = self._join(changed, halved)
+            changed = self._beyond([end for end in ends if self.work.at(end.left.eta) <= followed[end.left.eta]])
+            if not changed:
+                break
+        else:
+            self._join(changed, halved)
+
+    def open_ends(self, restitution: int) -> int:
+        """Places at which a region of a restitution ends, divides or begins that are known to a step of the grid."""
+        return sum(count for k, count in self._open.items() if k // self.size == restitution)
+
+    def _classify_grid(self, rows: Floats) -> None:
+        """Columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
+        log_omega, etas = self.points[: self.size, 1], self.points[:: self.size, 2]
+        found = []
+        for part in np.array_split(np.arange(self.size), math.ceil(rows.size * etas.size / BATCH_SIZE)):
+            # the restitution varies fastest: such blocks share the first flight
+            grid = rows.T[part, :, None], log_omega[part, None, None], etas
+            x, lines = (
+                each.transpose(2, 0, 1)
+                for each in np.broadcast_arrays(grid[0], part[:, None, None] + self.size * np.arange(etas.size))
+            )
+            codes, margin = (each.transpose(2, 0, 1) for each in self.classify(*grid))
+            edge = np.diff(codes) != 0
+            ends = np.ones((*edge.shape[:2], 1), dtype=bool)
+            kept = np.concatenate([ends, edge], 2) | np.concatenate([edge, ends], 2)
+            found.append(Nodes(lines[kept], x[kept], codes[kept], margin[kept]))
+            many = (codes == UNCOUNTED) | (impacts_of_code(codes) >= 2)
+            inner = many[..., 1:] | many[..., :-1]
+            line, low, high = lines[..., 1:][inner], x[..., :-1][inner], x[..., 1:][inner]
+            finer = (low + (high - low) * np.arange(1, FINER)[:, None] / FINER).ravel()
+            line = np.tile(line, FINER - 1)
+            found.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
+        columns = self.lines.add(Nodes.joined(found))
+        self.columns = [columns[k] for k in range(len(self.points))]
+
+    def _follow(self, panels: Iterable[int], most: dict[float, float]) -> set[int]:
+        """Look in each column for the regions of its neighbours; the panels whose columns changed."""
+        changed: set[int] = set()
+        todo = set(panels)
+        while todo:
+            wanted: dict[int, list[Floats]] = defaultdict(list)
+            matched = {
+                k: match_thresholds(self.columns[k], self.columns[k + 1])
+                for k in sorted(todo)
+                if self.work.at(self.columns[k].eta) < most[self.columns[k].eta]
+            }
+            for k in [*matched, *reversed(matched)]:  # slopes pass from panel to panel in both directions
+                learn_slopes(self.columns[k], self.columns[k + 1], matched[k])
+            for k, pairs in matched.items():
+                left, right = self.columns[k], self.columns[k + 1]
+                for column, x, key in probes_for_lost_regions(left, right, pairs):
+                    line = k if column is left else k + 1
+                    if (line, k, *key) not in self._tried:
+                        self._tried.add((line, k, *key))
+                        wanted[line].append(x)
+            todo = self._look(wanted)
+            changed |= todo
+        return changed
+
+    def _look(self, wanted: dict[int, list[Floats]]) -> set[int]:
+        """Classify points on some lines; the panels beside the lines on which they show something new."""
+        if not wanted:
+            return set()
+        line = np.repeat([*wanted], [sum(x.size for x in xs) for xs in wanted.values()])
+        x = np.concatenate([x for xs in wanted.values() for x in xs])
+        nodes = Nodes(line, x, *self.classify(x, *self.points[line, 1:].T))
+        known = np.concatenate([self.columns[k].code_at(np.concatenate(xs)) for k, xs in wanted.items()])
+        new = np.isin(line, np.unique(line[without_layers(nodes.codes) != known]))
+        if not new.any():
+            return set()
+        before = {int(k): self.columns[k] for k in np.unique(line[new])}
+        panels = set()
+        for k, column in self.lines.add(nodes.take(new)).items():
+            if column.codes != before[k].codes:
+                self.columns[k] = column
+                panels |= {k - 1, k}
+        return panels & set(self.panels)
+
+    def _join(self, lines: set[int], most: dict[float, float]) -> list[Panel]:
+        """Join the regions of neighbouring columns; the panels, or parts of them, in which one ends."""
+        todo: list[Panel] = []
+        for k in sorted(lines):
+            self.joins[k], self._open[k] = [], 0
+            todo.append(Panel(k, self.columns[k], self.columns[k + 1]))
+        last: list[Panel] = []
+        while todo:
+            halved: list[Panel] = []
+            for panel in todo:
+                pairs = match_thresholds(panel.left, panel.right)
+                learn_slopes(panel.left, panel.right, pairs)
+                self.joins[panel.line] += panel.sides(pairs)
+                for gap in panel.gaps(pairs):
+                    if gap.step > self._end_distance(gap) and self.work.at(gap.left.eta) < most[gap.left.eta]:
+                        halved.append(gap)
+                    else:
+                        self.joins[gap.line] += join_sides(gap.left, gap.right)
+                        self._open[gap.line] += gap.step > self._end_distance(gap)
+                        last.append(gap)
+            todo = self._halve(halved)
+        return last
+
+    def _halve(self, panels: list[Panel]) -> list[Panel]:
+        """A column within each panel, and the two panels that it makes of it."""
+        if not panels:
+            return []
+        shares = [panel.share(self._end_distance(panel)) for panel in panels]
+        points = np.array(
+            [
+                (0.0, panel.left.log_omega + share * panel.step, panel.left.eta)
+                for panel, share in zip(panels, shares, strict=True)
+            ]
+        )
+        expected = [panel.expected(share) for panel, share in zip(panels, shares, strict=True)]
+        nodes = [panel.nodes(courses, share) for panel, courses, share in zip(panels, expected, shares, strict=True)]
+        found, codes = self._classified(points, nodes)
+        more, _ = self._classified(
+            points,
+            [
+                panel.inner(courses.missed(x, met), share)
+                for panel, courses, share, x, met in zip(panels, expected, shares, nodes, codes, strict=True)
+            ],
+        )
+        thinnest = np.array([panel.left.thinnest for panel in panels])
+        made = Lines(points, self.classify_regions, thinnest).add(Nodes.joined([found, more]))
+        halves: list[Panel] = []
+        for i, panel in enumerate(panels):
+            column = panel.bounded(made[i])
+            if column is None:
+                self.joins[panel.line] += join_sides(panel.left, panel.right)
+                self._open[panel.line] += 1
+            else:
+                predicted = panel.predicted + (shares[i] != 0.5)
+                halves += [
+                    Panel(panel.line, *columns, predicted) for columns in ((panel.left, column), (column, panel.right))
+                ]
+        return halves
+
+    def _classified(self, points: Floats, x: list[Floats]) -> tuple[Nodes, list[Codes]]:
+        """Region codes at points of some lines: together, and line by line."""
+        sizes = [each.size for each in x]
+        line = np.repeat(np.arange(len(x)), sizes)
+        together = np.concatenate(x)
+        nodes = Nodes(line, together, *self.classify_regions(together, *points[line, 1:].T))
+        ends = np.cumsum(sizes).tolist()
+        return nodes, [nodes.codes[end - size : end] for size, end in zip(sizes, ends, strict=True)]
+
+    def _end_distance(self, panel: Panel) -> float:
+        """Distance in log omega within which the ends of regions in a panel are known [-]."""
+        return float(self.ends[panel.line // self.size]) if panel.uncounted else END
+
+    def _beyond(self, ends: list[Panel]) -> set[int]:
+        """Look for regions that end at a column of the grid beyond it, now that their course is known well."""
+        of_column = {id(column): k for k, column in enumerate(self.columns)}
+        wanted: dict[int, list[Floats]] = defaultdict(list)
+        for end in ends:
+            if of_column.keys().isdisjoint((id(end.left.whole), id(end.right.whole))):
+                continue
+            pairs = match_thresholds(end.left, end.right)
+            for column, x, _ in probes_for_lost_regions(end.left, end.right, pairs):
+                line = of_column.get(id(column.whole))
+                if line is not None:
+                    wanted[line].append(x)
+        return self._look(wanted)

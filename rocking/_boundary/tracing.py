@@ -1,0 +1,213 @@
+"""The curves on the control space that separate the outcomes, found with the solver itself.
+
+`Tracer` follows the regions of outcome from one line omega = const to the next; the pieces are put together to chains,
+and chords that leave their curve by more than `CHORD` are halved.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.errors import integer
+from rocking._base.units import Scalar
+from rocking._boundary.chains import Chains, chains_of
+from rocking._boundary.chords import refine_chords
+from rocking._boundary.columns import THINNEST
+from rocking._boundary.search import Floats, Solve, Work, block_solver, classifier, layer_code, region_code
+from rocking._boundary.tracer import CHORD, END, Tracer
+from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._model.checks import check, check_number, check_one_alpha, check_window
+from rocking._model.outcome_code import decode_outcomes
+from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking._numba.cancellation import StopFlag
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
+"""Blocks that the pulse can uplift."""
+
+
+def overturning_boundary(
+    pulse: str | AbstractPulse,
+    *,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    frequency_ratio: tuple[float, float] = (0.2, 15.0),
+    slenderness: tuple[float, float] = (0.02, 1.0),
+    nodes: int = 401,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """The boundary curves of overturning on a window of the control space.
+
+    Parameters
+    ----------
+    pulse, restitution, alpha
+        As for `peak_response`; scalars.
+    frequency_ratio : (float, float)
+        Window of omega [-], 0 < low < high.
+    slenderness : (float, float)
+        Window of 1/a [-], 0 < low < high <= 1.
+    nodes : int
+        Nodes in each direction on which regions are first looked for, 16 to 4001.
+    stop : StopFlag, optional
+        Once another thread sets it, this ends soon with `StoppedError`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Polylines in the contiguous ragged representation of CF: slenderness(point), frequency_ratio(point), each
+        vertex good to `RESOLUTION` in 1/a (to `ELASTIC_RESOLUTION` for elastic blocks, where one of the two regions
+        has uncounted impacts); row_size(curve); outcome(curve), impacts(curve) of the overturning region
+        that the curve bounds; neighbour_outcome(curve), neighbour_impacts(curve) on the other side (SAFE, 0, or
+        another way of overturning). An outline is cut into curves where its neighbour changes, the point before the
+        cut being repeated; outline(curve) numbers it. `impacts` is -1 for overturning after more than `MANY_IMPACTS`
+        impacts or after impacts that accumulate to rest: that is one region. Attributes: chord_error [-], the largest
+        distance of a chord from its curve, at the middles of the chords; uncounted_chord_error, the same for the
+        curves of regions whose `impacts` are -1; thinnest_region [-], the width in 1/a below which a region is not
+        resolved and its two neighbours are taken to meet; thinnest_uncounted_region [-], the same for regions whose
+        `impacts` are -1 and for safe bands between two of them; end_distance [-], the distance in log omega within
+        which the ends of these regions are known, and below which they are not resolved (`END` for all others);
+        node_distance [-], the largest distance of the nodes in 1/a; unmeasured_chords, the number of chords at whose
+        middle the curve was not found; open_ends, the number of ends of regions that are known to a step of the nodes
+        only.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    StoppedError
+        If `stop` was set.
+
+    Notes
+    -----
+    A region is found if a node lies in it, on any line; the nodes are finer by `FINER` where blocks overturn after
+    two impacts or more. From there it is followed in both directions. So a region can be missed only if it is narrower
+    in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
+    """
+    return overturning_boundaries(
+        pulse,
+        restitution=check_number(RESTITUTION, restitution),
+        alpha=alpha,
+        frequency_ratio=frequency_ratio,
+        slenderness=slenderness,
+        nodes=nodes,
+        stop=stop,
+    )[0]
+
+
+def overturning_boundaries(
+    pulse: str | AbstractPulse,
+    *,
+    restitution: ArrayLike,
+    alpha: Scalar | None = None,
+    frequency_ratio: tuple[float, float] = (0.2, 15.0),
+    slenderness: tuple[float, float] = (0.02, 1.0),
+    nodes: int = 401,
+    stop: StopFlag | None = None,
+) -> list[xr.Dataset]:
+    """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit."""
+    etas = np.atleast_1d(check(RESTITUTION, restitution))
+    angle, made = check_one_alpha(alpha), as_pulse(pulse)
+    curves = trace_curves(block_solver(made, angle, stop), etas, frequency_ratio, slenderness, nodes)
+    for one in curves:
+        one.attrs = {"pulse": made.name, "restitution": one.attrs["restitution"], "alpha": angle} | one.attrs
+    return curves
+
+
+def trace_curves(
+    solve: Solve,
+    etas: NDArray[np.float64],
+    frequency_ratio: tuple[float, float],
+    slenderness: tuple[float, float],
+    nodes: int = 401,
+) -> list[xr.Dataset]:
+    """`overturning_boundaries` by any solver, whose slenderness is 1 at uplift."""
+    nodes = integer("nodes", nodes, 16, 4001)
+    low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
+    bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
+    log_omega = np.linspace(np.log(low), np.log(high), nodes)
+    rows = _rows(bottom, top, nodes, log_omega.size)
+    unique, which = np.unique(etas, return_inverse=True)
+    work = Work(unique)
+    classify, classify_regions = (classifier(solve, code, work) for code in (layer_code, region_code))
+    tracer = Tracer(log_omega, unique, classify, classify_regions, work)
+    tracer.trace(rows)
+    joins = (join for k in tracer.panels for join in tracer.joins[k])
+    refined = refine_chords(chains_of(joins), unique, classify_regions, largest=CHORD, uncounted=tracer.chords, end=END)
+    curves = [
+        _as_dataset(chains).assign_attrs(
+            restitution=float(eta),
+            chord_error=error,
+            uncounted_chord_error=uncounted_error,
+            thinnest_region=THINNEST,
+            thinnest_uncounted_region=float(tracer.thinnest[k]),
+            end_distance=float(tracer.ends[k]),
+            node_distance=float(np.diff(rows, axis=0).max()),
+            open_ends=tracer.open_ends(k),
+            unmeasured_chords=unknown,
+        )
+        for k, (eta, (chains, error, uncounted_error, unknown)) in enumerate(zip(unique, refined, strict=True))
+    ]
+    return [curves[k] for k in which]
+
+
+def _rows(low: float, high: float, nodes: int, columns: int) -> Floats:
+    """Nodes of 1/a (nodes, columns), as dense as half of them uniform and half of them uniform in the logarithm.
+
+    Near onset the regions are thin in 1/a, under strong pulses in a. The nodes between the two ends lie elsewhere in
+    each column, so that a thin region that runs along omega meets one of them sooner or later.
+    """
+    fine = np.linspace(low, high, 16 * nodes)
+    passed = (fine - low) / (high - low) + np.log(fine / low) / np.log(high / low)
+    shift = np.arange(columns) * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 - 0.5
+    place = np.arange(nodes)[:, None] + 0.98 * shift
+    place[0], place[-1] = 0.0, nodes - 1.0
+    return np.interp(place * 2.0 / (nodes - 1), passed, fine)
+
+
+def _as_dataset(chains: Chains) -> xr.Dataset:
+    """The chains, cut where the outcome on their other side changes."""
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+    def curve(values: NDArray[np.integer[Any]], long_name: str) -> tuple[object, ...]:
+        return ("curve", values, {"long_name": long_name, "units": "1"})
+
+    size = chains.chain.size
+    new = np.ones(size, dtype=bool)
+    new[1:] = (np.diff(chains.chain) != 0) | (np.diff(chains.neighbour) != 0)
+    starts = np.flatnonzero(new)
+    # a curve that continues an outline begins with the last point before it, so that no chord is lost
+    repeated = starts[1:][np.diff(chains.chain)[starts[1:] - 1] == 0] - 1
+    points = np.sort(np.concatenate([np.arange(size), repeated]))
+    sizes = np.diff(np.append(starts, size)) + np.isin(starts - 1, repeated)
+    own, neighbour = chains.own[starts], chains.neighbour[starts]
+    outcomes, impacts = zip(*(decode_outcomes(code) for code in (own, neighbour)), strict=True)
+    return xr.Dataset(
+        {
+            "slenderness": (
+                "point",
+                chains.slenderness[points],
+                {"long_name": "g tan(alpha)/a_g (3.6)", "units": "1"},
+            ),
+            "frequency_ratio": (
+                "point",
+                np.exp(chains.log_omega[points]),
+                {"long_name": "frequency ratio omega_g/p (3.6)", "units": "1"},
+            ),
+            "row_size": (
+                "curve",
+                sizes.astype(np.int32),
+                {"long_name": "points", "units": "1", "sample_dimension": "point"},
+            ),
+            "outline": curve(chains.chain[starts].astype(np.int32), "number of the outline that holds the curve"),
+            "outcome": curve(outcomes[0], "outcome in the region that the curve bounds"),
+            "impacts": curve(impacts[0], "impacts before overturning there"),
+            "neighbour_outcome": curve(outcomes[1], "outcome on the other side"),
+            "neighbour_impacts": curve(impacts[1], "impacts before overturning on the other side"),
+        }
+    )

@@ -1,0 +1,288 @@
+"""Parameters of the command line: groups, or a block and a pulse with units."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
+from rocking._cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
+from rocking._excitation.pulses import AbstractPulse, get_pulse, pulse_names
+from rocking._model.block import Block
+from rocking._model.checks import check_window
+from rocking._model.parameters import FREQUENCY_RATIO
+
+if TYPE_CHECKING:
+    from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.table import BlockTable
+
+_SI_UNITS = {
+    "width": "m",
+    "height": "m",
+    "half_width": "m",
+    "half_height": "m",
+    "peak_acceleration": "m/s2",
+    "pulse_period": "s",
+    "period_min": "s",
+    "period_max": "s",
+}
+"""Options with units."""
+
+MAX_ERRORS = 20
+"""Lines of a file that an error names at most."""
+
+_SIZES = ("width", "height", "half_width", "half_height")
+
+
+@dataclass(frozen=True)
+class Params:
+    """One block under one pulse, as groups; `problem` if it was given with units."""
+
+    pulse: AbstractPulse
+    slenderness: float
+    frequency_ratio: float
+    restitution: float
+    alpha: float | None
+    problem: BlockProblem | None = None
+
+    @property
+    def groups(self) -> dict[str, float | None]:
+        """Arguments of the solver."""
+        return {
+            "slenderness": self.slenderness,
+            "frequency_ratio": self.frequency_ratio,
+            "restitution": self.restitution,
+            "alpha": self.alpha,
+        }
+
+
+@contextmanager
+def option_errors() -> Iterator[None]:
+    """Convert an invalid argument into an error of the command line that names the option."""
+    try:
+        yield
+    except InvalidArgumentError as error:
+        option = "--" + error.parameter.split("[")[0].split(",")[0].replace("_", "-")
+        errors = error.errors if isinstance(error, SeveralArgumentsError) else [error]
+        texts = [f"{len(errors)} values are not allowed"] if len(errors) > 1 else []
+        texts += [_error_text(one) for one in errors[:MAX_ERRORS]]
+        if len(errors) > MAX_ERRORS:
+            texts.append(f"and {len(errors) - MAX_ERRORS} more")
+        raise typer.BadParameter("\n".join(texts), param_hint=option) from None
+
+
+def _error_text(error: InvalidArgumentError) -> str:
+    """One line about an argument; of a file, where in it."""
+    place = error.parameter.partition(",")[2].strip()
+    text = f"{error.value!r} is not allowed; allowed: {error.allowed}"
+    if error.value is None:
+        text = f"missing; {error.allowed}"
+    if error.allowed.startswith("missing unit"):
+        text = f"{error.value!r}: {error.allowed}"
+    return f"{place}: {text}" if place else text
+
+
+def read_pulse(text: str) -> AbstractPulse:
+    """The pulse of a name, or else that in a file; a leading minus mirrors either.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the text is neither a name nor a file that holds a pulse.
+    """
+    name = text.removeprefix("-")
+    if name in pulse_names():
+        return get_pulse(text)
+    from rocking._excitation.sampled import SampledPulse
+
+    try:
+        found = SampledPulse.from_file(name)
+    except InvalidArgumentError as error:
+        if error.parameter != "path":
+            raise
+        allowed = f"one of {', '.join(pulse_names())}, or {error.allowed}"
+        raise InvalidArgumentError("pulse", text, allowed) from None
+    return found.mirrored() if text.startswith("-") else found
+
+
+def read_params(options: ProblemOptions) -> Params:
+    """A block under a pulse.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If groups and units are mixed, an option is missing, or a value is not allowed.
+    """
+    if not _has_units(options):
+        for name in ("slenderness", "frequency_ratio"):
+            if getattr(options, name) is None:
+                raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
+        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+        slenderness, ratio = options.slenderness or 0.0, options.frequency_ratio or 0.0
+        return Params(read_pulse(options.pulse), slenderness, ratio, _eta(options.restitution), angle or None)
+    _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
+    block = read_block(options)
+    return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "pulse_period"))
+
+
+def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
+    """A block under pulses of one amplitude, at the lowest frequency ratio, and the window of frequency ratios.
+
+    Raises
+    ------
+    InvalidArgumentError
+        As `read_params`.
+    """
+    if not _has_units(options):
+        if options.slenderness is None:
+            raise InvalidArgumentError("slenderness", None, "a number; or a block and an amplitude with units instead")
+        window = check_window(FREQUENCY_RATIO, low, high)
+        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+        eta = _eta(options.restitution)
+        return Params(read_pulse(options.pulse), options.slenderness, window[0], eta, angle or None), window
+    _refuse_groups(options, ("slenderness", "alpha"))
+    block = read_block(options)
+    window = _window(options, block, low, high)
+    return _of_problem(options, block, _given(options, "peak_acceleration"), _period(block, window[0])), window
+
+
+def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
+    """A block without amplitude, and the window of frequency ratios.
+
+    Raises
+    ------
+    InvalidArgumentError
+        As `read_params`.
+    """
+    if not _has_units(options):
+        window = check_window(FREQUENCY_RATIO, low, high)
+        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+        return Params(read_pulse(options.pulse), 1.0, window[0], _eta(options.restitution), angle or None), window
+    _refuse_groups(options, ("alpha",))
+    block = read_block(options)
+    window = _window(options, block, low, high)
+    return _of_problem(options, block, block.uplift_acceleration, _period(block, window[0])), window
+
+
+def read_block(options: SizeOptions) -> Block:
+    """The block of the sizes.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If one is missing, given twice, or not allowed.
+    """
+    sizes = {}
+    for name in ("width", "height"):
+        half, whole = getattr(options, f"half_{name}"), getattr(options, name)
+        if half is not None and whole is not None:
+            raise InvalidArgumentError(name, whole, f"one of --{name} and --half-{name}")
+        sizes[name] = 0.5 * _positive(options, name) if half is None else _positive(options, f"half_{name}")
+    return Block(sizes["width"], sizes["height"])
+
+
+def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
+    """The blocks of a CSV file; `-` is standard input.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the file cannot be read, or blocks are also given by options.
+    """
+    from rocking._dimensional.table import read_table
+
+    for name in (*_SIZES, "peak_acceleration", "pulse_period", "slenderness", "frequency_ratio", "alpha"):
+        if getattr(options, name) is not None:
+            raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the file --blocks")
+    try:
+        data = sys.stdin.buffer.read() if path == "-" else Path(path).read_bytes()  # line breaks in names are kept
+        text = data.decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidArgumentError("blocks", path, f"a CSV file that can be read: {error}") from None
+    given = options.restitution or "housner"
+    return read_table(text, read_pulse(options.pulse), given if given == "housner" else _eta(given))
+
+
+def read_duration(text: str | None, params: Params) -> float | None:
+    """Length of a history in tau = p t: a number, or a time with a unit for a block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is neither.
+    """
+    if text is None:
+        return None
+    if params.problem is not None:
+        return si_value("duration", text, "s") * params.problem.block.frequency_parameter
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidArgumentError("duration", text, "a number tau = p t; seconds for a block with units") from None
+
+
+def _has_units(options: ShapeOptions) -> bool:
+    return any(getattr(options, name, None) for name in _SI_UNITS)
+
+
+def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
+    for name in names:
+        if getattr(options, name) is not None:
+            raise InvalidArgumentError(name, getattr(options, name), "either groups or a block and a pulse with units")
+
+
+def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | str, period: float) -> Params:
+    from rocking._dimensional.problem import BlockProblem
+
+    given = options.restitution or "housner"
+    eta = "housner" if given == "housner" else _eta(given)
+    pulse = read_pulse(options.pulse)
+    problem = BlockProblem(block, pulse, peak_acceleration, period, eta)
+    groups: Mapping[str, float] = problem.groups  # type: ignore[assignment]
+    return Params(pulse, **groups, problem=problem)
+
+
+def _window(options: WindowOptions, block: Block, low: float, high: float) -> tuple[float, float]:
+    """Frequency ratios of the periods, by default as for groups."""
+    shortest = None if options.period_min is None else _positive(options, "period_min")
+    longest = None if options.period_max is None else _positive(options, "period_max")
+    if shortest is not None and longest is not None:
+        number("period_max", longest, shortest, math.inf, closed="neither", unit="s")
+    ends = low if longest is None else _ratio(block, longest), high if shortest is None else _ratio(block, shortest)
+    return check_window(FREQUENCY_RATIO, *ends)
+
+
+def _ratio(block: Block, period: float) -> float:
+    return 2.0 * math.pi / (period * block.frequency_parameter)
+
+
+def _period(block: Block, ratio: float) -> float:
+    return 2.0 * math.pi / (ratio * block.frequency_parameter)
+
+
+def _given(options: SizeOptions, name: str) -> str:
+    text: str | None = getattr(options, name)
+    if text is None:
+        raise InvalidArgumentError(name, None, "required with the other options that have units")
+    return text
+
+
+def _positive(options: SizeOptions, name: str) -> float:
+    return positive(name, _given(options, name), _SI_UNITS[name])
+
+
+def _eta(text: str | None) -> float:
+    allowed = "a number, or housner for a block with units"
+    if text is None:
+        raise InvalidArgumentError("restitution", None, allowed)
+    try:
+        return plain_number("restitution", text)
+    except InvalidArgumentError:
+        raise InvalidArgumentError("restitution", text, allowed) from None

@@ -1,0 +1,166 @@
+"""Options that several commands share, declared once, and the decorator that gives them to a command.
+
+The fields of `SizeOptions` and of the classes derived from it are the options. A command declares one argument of
+that type; `with_options` replaces it in the signature that typer reads by the fields.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import re
+from collections.abc import Callable
+from dataclasses import MISSING, dataclass, fields
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+
+_GROUPS = "In groups"
+_UNITS = "With units"
+
+
+def _in_groups(text: str) -> Any:
+    # a word in brackets would be taken for markup
+    return typer.Option(help=re.sub(r"\[(?=[a-z])", r"\\[", text), rich_help_panel=_GROUPS)
+
+
+def _with_units(text: str) -> Any:
+    return typer.Option(help=text, rich_help_panel=_UNITS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeOptions:
+    """The size of a block."""
+
+    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.")] = None
+    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.")] = None
+    half_width: Annotated[str | None, _with_units("b, such as 0.2m.")] = None
+    half_height: Annotated[str | None, _with_units("h, such as '80 cm'.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShapeOptions(SizeOptions):
+    """A pulse without amplitude and a block: its slenderness angle, or its size."""
+
+    pulse: Annotated[
+        str,
+        typer.Option(
+            help="Pulse, such as sine, or a file of samples: columns of numbers (accelerations, or times and "
+            "accelerations) or JSON; a leading minus mirrors it."
+        ),
+    ]
+    restitution: Annotated[
+        str | None,
+        typer.Option(
+            help=f"{RESTITUTION.help}, {RESTITUTION.interval}; housner for a block with units (its default): (2.4), 0 "
+            "where negative."
+        ),
+    ] = None
+    alpha: Annotated[str | None, _in_groups(f"{ALPHA.help}, such as '20 deg'.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProblemOptions(ShapeOptions):
+    """A block under a pulse: in groups, or with units."""
+
+    slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
+    frequency_ratio: Annotated[float | None, _in_groups(f"{FREQUENCY_RATIO.help}.")] = None
+    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
+    pulse_period: Annotated[
+        str | None,
+        _with_units("T_p = 2 pi/omega_g, such as 0.5s; a half sine or rectangular pulse lasts half of it."),
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class WindowOptions(ShapeOptions):
+    """A block under pulses of all periods of a window."""
+
+    period_min: Annotated[str | None, _with_units("Shortest T_p, such as 0.1s.")] = None
+    period_max: Annotated[str | None, _with_units("Longest T_p, such as 2s.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpectrumOptions(WindowOptions):
+    """The same with an amplitude."""
+
+    slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
+    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordOptions(SizeOptions):
+    """A block, and what the file of a record does not state."""
+
+    restitution: Annotated[
+        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or housner: (2.4).")
+    ] = "housner"
+    scale: Annotated[float, typer.Option(help="Factor of the record.")] = 1.0
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.")
+    ] = None
+    time_step: Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")] = None
+    component: Annotated[str | None, typer.Option(help="Column or trace of a file with several.")] = None
+    vertical: Annotated[
+        str | None, typer.Option(help="File of the vertical component, upwards, or its column or trace in the file.")
+    ] = None
+    baseline_order: Annotated[
+        int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
+    ] = None
+
+
+@dataclass(frozen=True)
+class OutputOptions:
+    """Format of the output; text without."""
+
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False
+    csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False
+    units: Annotated[bool, typer.Option("--units", help="Name units in the header of CSV.")] = False
+
+
+@dataclass(frozen=True)
+class PictureOptions:
+    """Where a picture goes."""
+
+    output: Annotated[
+        str | None, typer.Option("--output", "-o", help="File to write, .png or .svg; by default a window opens.")
+    ] = None
+
+
+FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
+FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
+
+
+def with_options(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose arguments of the above types are options of the command line, one for each field."""
+    hints = get_type_hints(command, include_extras=True)
+    parameters: list[inspect.Parameter] = []
+    groups: dict[str, type[Any]] = {}
+    for parameter in inspect.signature(command).parameters.values():
+        hint = hints[parameter.name]
+        if not (isinstance(hint, type) and issubclass(hint, SizeOptions | OutputOptions | PictureOptions)):
+            parameters.append(parameter.replace(annotation=hint, kind=parameter.KEYWORD_ONLY))
+            continue
+        groups[parameter.name] = hint
+        types = get_type_hints(hint, include_extras=True)
+        for field in fields(hint):
+            default = inspect.Parameter.empty if field.default is MISSING else field.default
+            parameters.append(
+                inspect.Parameter(
+                    field.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=types[field.name]
+                )
+            )
+
+    @functools.wraps(command)
+    def run(**values: Any) -> None:
+        given = {
+            name: kind(**{field.name: values.pop(field.name) for field in fields(kind)})
+            for name, kind in groups.items()
+        }
+        command(**given, **values)
+
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return run

@@ -1,0 +1,320 @@
+"""`rocking plot`: pictures of what the other commands print, in a file or a window.
+
+This module holds the signatures and puts the pictures together; `rocking.plot` draws them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking._cli.options import (
+    FrequencyRatioMax,
+    FrequencyRatioMin,
+    PictureOptions,
+    ProblemOptions,
+    RecordOptions,
+    SpectrumOptions,
+    WindowOptions,
+    with_options,
+)
+from rocking._cli.progress import progress
+from rocking._cli.record import File, file_errors, read_problem
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking._cli.arguments import Params
+
+plot = typer.Typer(no_args_is_help=True, help="Draw a picture: png, svg, or a window.")
+
+SIZE = (5.2, 3.4)
+"""Width and height of a picture [in]."""
+
+POINTS = 600
+"""Points of a spectrum, columns of a map."""
+
+ROWS = 300
+"""Rows of a map."""
+
+AMPLITUDE = (1.0, 12.0)
+"""Amplitudes a of a map [-]."""
+
+
+@plot.command()
+@with_options
+def response(block: ProblemOptions, picture: PictureOptions) -> None:
+    """Peak rotation against the amplitude of the pulse, with the block in question marked."""
+    from rocking._cli import arguments
+
+    with _picture(picture) as draw:
+        params = arguments.read_params(block)
+        draw(lambda pictures, figure: pictures.response(_found(params), figure.add_subplot()))
+
+
+@plot.command()
+@with_options
+def history(
+    block: ProblemOptions,
+    picture: PictureOptions,
+    duration: Annotated[
+        str | None, typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.")
+    ] = None,
+) -> None:
+    """Rotation and ground acceleration of one block against time."""
+    from rocking._cli import arguments
+
+    with _picture(picture) as draw:
+        params = arguments.read_params(block)
+        length = arguments.read_duration(duration, params)
+
+        def panels(pictures: Any, figure: Any) -> None:
+            from rocking._dimensional.curves import in_si_units
+            from rocking._history.time_history import time_history
+
+            found = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
+            data = found if params.problem is None else in_si_units(found, params.problem)
+            _draw_history(pictures, figure, data)
+
+        draw(panels)
+
+
+@plot.command()
+@with_options
+def record(
+    file: File,
+    block: RecordOptions,
+    picture: PictureOptions,
+    duration: Annotated[
+        str | None, typer.Option(help="Length of time that is drawn, such as 20s; by default the record and some more.")
+    ] = None,
+) -> None:
+    """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
+    from rocking._dimensional.curves import block_record_history
+    from rocking._dimensional.record_response import respond_to_record
+
+    with _picture(picture) as draw, file_errors():
+        motion, shape, restitution = read_problem(file, block)
+
+        def panels(pictures: Any, figure: Any) -> None:
+            data = block_record_history(shape, motion, scale=block.scale, restitution=restitution, duration=duration)
+            _draw_history(pictures, figure, data)
+
+        draw(panels)
+        found = respond_to_record(shape, motion, scale=block.scale, restitution=restitution)
+        for warning in found.warnings:
+            typer.echo(f"warning: {warning}", err=True)
+
+
+@plot.command()
+@with_options
+def spectrum(
+    block: SpectrumOptions,
+    picture: PictureOptions,
+    frequency_ratio_min: FrequencyRatioMin = 0.5,
+    frequency_ratio_max: FrequencyRatioMax = 12.0,
+) -> None:
+    """Peak rotation against the frequency ratio, or against the period."""
+    from rocking._cli import arguments
+
+    with _picture(picture) as draw:
+        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max)
+
+        def panel(pictures: Any, figure: Any) -> None:
+            ax = pictures.spectrum(_spectrum(params, window), figure.add_subplot(), label="survives")
+            ax.legend(frameon=True, framealpha=1.0)
+
+        draw(panel)
+
+
+@plot.command()
+@with_options
+def boundary(
+    block: WindowOptions,
+    picture: PictureOptions,
+    frequency_ratio_min: FrequencyRatioMin = 0.2,
+    frequency_ratio_max: FrequencyRatioMax = 15.0,
+) -> None:
+    """Boundaries of overturning: amplitude against the frequency ratio, or against the period."""
+    from rocking._cli import arguments
+
+    with _picture(picture) as draw:
+        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
+        draw(lambda pictures, figure: pictures.boundary(_boundary(params, window), figure.add_subplot()).legend())
+
+
+@plot.command("map")
+@with_options
+def control_map(
+    block: WindowOptions,
+    picture: PictureOptions,
+    frequency_ratio_min: FrequencyRatioMin = 0.5,
+    frequency_ratio_max: FrequencyRatioMax = 12.0,
+) -> None:
+    """Peak rotation and outcome over amplitude and frequency ratio, or over peak acceleration and period."""
+    from rocking._cli import arguments
+
+    with _picture(picture) as draw:
+        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
+        draw(lambda pictures, figure: pictures.control_map(_map(params, window), figure.add_subplot()))
+
+
+@plot.command()
+@with_options
+def cube(
+    file: Annotated[str, typer.Argument(help="Spectrum cube, such as results/spectra/sine/eta-0.85.nc.")],
+    picture: PictureOptions,
+) -> None:
+    """Maps of a spectrum cube, one for each slenderness angle."""
+    from rocking._base.errors import DatasetError
+
+    with _picture(picture) as draw:
+
+        def panels(pictures: Any, figure: Any) -> None:
+            from rocking._datasets.cube import read_dataset
+
+            try:
+                data = read_dataset(file)
+            except (DatasetError, OSError) as error:
+                raise typer.BadParameter(str(error), param_hint="FILE") from None
+            angles = data.sizes.get("alpha", 1)
+            columns = min(angles, 4)
+            rows = -(-angles // columns)
+            figure.set_size_inches(1.4 + 2.4 * columns, 0.6 + 2.5 * rows)
+            axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel().tolist()
+            for ax in axes[angles:]:
+                ax.set_axis_off()
+            pictures.cube(data, axes[:angles])
+
+        draw(panels)
+
+
+@plot.command()
+@with_options
+def fragility(
+    configuration: Annotated[
+        str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
+    ],
+    picture: PictureOptions,
+) -> None:
+    """Fragility curves of the first limit state of a suite of records, one panel for each block."""
+    from rocking._cli.fragility import read_suite, suite_fragility
+
+    with _picture(picture) as draw:
+        data = suite_fragility(read_suite(configuration))
+
+        def panels(pictures: Any, figure: Any) -> None:
+            first = data.isel(demand=0)
+            blocks = first.sizes["block"]
+            figure.set_size_inches(0.6 + 2.8 * blocks, 3.2)
+            axes = figure.subplots(1, blocks, sharex=True, sharey=True, squeeze=False)[0]
+            for k, ax in enumerate(axes):
+                pictures.fragility(first.isel(block=k), ax)
+                ax.label_outer()
+                ax.get_legend().remove()
+            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+
+        draw(panels)
+
+
+@contextmanager
+def _picture(options: PictureOptions) -> Iterator[Callable[[Callable[[Any, Any], Any]], None]]:
+    """A function that makes the figure, lets another draw into it, and saves or shows it; errors name the option."""
+    from rocking._cli.arguments import option_errors
+
+    def draw(panels: Callable[[Any, Any], Any]) -> None:
+        pictures, output = _pictures()
+        with output.style():
+            with progress("drawing"):
+                figure = output.new_figure(options.output, SIZE)
+                panels(pictures, figure)
+                if options.output is not None:
+                    output.save_figure(figure, options.output)
+            if options.output is None:
+                output.show_figure(figure)
+
+    with option_errors():
+        yield draw
+
+
+def _pictures() -> tuple[Any, Any]:
+    """The modules `rocking.plot` and `rocking.plot.output`."""
+    try:
+        import rocking.plot as pictures
+        from rocking.plot import output
+    except ModuleNotFoundError as error:
+        typer.echo(f"rocking plot: {error}", err=True)
+        raise typer.Exit(1) from error
+    return pictures, output
+
+
+def _draw_history(pictures: Any, figure: Any, data: xr.Dataset) -> None:
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
+    pictures.history(data, upper).set_xlabel("")
+    pictures.ground_acceleration(data, lower)
+
+
+def _found(params: Params) -> Any:
+    from rocking._dimensional.response import respond
+    from rocking._solver.peak_response import peak_response
+
+    if params.problem is not None:
+        return respond(params.problem)
+    return peak_response(params.pulse, **params.groups)  # type: ignore[arg-type]
+
+
+def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
+    import numpy as np
+
+    from rocking._dimensional.curves import block_spectrum
+    from rocking._dimensional.problem import period_of
+    from rocking._solver.peak_response import peak_response
+
+    if params.problem is None:
+        groups = params.groups | {"frequency_ratio": np.linspace(*window, POINTS)}
+        return peak_response(params.pulse, **groups).to_xarray()  # type: ignore[arg-type]
+    unit = period_of(params.problem.block, 1.0)
+    return block_spectrum(
+        params.problem.block,
+        params.problem.pulse,
+        peak_acceleration=params.problem.peak_acceleration,
+        period=np.geomspace(unit / window[1], unit / window[0], POINTS),
+        restitution=params.restitution,
+    )
+
+
+def _boundary(params: Params, window: tuple[float, float]) -> xr.Dataset:
+    from rocking._boundary.tracing import overturning_boundary
+    from rocking._dimensional.curves import add_si_axes
+
+    curves = overturning_boundary(
+        params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
+    )
+    return curves if params.problem is None else add_si_axes(curves, params.problem.block)
+
+
+def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:
+    import numpy as np
+
+    from rocking._dimensional.problem import period_of
+    from rocking._solver.peak_response import peak_response
+
+    amplitude = np.geomspace(*AMPLITUDE, ROWS)
+    omega = np.linspace(*window, POINTS) if params.problem is None else np.geomspace(*window, POINTS)[::-1]
+    found = peak_response(
+        params.pulse,
+        slenderness=1.0 / amplitude[:, None],
+        frequency_ratio=omega,
+        restitution=params.restitution,
+        alpha=params.alpha,
+    ).to_xarray()
+    if params.problem is None:
+        return found
+    block = params.problem.block
+    return found.assign_coords(
+        peak_acceleration=("slenderness", block.uplift_acceleration * amplitude, {"units": "m s-2"}),
+        period=("frequency_ratio", period_of(block, 1.0) / omega, {"units": "s"}),
+    ).swap_dims(slenderness="peak_acceleration", frequency_ratio="period")

@@ -1,0 +1,398 @@
+"""Output of the `rocking` command: responses of the solver, printed as text, JSON or CSV."""
+
+from __future__ import annotations
+
+import json as json_writer
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import typer
+
+from rocking._base.errors import InvalidArgumentError, in_range
+from rocking._cli.arguments import Params
+from rocking._cli.options import OutputOptions
+from rocking._cli.progress import progress
+from rocking._datasets.csv_text import csv_text
+from rocking._dimensional.threshold import Threshold, threshold_text
+from rocking._model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
+from rocking._model.outcome import Outcome
+from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
+
+if TYPE_CHECKING:
+    from rocking._dimensional.assessment import Assessment
+    from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.table import BlockTable
+    from rocking._history.contact import ContactExtremes
+
+
+@dataclass(frozen=True)
+class Form:
+    """Format of the output; `units`: the header of CSV names units."""
+
+    kind: Literal["text", "json", "csv"]
+    units: bool = False
+
+
+def output_format(options: OutputOptions, default: Literal["text", "csv"] = "text") -> Form:
+    """The output format of the options; `default` without any.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If options exclude each other.
+    """
+    if options.json and options.csv:
+        raise InvalidArgumentError("csv", True, "one of --json and --csv")
+    kind: Literal["text", "json", "csv"] = "json" if options.json else "csv" if options.csv else default
+    if options.units and kind != "csv":
+        raise InvalidArgumentError("units", True, "with --csv")
+    return Form(kind, options.units)
+
+
+def response(params: Params, form: Form) -> None:
+    """Print outcome and peak of one block; with alpha also friction demand and validity of the rocking model.
+
+    For a block with units also its rotation in degrees, displacement, changes of the outcome and warnings.
+    """
+    with progress("solving the block"):
+        result, sentence = _response(params)
+    print_answer(result, [sentence], form)
+
+
+def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -> None:
+    """Print the response of one block; text begins with these sentences and the warnings."""
+    if form.kind == "json":
+        print_json(result)
+    elif form.kind == "csv":
+        print_csv({name: [_csv_cell(value)] for name, value in result.items()}, form)
+    else:
+        for line in (*sentences, *(f"warning: {text}" for text in result.get("warnings", ()))):
+            typer.echo(line)
+        names = dict.fromkeys((*(name for name in _FIRST_LINES if name in result), *result))
+        print_text({name: _words(name, result) for name in names if name not in _NO_LINES})
+
+
+def _response(params: Params) -> tuple[dict[str, Any], str]:
+    """What is printed of one block, by name, and the outcome in words."""
+    found = _solve(params, params.frequency_ratio)
+    result = _groups(params) | {name: column[0] for name, column in _columns(found).items()}
+    sentence = Outcome[result["outcome"]].sentence
+    if params.problem is not None:
+        from rocking._dimensional.assessment import assess
+
+        assessment = assess(params.problem)
+        sentence = assessment.sentence
+        result |= _contact(assessment.contact) | _dimensional(params.problem, result["peak_rotation"], assessment)
+    elif params.alpha is not None:
+        from rocking._history.contact import contact_extremes
+        from rocking._history.motion import build_motion
+
+        contact = contact_extremes(build_motion(params.pulse, **params.groups))  # type: ignore[arg-type]
+        sentence = contact.sentence
+        result |= _contact(contact)
+    return result, sentence
+
+
+def responses(table: BlockTable, form: Form) -> None:
+    """Print the responses of many blocks: CSV, or JSON with one list for each column."""
+    from rocking._dimensional.table import respond_table
+
+    with progress(f"solving {len(table.problems)} blocks"):
+        columns = respond_table(table)
+    if form.kind == "json":
+        print_json(columns)
+    else:
+        print_csv(columns, form)
+
+
+def _contact(found: ContactExtremes) -> dict[str, Any]:
+    return {
+        "friction_demand": number(found.largest_friction_demand),
+        "lifts_off": found.lifts_off,
+        "rocking_model_applies": found.rocking_applies,
+    }
+
+
+def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessment) -> dict[str, Any]:
+    """The response in SI units and degrees."""
+    block, margins = problem.block, assessment.margins
+    rotation = None if peak is None else peak * block.alpha
+    thresholds = assessment.thresholds
+    return {
+        "peak_rotation_deg": None if rotation is None else math.degrees(rotation),
+        "top_displacement": None if rotation is None else block.top_displacement(rotation),
+        "alpha_deg": math.degrees(block.alpha),
+        "half_width": block.half_width,
+        "half_height": block.half_height,
+        "half_diagonal": block.half_diagonal,
+        "frequency_parameter": block.frequency_parameter,
+        "peak_acceleration": problem.peak_acceleration,
+        "pulse_period": problem.period,
+        "pulse_duration": problem.duration,
+        "uplift_acceleration": block.uplift_acceleration,
+        "largest_safe_acceleration": assessment.largest_safe_acceleration,
+        "largest_safe_friction_demand": assessment.largest_safe_friction_demand,
+        "nearest_acceleration": None if margins is None else margins.nearest_acceleration,
+        "nearest_period": None if margins is None else margins.nearest_period,
+        "thresholds": None
+        if thresholds is None
+        else [{"peak_acceleration": one.value, "overturns_above": one.overturns_above} for one in thresholds],
+        "margin": assessment.margin,
+        "warnings": assessment.warnings,
+    }
+
+
+_FIRST_LINES = (
+    *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
+    *("nearest_acceleration", "nearest_period", "pulse_period", "pulse_duration"),
+)
+"""What the values of the text output of a block with units begin with."""
+
+_NO_LINES = ("margin", "warnings", "overturns_above")
+"""What the text output says before the values, or in one line with another value."""
+
+_UNITS = {
+    "alpha": "rad",
+    "frequency_parameter": "rad/s",
+    "angular_velocity_deg": "deg/s",
+    "annual_rate": "1/year",
+    "gravity": "m/s2",
+    **dict.fromkeys(("peak_rotation_deg", "rotation_deg", "alpha_deg"), "deg"),
+    **dict.fromkeys(("pulse_period", "pulse_duration", "nearest_period", "period", "time", "impact_time_s"), "s"),
+    **dict.fromkeys(("time_step", "significant_duration", "mean_period"), "s"),
+    **dict.fromkeys(("top_displacement", "half_width", "half_height", "half_diagonal", "peak_displacement"), "m"),
+    **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
+    **dict.fromkeys(("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "acceleration"), "m/s2"),
+    **dict.fromkeys(
+        ("nearest_acceleration", "thresholds", "pulse_peak_acceleration", "peak_vertical_acceleration"), "m/s2"
+    ),
+}
+"""Units that the text output names beside a value or a column; others are dimensionless."""
+
+
+_NEAREST = {"nearest_acceleration": "peak_acceleration", "nearest_period": "pulse_period"}
+"""Values at which the outcome changes, and those that were asked for."""
+
+
+def _words(name: str, result: Mapping[str, Any]) -> Any:
+    """A value of the text output; values at which the outcome changes are rounded to the safe side."""
+    value = result[name]
+    if value is None:
+        return None
+    if name == "thresholds":
+        return _changes([one["peak_acceleration"] for one in value], [one["overturns_above"] for one in value])
+    if name == "threshold_scale":
+        return _changes(value, result["overturns_above"])
+    if name in _NEAREST:
+        overturns_above = (value > result[_NEAREST[name]]) != result["overturned"]
+        return threshold_text(value, 6, overturns_above=overturns_above)
+    if name in ("largest_safe_acceleration", "overturning_scale"):
+        return threshold_text(value, 6)
+    return value
+
+
+def _changes(values: Sequence[float], overturns_above: Sequence[bool]) -> str:
+    return ", ".join(map(str, map(Threshold, values, overturns_above))) or "none"
+
+
+def _csv_cell(value: Any) -> Any:
+    """A value of one cell: texts of a list separated by semicolons, numbers and truth values by spaces."""
+    if not isinstance(value, list):
+        return value
+    if all(isinstance(one, str) for one in value):
+        return "; ".join(value)
+    return " ".join(json_writer.dumps(one["peak_acceleration"] if isinstance(one, dict) else one) for one in value)
+
+
+def history(params: Params, duration: float | None, samples: int, contact: bool, form: Form) -> None:
+    """Print the motion of one block, with `contact` also the reactions of the ground and the friction demand."""
+    from rocking._history.contact import ATTRIBUTES, COLUMNS
+    from rocking._history.time_history import time_history
+
+    with progress("solving the block"):
+        motion = time_history(
+            params.pulse,
+            **params.groups,  # type: ignore[arg-type]
+            duration=duration,
+            samples=samples,
+            contact=contact,
+        )
+    names = ["tau", "rotation", "angular_velocity", "ground_acceleration", *(COLUMNS if contact else ())]
+    columns = {name: [number(value) for value in motion[name].values.tolist()] for name in names}
+    about = _groups(params) | {
+        "outcome": str(motion.attrs["outcome"]),
+        "overturned": bool(motion.attrs["overturned"]),
+        "peak_rotation": number(float(motion.attrs["peak_rotation"])),
+        "impact_time": motion["impact_time"].values.tolist(),
+    }
+    if contact:
+        about |= {name: number(float(motion.attrs[name])) for name in ATTRIBUTES}
+        about |= {"lifts_off": bool(motion.attrs["lifts_off"]), "warnings": motion.attrs["warnings"] or None}
+    shown = columns
+    if params.problem is not None:
+        from rocking._dimensional.curves import in_si_units
+
+        moved = in_si_units(motion, params.problem)
+        si = {
+            "time": moved["time"].values.tolist(),
+            "rotation_deg": np.degrees(moved["rotation"].values).tolist(),
+            "angular_velocity_deg": np.degrees(moved["angular_velocity"].values).tolist(),
+            "top_displacement": moved["top_displacement"].values.tolist(),
+            "acceleration": moved["ground_acceleration"].values.tolist(),
+        }
+        shown = si | {name: columns[name] for name in columns if name in COLUMNS}
+        columns = columns | si
+        about |= {"impact_time_s": moved["impact_time"].values.tolist()}
+    if form.kind == "csv":
+        print_csv(columns, form)
+    elif form.kind == "json":
+        print_json(about | columns)
+    else:
+        print_text(about)
+        print_table(shown)
+
+
+def spectrum(params: Params, window: tuple[float, float], points: int, form: Form) -> None:
+    """Print the peak against the frequency ratio, for a block with units against the period."""
+    in_range("points", points, 2, 1_000_000)
+    frequency_ratio = np.geomspace(*window, points)
+    with progress(f"solving {points} blocks"):
+        found = _solve(params, frequency_ratio)
+    columns = {"frequency_ratio": frequency_ratio.tolist()} | _columns(found)
+    about = {name: value for name, value in _groups(params).items() if name != "frequency_ratio"}
+    shown = {name: columns[name] for name in ("frequency_ratio", "peak_rotation", "outcome", "impacts")}
+    if params.problem is not None:
+        from rocking._dimensional.curves import block_spectrum
+        from rocking._dimensional.problem import period_of
+
+        problem = params.problem
+        period = period_of(problem.block, 1.0) / frequency_ratio
+        curve = block_spectrum(
+            problem.block,
+            problem.pulse,
+            peak_acceleration=problem.peak_acceleration,
+            period=period,
+            restitution=params.restitution,
+        )
+        columns |= {
+            "period": period.tolist(),
+            "peak_rotation_deg": [number(x) for x in np.degrees(curve["rotation"].values).tolist()],
+            "top_displacement": [number(x) for x in curve["top_displacement"].values.tolist()],
+        }
+        about |= {"peak_acceleration": problem.peak_acceleration}
+        names = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
+        shown = {name: columns[name][::-1] for name in names}  # from the shortest period
+    if form.kind == "json":
+        print_json(about | columns)
+    elif form.kind == "csv":
+        print_csv(columns, form)
+    else:
+        print_text(about)
+        print_table(shown)
+
+
+def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
+    """Print the overturning boundary curves; for a block with units also peak accelerations and periods."""
+    from rocking._boundary.tracing import overturning_boundary
+
+    with progress("tracing the boundaries"):
+        curves = overturning_boundary(
+            params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
+        )
+    sizes = curves["row_size"].values
+    outcomes = [Outcome(int(code)).name for code in curves["outcome"].values]
+    columns = {
+        "curve": np.repeat(np.arange(sizes.size), sizes).tolist(),
+        "slenderness": curves["slenderness"].values.tolist(),
+        "frequency_ratio": curves["frequency_ratio"].values.tolist(),
+        "outcome": np.repeat(outcomes, sizes).tolist(),
+        "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
+    }
+    if params.problem is not None:
+        from rocking._dimensional.curves import add_si_axes
+
+        curves = add_si_axes(curves, params.problem.block)
+        columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
+    if form.kind == "json":
+        about = {"pulse": params.pulse.name, "restitution": params.restitution, "alpha": params.alpha}
+        print_json(about | columns)
+    elif form.kind == "csv":
+        print_csv(columns, form)
+    else:
+        print_table(columns)
+
+
+def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
+    return solve_with_bound(
+        params.pulse,
+        **(params.groups | {"frequency_ratio": frequency_ratio}),
+    )
+
+
+def _groups(params: Params) -> dict[str, Any]:
+    return {"pulse": params.pulse.name, **params.groups}
+
+
+def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
+    columns: dict[str, list[Any]] = {}
+    for field in COLUMN_FIELDS:
+        values = getattr(found, field.name).ravel().tolist()
+        if field is OUTCOME:
+            values = [Outcome(code).name for code in values]
+        elif field.dtype == "f8":
+            values = [number(value) for value in values]
+        if field is not SOURCE:  # it is the solver
+            columns[field.name] = values
+    return columns
+
+
+def number(value: float) -> float | None:
+    """The value; None, which JSON can hold, if it is not finite."""
+    return value if math.isfinite(value) else None
+
+
+def print_json(result: Mapping[str, Any]) -> None:
+    """Print an object in one line."""
+    typer.echo(json_writer.dumps(result, allow_nan=False))
+
+
+def print_csv(columns: Mapping[str, Sequence[Any]], form: Form, units: Mapping[str, str] | None = None) -> None:
+    """Print a header and rows; `units` as for `print_table`."""
+    known = _UNITS | dict(units or {})
+    named = {_label(name, known): values for name, values in columns.items()} if form.units else columns
+    typer.echo(csv_text(named), nl=False)
+
+
+def print_text(result: Mapping[str, Any]) -> None:
+    """Print a name with its unit and a value a line."""
+    labels = {name: _label(name, _UNITS) for name in result}
+    width = max(map(len, labels.values()))
+    for name, value in result.items():
+        if value is not None:
+            typer.echo(f"{labels[name]:<{width}}  {_text(value)}")
+
+
+def print_table(columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None) -> None:
+    """Print aligned columns with their names and units; `units` are those of columns that depend on the question."""
+    labels = [_label(name, _UNITS | dict(units or {})) for name in columns]
+    rows = [labels, *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
+    for row in rows:
+        typer.echo("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+
+
+def _label(name: str, units: Mapping[str, str]) -> str:
+    return f"{name} [{units[name]}]" if name in units else name
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value + 0.0:.9g}"  # no -0
+    if isinstance(value, list):
+        return " ".join(_text(one) for one in value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "-" if value is None else str(value)

@@ -1,0 +1,170 @@
+"""`rocking record`: one block under a recorded ground motion."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from rocking._cli.options import OutputOptions, RecordOptions, with_options
+
+if TYPE_CHECKING:
+    from rocking._excitation.records.record import Record
+    from rocking._model.block import Block
+
+File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
+Thresholds = Annotated[
+    bool, typer.Option("--thresholds/--no-thresholds", help="Whether to find all scales at which the outcome changes.")
+]
+Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.")]
+
+
+@with_options
+def record(
+    file: File,
+    block: RecordOptions,
+    output: OutputOptions,
+    thresholds: Thresholds = True,
+    fit: Fit = False,
+) -> None:
+    """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
+    from rocking._cli import printing
+    from rocking._cli.arguments import option_errors
+    from rocking._cli.progress import progress
+
+    with option_errors(), file_errors():
+        form = printing.output_format(output)
+        problem = read_problem(file, block)
+        with progress("solving the block under the record"):
+            about, sentences = _solved(*problem, block.scale, thresholds, fit)
+    printing.print_answer(about, sentences, form)
+
+
+@contextmanager
+def file_errors() -> Iterator[None]:
+    """Convert an error of a file into an error of the command line: file, line, what was found, what was expected."""
+    from rocking._base.errors import InvalidArgumentError, RecordFileError
+
+    try:
+        yield
+    except RecordFileError as error:
+        raise typer.BadParameter(_with_options_named(str(error)), param_hint="FILE") from None
+    except InvalidArgumentError as error:
+        if error.parameter != "path":
+            raise
+        raise typer.BadParameter(f"{error.value}: not {error.allowed}", param_hint="FILE") from None
+
+
+def _with_options_named(message: str) -> str:
+    """A message in which arguments of functions have the names of the options."""
+    return re.sub(r"(?:the )?argument `(\w+)`", lambda found: "--" + found[1].replace("_", "-"), message)
+
+
+def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | Literal["housner"]]:
+    """The record in a file, the block, and its restitution.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an option is missing, or a value is not allowed.
+    RecordFileError
+        If the file does not hold a record.
+    """
+    from rocking._cli.arguments import read_block
+    from rocking._excitation.records.readers.read_record import read_record
+
+    block = read_block(options)
+    eta: float | Literal["housner"] = "housner" if options.restitution == "housner" else _number_of(options.restitution)
+    motion = read_record(
+        file,
+        unit=options.unit,
+        time_step=options.time_step,
+        component=options.component,
+        vertical=options.vertical,
+    )
+    if options.baseline_order is not None:
+        motion = motion.baseline_corrected(order=options.baseline_order)
+    return motion, block, eta
+
+
+def _number_of(text: str) -> float:
+    from rocking._base.errors import InvalidArgumentError, plain_number
+
+    try:
+        return plain_number("restitution", text)
+    except InvalidArgumentError:
+        raise InvalidArgumentError("restitution", text, "a number, or housner") from None
+
+
+def _solved(
+    motion: Record,
+    block: Block,
+    restitution: float | Literal["housner"],
+    scale: float,
+    thresholds: bool,
+    fit: bool,
+) -> tuple[dict[str, Any], list[str]]:
+    """What is printed, by name, and the outcome and the margin in words."""
+    from rocking._cli.printing import number
+    from rocking._dimensional.record_response import respond_to_record
+
+    found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
+    response, assessment = found.dimensionless, found.assessment
+    refined, changes = assessment.resampled, assessment.thresholds
+    about: dict[str, Any] = {
+        "record": motion.name,
+        "source": motion.source,
+        "samples": motion.samples,
+        "time_step": motion.time_step,
+        "peak_acceleration": motion.peak_acceleration,
+        "peak_vertical_acceleration": None if motion.vertical is None else motion.peak_vertical_acceleration,
+        "peak_velocity": motion.peak_velocity,
+        "peak_displacement": motion.peak_displacement,
+        "arias_intensity": motion.arias_intensity,
+        "significant_duration": motion.significant_duration,
+        "mean_period": number(motion.mean_period),
+        "final_velocity": motion.final_velocity,
+        "scale": scale,
+        "half_width": block.half_width,
+        "half_height": block.half_height,
+        "frequency_parameter": block.frequency_parameter,
+        "alpha": block.alpha,
+        "uplift_acceleration": block.uplift_acceleration,
+        "restitution": found.restitution,
+        "slenderness": found.slenderness,
+        "outcome": found.outcome.name,
+        "overturned": bool(response.overturned),
+        "exceeded_alpha": bool(response.exceeded_alpha),
+        "impacts": int(response.impacts),
+        "peak_rotation": number(float(response.peak_rotation)),
+        "amplification": number(assessment.amplification),
+        "peak_rotation_deg": number(math.degrees(found.rotation)),
+        "top_displacement": number(found.displacement),
+        "peak_rotation_resampled": None if refined is None else number(float(refined.peak_rotation)),
+        "overturned_resampled": None if refined is None else bool(refined.overturned),
+    }
+    if changes is not None:
+        about |= {
+            "overturning_scale": assessment.overturning_scale,
+            "threshold_scale": changes.scale.tolist(),
+            "overturns_above": changes.overturns_above.tolist(),
+        }
+    if fit:
+        from rocking.suites.pulse_fit import fit_pulse
+
+        fitted = fit_pulse(motion, blocks=block)
+        about |= {
+            "pulse": fitted.velocity.family,
+            "pulse_period": fitted.period,
+            "pulse_peak_acceleration": fitted.peak_acceleration,
+            "pulse_cycles": number(fitted.velocity.cycles),
+            "pulse_phase": number(fitted.velocity.phase),
+            "pulse_explained": fitted.explained,
+            "pulse_scale_ratio": number(float(fitted.scale_ratio[0])),
+        }
+    sentences = [text for text in (assessment.sentence, assessment.margin) if text]
+    return about | {"margin": assessment.margin, "warnings": assessment.warnings}, sentences

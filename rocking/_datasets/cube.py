@@ -1,0 +1,377 @@
+"""Schema of the spectrum cubes, and functions that write and read data set files.
+
+A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio) and
+
+====================  ===  =====================================================================================
+peak_rotation         f8   max |theta|/alpha over the whole response [-], nan where the block overturns
+outcome               i1   code of `rocking._model.response.Outcome`
+impacts               i4   impacts before the pulse ends, and the one after it that is followed by overturning
+exceeded_alpha        i1   1 where |theta| passed alpha at some time
+peak_mode             i4   arc on which the peak is reached; the peak is smooth within one mode
+stencil               i1   what is interpolated in the cell whose lower corner is the node
+interpolation_error   f4   largest error of that, measured at points of the cell and of the eight cells around it
+restitution_error     f4   largest error halfway to the next restitution, measured in the same cells
+alpha_error           f4   largest error halfway to the next angle, measured in the same cells
+====================  ===  =====================================================================================
+
+with scalar coordinates `pulse` and `restitution`, and derived fields of the nodes where they were asked for
+(`OPTIONAL_VARIABLES`); alpha = 0 stands for the slender limit. A file of a pulse given by samples holds these,
+`pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of creation, so equal content
+gives equal bytes, and a digest of their values.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from rocking._base.errors import DatasetError
+from rocking._datasets.checksum import PARTIAL, append_checksum, find_damage
+from rocking._datasets.netcdf import open_netcdf, write_netcdf
+from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
+from rocking._excitation.sampled import SampledPulse
+from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
+from rocking._model.fields import CUBE_FIELDS, DERIVED_FIELDS
+from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
+
+DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
+"""Dimensions of a spectrum cube, in order."""
+
+AXES: dict[str, dict[str, Any]] = {
+    "alpha": {
+        "units": "rad",
+        "long_name": "slenderness angle alpha",
+        "equation": "2.1",
+        "comment": "0 for the slender limit",
+    },
+    "slenderness": {"units": "1", "long_name": SLENDERNESS.label, "equation": "4.11"},
+    "frequency_ratio": {"units": "1", "long_name": FREQUENCY_RATIO.label, "equation": "3.6"},
+}
+"""Attributes of the axes of a spectrum cube."""
+
+SAMPLES = {
+    "pulse_phase": {"units": "rad", "long_name": "phase of a sample of the pulse"},
+    "pulse_shape": {"units": "1", "long_name": "ground acceleration over its peak at a sample of the pulse",
+                    "comment": "linear between the samples"},
+}  # fmt: skip
+"""Coordinates of a data set of a pulse given by samples, with their attributes."""
+
+MODEL_RESULT = {"units": "1", "coverage_content_type": "modelResult"}
+"""Attributes of every dimensionless variable that a model computed."""
+
+VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
+    **{field.name: (field.file_dtype, field.attributes) for field in CUBE_FIELDS},
+    "stencil": (
+        "i1",
+        {"long_name": "kind of interpolation", "equation": "3.2",
+         "comment": "of peak_rotation in the cell above the node: four-point Lagrange in slenderness and "
+                    "log(frequency_ratio) over the 16 nodes around the cell",
+         "flag_values": np.array([NO_STENCIL, PEAK, SQUARED, OVERTURNS], dtype=np.int8),
+         "flag_meanings": "not_interpolated peak_rotation square_of_1_minus_peak_rotation all_overturn_alike"},
+    ),
+    "interpolation_error": (
+        "f4",
+        {"long_name": "interpolation error",
+         "equation": "3.2",
+         "comment": "largest measured error of interpolated peak_rotation around the cell above the node: against "
+                    "the solver, in the cell and those around it, at two points of each and at five where the "
+                    "error exceeds 1e-6; 0 where all overturn in the same way, missing where no bound is known"},
+    ),
+    "restitution_error": (
+        "f4",
+        {"long_name": "error between restitutions",
+         "equation": "3.2",
+         "comment": "largest measured error of peak_rotation interpolated before the next restitution: four-point "
+                    "Lagrange over the nearest restitution_slices, measured halfway at the centres of the "
+                    "cell above the node and of those around it; missing where no bound is known"},
+    ),
+    "alpha_error": (
+        "f4",
+        {"long_name": "error between angles", "equation": "3.2",
+         "comment": "largest measured error of peak_rotation interpolated before the next alpha: four-point "
+                    "Lagrange in the square of alpha, measured as restitution_error"},
+    ),
+}  # fmt: skip
+"""Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking._model.fields`."""
+
+OPTIONAL_VARIABLES = {field.name: (field.file_dtype, field.attributes) for field in DERIVED_FIELDS}
+"""Variables that a spectrum cube has if they were asked for, at its nodes; they are not interpolated."""
+
+VARIABLES["peak_rotation"][1]["ancillary_variables"] = "outcome peak_mode stencil interpolation_error"
+
+_GLOBAL = {
+    "Conventions": "CF-1.11, ACDD-1.3",
+    "institution": "The rocking developers",
+    "creator_name": "The rocking developers",
+    "creator_type": "group",
+    "license": "CC-BY-4.0",
+    "references": "Dimitrakopoulos and DeJong (2012), https://doi.org/10.1098/rspa.2012.0026",
+    "keywords": "rocking block, overturning, response spectrum, self-similarity, earthquake engineering",
+    "standard_name_vocabulary": "CF Standard Name Table v93",
+    "source": "event-by-event solution of the equation of motion (package rocking)",
+    "project": "rocking",
+    "processing_level": "model result",
+    "acknowledgement": "built on the closed forms and similarity laws of Dimitrakopoulos and DeJong (2012)",
+}
+
+
+def build_spectrum_dataset(
+    variables: Mapping[str, ArrayLike], *, pulse: str | SampledPulse, restitution: float, axes: Mapping[str, ArrayLike]
+) -> xr.Dataset:
+    """Assemble a spectrum cube.
+
+    Parameters
+    ----------
+    variables : mapping
+        The arrays named in `VARIABLES` and any of `OPTIONAL_VARIABLES`, of shape (alpha, slenderness, frequency_ratio).
+    pulse : str or SampledPulse
+        Name of the pulse, or a pulse given by samples.
+    restitution : float
+        eta [-], [0, 1].
+    axes : mapping
+        alpha [rad], slenderness [-] and frequency_ratio [-], ascending.
+    """
+    name = as_pulse(pulse).name
+    cube = xr.Dataset(
+        {
+            key: (DIMENSIONS, np.asarray(variables[key], dtype=dtype), {**MODEL_RESULT, **attributes})
+            for key, (dtype, attributes) in (VARIABLES | OPTIONAL_VARIABLES).items()
+            if key in variables
+        },
+        coords={key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS},
+    )
+    return describe(
+        cube.assign_coords(scalar_coordinates(pulse, restitution)),
+        title=f"Rocking spectrum of the rigid block under the {name} pulse, restitution {restitution:.2f}",
+        summary="Peak rotation and outcome of a free-standing rigid block over dimensionless slenderness and frequency "
+        "ratio, solved event by event, with the measured error of interpolating between the nodes.",
+        history="rocking._spectra.cubes.spectrum",
+        id=f"spectra/{name}/eta-{restitution:.2f}",
+    )
+
+
+def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[str, xr.Variable]:
+    """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set.
+
+    A pulse given by samples has a flag of its own, its digest in an attribute, and the coordinates `SAMPLES`.
+    """
+    shape = as_pulse(pulse)
+    samples: dict[str, xr.Variable] = {}
+    named = {
+        "long_name": "shape of the ground acceleration",
+        "units": "1",
+        "pulse_name": shape.name,
+        "phase_window": np.array([shape.start, shape.end]),
+    }
+    number, names = pulse_number(shape.name), PULSE_NAMES
+    if isinstance(shape, SampledPulse):
+        number, named["pulse_digest"] = -1, shape.digest
+        arrays = dict(zip(SAMPLES, (shape.phases, shape.values), strict=True))
+        samples = {key: xr.Variable("pulse_sample", arrays[key], about) for key, about in SAMPLES.items()}
+    if number < 0:
+        names = (*names, "sampled" if samples else "registered")
+    flags = {
+        "flag_values": np.array([pulse_number(name) for name in names], dtype=np.int8),
+        "flag_meanings": " ".join(names),
+    }
+    eta = {"long_name": "coefficient of restitution eta", "units": "1", "equation": "2.3"}
+    return {
+        "pulse": xr.Variable((), np.int8(number), named | flags),
+        "restitution": xr.Variable((), np.float64(restitution), eta),
+        **samples,
+    }
+
+
+def stored_pulse(dataset: xr.Dataset) -> str | SampledPulse:
+    """The pulse of a data set: its name, or the pulse made again from the stored samples.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the samples are none of a pulse.
+    """
+    name = str(dataset["pulse"].attrs["pulse_name"])
+    if not dataset.variables.keys() >= SAMPLES.keys():
+        return name
+    phases, values = (dataset[key].values for key in SAMPLES)
+    return SampledPulse(values, phases, 2.0 * math.pi, name)
+
+
+def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
+    """The data set with the global attributes of all data sets and the given ones (title, summary, id, ...).
+
+    They contain no time of creation: equal content gives equal bytes.
+    """
+    return dataset.assign_attrs({**_GLOBAL, **dataset.attrs, **attributes})
+
+
+def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str, int] | None = None) -> None:
+    """Write a netCDF-4 file atomically; equal content gives equal bytes.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Written with a digest of its values (`content_sha256`); the file has another digest at its end
+        (`append_checksum`). `read_dataset` detects damage by them.
+    path : path
+        Parent folders are created; an existing file is replaced.
+    chunks : mapping, optional
+        Size of the chunks of the file along dimensions; by default a variable is one chunk.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    signed = dataset.assign_attrs(content_sha256=_content_digest(dataset))
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PARTIAL, dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        write_netcdf(signed, temporary, _encoding(signed, chunks or {}))
+        append_checksum(temporary)
+        with temporary.open("rb+") as written:
+            os.fsync(written.fileno())
+        temporary.chmod(0o644)  # mkstemp makes the file readable by its owner only
+        temporary.replace(path)  # atomic: os.replace
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_dataset(path: Path | str) -> xr.Dataset:
+    """Read a file written by `write_dataset` into memory and check its digests.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, cannot be read, was not written by this package, or is damaged.
+    """
+    return decode_dataset(read_content(path), path)
+
+
+def read_slice(path: Path | str, **indexers: int) -> xr.Dataset:
+    """Read the slice at an index of some dimensions from a file that `check_file` has accepted.
+
+    The file is closed again: the library keeps up to some megabytes of each variable of an open file.
+    """
+    with open_netcdf(path, cache=False) as opened:
+        return opened.isel(indexers).load()
+
+
+def check_file(path: Path | str) -> None:
+    """Check the digest at the end of a file written by `write_dataset`.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, cannot be read, was not written by this package, or is damaged.
+    """
+    _raise_if_damaged(read_content(path), path)
+
+
+def read_content(path: Path | str) -> bytes:
+    """The bytes of a data set file.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing or cannot be read.
+    """
+    path = Path(path)
+    try:
+        if path.is_file():
+            return path.read_bytes()
+    except OSError as error:
+        raise DatasetError(f"{path}: cannot be read: {error.strerror}") from error
+    raise DatasetError(f"{path}: no such data set; `make reproduce` builds it")
+
+
+def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
+    """The same from the bytes of a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        If the bytes were not written by this package or are damaged.
+    """
+    _raise_if_damaged(content, path)
+    try:
+        with open_netcdf(content) as opened:
+            dataset = opened.load()
+        written = dataset.attrs.get("content_sha256")
+        found = _content_digest(dataset)
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise DatasetError(f"{path}: damaged, {error}; `make reproduce` builds it again") from error
+    if written is None:
+        raise DatasetError(f"{path}: not written by this package (no content_sha256)")
+    if written != found:
+        raise DatasetError(f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again")
+    return dataset
+
+
+def _raise_if_damaged(content: bytes, path: Path | str) -> None:
+    damage = find_damage(content)
+    if damage is not None:  # the netCDF library does not return for some damaged files
+        raise DatasetError(f"{path}: {damage}; `make reproduce` builds it again")
+
+
+def read_spectrum(path: Path | str) -> xr.Dataset:
+    """Read a spectrum cube and check it against the schema.
+
+    Raises
+    ------
+    DatasetError
+        As `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
+    """
+    return decode_spectrum(read_content(path), path)
+
+
+def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
+    """The same from the bytes of a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        As `read_spectrum`.
+    """
+    cube = decode_dataset(content, path)
+    present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
+    for name, (dtype, _) in (VARIABLES | present).items():
+        if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
+            raise DatasetError(f"{path}: no variable `{name}` of type {dtype} over {DIMENSIONS}; build it again")
+    for name in DIMENSIONS:
+        if name not in cube.coords or not np.all(np.diff(cube[name].values) > 0):
+            raise DatasetError(f"{path}: axis `{name}` is missing or does not ascend; build it again")
+    if "pulse" not in cube.coords or "restitution" not in cube.coords:
+        raise DatasetError(f"{path}: no scalar coordinates `pulse` and `restitution`; build it again")
+    return cube
+
+
+def _encoding(dataset: xr.Dataset, chunks: Mapping[str, int]) -> dict[str, dict[str, Any]]:
+    encoding: dict[str, dict[str, Any]] = {}
+    for name, variable in dataset.variables.items():
+        chosen: dict[str, Any] = {"_FillValue": None}
+        if name not in dataset.coords and variable.dtype.kind == "f":
+            chosen["_FillValue"] = np.nan
+        if variable.ndim and variable.size > 64 and variable.dtype.kind in "fiu":
+            sizes = tuple(chunks.get(str(dimension), size) for dimension, size in variable.sizes.items())
+            chosen |= {"zlib": True, "complevel": 4, "shuffle": True, "chunksizes": sizes}
+        encoding[str(name)] = chosen
+    return encoding
+
+
+def _content_digest(dataset: xr.Dataset) -> str:
+    """sha256 over names, types, shapes and values of all variables."""
+    digest = hashlib.sha256()
+    for name in sorted(str(name) for name in dataset.variables):
+        values = np.ascontiguousarray(dataset.variables[name].values)
+        content = "\n".join(values.astype(str).ravel()).encode() if values.dtype.kind in "OUT" else values.tobytes()
+        digest.update(f"{name} {values.dtype.kind} {values.shape}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()

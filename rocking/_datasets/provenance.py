@@ -1,0 +1,17 @@
+"""Digests of the settings from which a result was computed; those of its code are `rocking._base.source_tree`.
+
+A result depends on the modules that its script imports, directly or indirectly, and on the locked environment, so that
+a change of a module affects only results that depend on it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+
+def settings_digest(settings: Mapping[str, Any]) -> str:
+    """sha256 (hex) of settings (numbers, strings, lists, mappings), independent of the order of their keys."""
+    return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()

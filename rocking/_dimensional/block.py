@@ -1,0 +1,251 @@
+"""Blocks with their responses in SI units: what `rocking.Block` and `rocking.EquivalentBlock` have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, final, overload
+
+from numpy.typing import ArrayLike
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import Scalar
+from rocking._dimensional.curves import (
+    DEFAULT_SAMPLES,
+    block_boundary,
+    block_history,
+    block_record_history,
+    block_spectrum,
+)
+from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.record_response import BlockRecordResponse, respond_to_record
+from rocking._dimensional.response import BlockResponse, respond
+from rocking._excitation.pulses import AbstractPulse
+from rocking._excitation.records.record import Record
+from rocking._model import block as geometry
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Restitution = Scalar  # or "housner"
+
+
+class RespondingBlock(geometry.AbstractBlock):
+    """What pulses and records do to anything that rocks like a block."""
+
+    @overload
+    def response(
+        self,
+        excitation: str | AbstractPulse,
+        *,
+        peak_acceleration: Scalar,
+        period: Scalar,
+        restitution: Restitution = "housner",
+    ) -> BlockResponse: ...
+
+    @overload
+    def response(
+        self, excitation: Record, *, scale: Scalar = 1.0, restitution: Restitution = "housner", thresholds: bool = True
+    ) -> BlockRecordResponse: ...
+
+    def response(
+        self,
+        excitation: str | AbstractPulse | Record,
+        *,
+        peak_acceleration: Scalar | None = None,
+        period: Scalar | None = None,
+        scale: Scalar | None = None,
+        restitution: Restitution = "housner",
+        thresholds: bool = True,
+    ) -> BlockResponse | BlockRecordResponse:
+        """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
+
+        Parameters
+        ----------
+        excitation : str, AbstractPulse or Record
+            The pulse, or a recorded ground motion.
+        peak_acceleration : float
+            a_g [m/s2], > 0; of a pulse.
+        period : float
+            T_p = 2 pi/omega_g [s], > 0; of a pulse.
+        scale : float
+            Factor of a record [-], (0, 1e6]; 1 by default.
+        restitution : float or "housner"
+            eta [-], [0, 1]; or (2.4) for this geometry, 0 where that is negative.
+        thresholds : bool
+            Whether the scales of a record at which the outcome changes are searched, when they, the warnings or the
+            text of the response are first asked for, in tenths of a second; of a pulse they always are.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, missing, or has no meaning for the kind of excitation.
+
+        Examples
+        --------
+        >>> Block(half_width=0.2, half_height=0.8).response("sine", peak_acceleration=4.0, period=0.5).overturned
+        False
+        >>> Block("20 cm", "80 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
+        False
+        """
+        motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
+        if isinstance(motion, BlockProblem):
+            return respond(motion)
+        record, factor = motion
+        return respond_to_record(self, record, scale=factor, restitution=restitution, thresholds=thresholds)
+
+    @overload
+    def history(
+        self,
+        excitation: str | AbstractPulse,
+        *,
+        peak_acceleration: Scalar,
+        period: Scalar,
+        restitution: Restitution = "housner",
+        duration: Scalar | None = None,
+        samples: int | None = None,
+        contact: bool = False,
+    ) -> xr.Dataset: ...
+
+    @overload
+    def history(
+        self,
+        excitation: Record,
+        *,
+        scale: Scalar = 1.0,
+        restitution: Restitution = "housner",
+        duration: Scalar | None = None,
+        samples: int | None = None,
+        contact: bool = False,
+    ) -> xr.Dataset: ...
+
+    def history(
+        self,
+        excitation: str | AbstractPulse | Record,
+        *,
+        peak_acceleration: Scalar | None = None,
+        period: Scalar | None = None,
+        scale: Scalar | None = None,
+        restitution: Restitution = "housner",
+        duration: Scalar | None = None,
+        samples: int | None = None,
+        contact: bool = False,
+    ) -> xr.Dataset:
+        """Rotation against time, `block_history` and `block_record_history` of `rocking._dimensional.curves`.
+
+        Parameters
+        ----------
+        excitation, peak_acceleration, period, scale, restitution
+            As for `response`.
+        duration : float, optional
+            Length [s], > 0; by default the pulse or the record, and 8/p after it.
+        samples : int, optional
+            Uniform samples; by default 400 under a pulse, and those of a record. The events are added.
+        contact : bool
+            Whether to add reactions and friction demand.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, missing, or has no meaning for the kind of excitation.
+        """
+        motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
+        if isinstance(motion, BlockProblem):
+            count = DEFAULT_SAMPLES if samples is None else samples
+            return block_history(motion, duration=duration, samples=count, contact=contact)
+        record, factor = motion
+        return block_record_history(
+            self, record, scale=factor, restitution=restitution, duration=duration, samples=samples, contact=contact
+        )
+
+    def spectrum(
+        self,
+        excitation: str | AbstractPulse,
+        *,
+        peak_acceleration: Scalar,
+        period: ArrayLike,
+        restitution: Restitution = "housner",
+    ) -> xr.Dataset:
+        """Peak rotation and displacement against the period, `rocking._dimensional.curves.block_spectrum`.
+
+        Parameters
+        ----------
+        excitation, peak_acceleration, restitution
+            As for `response`.
+        period : array_like (periods,)
+            T_p [s], > 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range.
+        """
+        return block_spectrum(
+            self, excitation, peak_acceleration=peak_acceleration, period=period, restitution=restitution
+        )
+
+    def boundary(
+        self,
+        pulse: str | AbstractPulse,
+        *,
+        restitution: Restitution = "housner",
+        period: tuple[float, float] | None = None,
+    ) -> xr.Dataset:
+        """Peak accelerations and periods at which the outcome changes, `rocking._dimensional.curves.block_boundary`.
+
+        Parameters
+        ----------
+        pulse : str or AbstractPulse
+            The pulse.
+        restitution : float or "housner"
+            As for `response`.
+        period : (float, float), optional
+            Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range.
+        """
+        return block_boundary(self, pulse, restitution=restitution, period=period)
+
+    def _motion(
+        self,
+        excitation: str | AbstractPulse | Record,
+        peak_acceleration: Scalar | None,
+        period: Scalar | None,
+        scale: Scalar | None,
+        restitution: Restitution,
+    ) -> BlockProblem | tuple[Record, Scalar]:
+        """The problem under a pulse, or the record and its factor."""
+        of_pulse: dict[str, Scalar | None] = {"peak_acceleration": peak_acceleration, "period": period}
+        if isinstance(excitation, Record):
+            for name, value in of_pulse.items():
+                if value is not None:
+                    raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
+            return excitation, 1.0 if scale is None else scale
+        if scale is not None:
+            raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
+        if peak_acceleration is None or period is None:
+            missing = next(name for name, value in of_pulse.items() if value is None)
+            raise InvalidArgumentError(missing, None, "a number, for a pulse")
+        return BlockProblem(self, excitation, peak_acceleration, period, restitution)
+
+
+@final
+class Block(RespondingBlock, geometry.Block):
+    """A free-standing rigid rectangular block of uniform density (figure 1), and what pulses do to it.
+
+    Parameters
+    ----------
+    half_width : float
+        b [m], > 0; the base is 2b wide. Here and wherever a quantity is expected, a number is in the SI unit, and
+        quantities of pint and texts such as "20 cm" are converted to it.
+    half_height : float
+        h [m], > 0; the block is 2h high.
+    gravity : float
+        g [m/s2], > 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a length or gravity is not finite and positive.
+    """

@@ -1,0 +1,318 @@
+"""Time histories, spectra and boundaries of a block in SI units, as labelled data sets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking._base.errors import InvalidArgumentError, in_range, positive
+from rocking._base.units import Scalar
+from rocking._boundary.tracing import overturning_boundary
+from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
+from rocking._dimensional.record_groups import checked_scale, record_groups
+from rocking._excitation.pulses import AbstractPulse
+from rocking._excitation.records.record import Record
+from rocking._history.record_history import record_history
+from rocking._history.time_history import time_history
+from rocking._model.block import AbstractBlock
+from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._numba.cancellation import StopFlag
+from rocking._solver.bounded_response import solve_with_bound
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DEFAULT_SAMPLES = 400
+"""Uniform samples of a history under a pulse, unless another number is given."""
+
+
+def block_history(
+    problem: BlockProblem,
+    *,
+    duration: Scalar | None = None,
+    samples: int = DEFAULT_SAMPLES,
+    contact: bool = False,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Rotation of a block against time in SI units.
+
+    Parameters
+    ----------
+    problem : BlockProblem
+        The block and the pulse.
+    duration : float, optional
+        Length [s], > 0; by default that of `rocking.time_history`.
+    samples : int
+        Uniform samples; the events are added.
+    contact : bool
+        Whether to add reactions and friction demand, which are dimensionless.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        time(time) [s]; rotation(time) [rad]; angular_velocity(time) [rad/s]; ground_acceleration(time) [m/s2];
+        top_displacement(time) [m]; impact_time(impact) [s].
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    found = time_history(
+        problem.pulse,
+        **problem.groups,
+        duration=None if duration is None else positive("duration", duration, "s") * problem.block.frequency_parameter,
+        samples=samples,
+        contact=contact,
+        stop=stop,
+    )
+    return in_si_units(found, problem)
+
+
+def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
+    """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
+    p = problem.block.frequency_parameter
+    time = "time", found["tau"].values / p, {"units": "s", "long_name": "time from pulse start"}
+    impacts = found["impact_time"]
+    history = found.rename({"tau": "time"}).assign_coords(time=time)
+    history["impact_time"] = impacts.dims, impacts.values / p, {"units": "s", "long_name": "time of impact"}
+    about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
+    times = {"period": problem.period, "pulse_end": float(found.attrs["pulse_end"]) / p}
+    return _in_radians(history, problem.block).assign_attrs(about | times)
+
+
+def block_record_history(
+    block: AbstractBlock,
+    record: Record,
+    *,
+    scale: Scalar = 1.0,
+    restitution: Scalar = "housner",
+    duration: Scalar | None = None,
+    samples: int | None = None,
+    contact: bool = False,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Rotation of a block under a record against time in SI units, by (2.2).
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    record : Record
+        Ground motion.
+    scale : float
+        Factor of the record [-], (0, 1e6].
+    restitution : "housner" or float
+        (2.4), 0 where that is negative; or eta [-], [0, 1].
+    duration : float, optional
+        Length [s], > 0; by default that of `rocking.record_history`.
+    samples : int, optional
+        Uniform samples; by default those of the record. The events are added.
+    contact : bool
+        Whether to add reactions and friction demand, which are dimensionless.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of `block_history`, with the coordinate tau(time) [-] beside time(time) [s], and vertical_acceleration(time)
+        [m/s2] for a record that has it.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    factor = checked_scale(scale, record, block)
+    eta = restitution_of(block, restitution)
+    found = record_history(
+        record,
+        **record_groups(record, block, factor, eta),
+        duration=duration,
+        samples=samples,
+        contact=contact,
+        stop=stop,
+    )
+    about = _description(block, factor * record.peak_acceleration, eta)
+    return _in_radians(found, block).assign_attrs(about | {"scale": factor})
+
+
+def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
+    """A history over time [s] with rotation [rad], velocity [rad/s] and ground acceleration [m/s2] for groups."""
+    scales = {
+        "rotation": (block.alpha, "rad", "rotation theta"),
+        "angular_velocity": (block.alpha * block.frequency_parameter, "rad s-1", "velocity theta'"),
+        "ground_acceleration": (block.uplift_acceleration, "m s-2", "ground acceleration"),
+        "vertical_acceleration": (block.gravity, "m s-2", "vertical ground acceleration, upwards"),
+    }
+    scaled = {
+        name: (history[name].dims, scale * history[name].values, {"units": unit, "long_name": meaning})
+        for name, (scale, unit, meaning) in scales.items()
+        if name in history
+    }
+    moved = block.top_height * np.sin(scaled["rotation"][1])
+    scaled["top_displacement"] = history["rotation"].dims, moved, {"units": "m", "long_name": "top corner displacement"}
+    return history.assign(scaled)
+
+
+def block_spectrum(
+    block: AbstractBlock,
+    pulse: str | AbstractPulse,
+    *,
+    peak_acceleration: Scalar,
+    period: ArrayLike,
+    restitution: Scalar = "housner",
+) -> xr.Dataset:
+    """Peak rotation of a block against the period of the pulse, in SI units.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    pulse : str or AbstractPulse
+        The pulse.
+    peak_acceleration : float
+        a_g [m/s2], > 0.
+    period : array_like (periods,)
+        T_p [s], > 0.
+    restitution : float or "housner"
+        eta [-], [0, 1]; or that of the geometry.
+
+    Returns
+    -------
+    xarray.Dataset
+        rotation(period) [rad], top_displacement(period) [m], peak_rotation(period) [-], overturned, outcome, impacts;
+        frequency_ratio(period) [-] as a coordinate.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range, or `period` has more than one dimension.
+    """
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+    periods = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
+    if periods.ndim > 1:
+        raise InvalidArgumentError("period", periods.shape, "one dimension")
+    periods = np.atleast_1d(periods)
+    problem = BlockProblem(block, pulse, peak_acceleration, float(periods[0]) if periods.size else 1.0, restitution)
+    ratio = frequency_ratio_of(block, 1.0) / periods
+    found = solve_with_bound(problem.pulse, **{**problem.groups, "frequency_ratio": ratio})  # type: ignore[arg-type]
+    rotation = found.peak_rotation * block.alpha
+    variables = {
+        "rotation": ("period", rotation, {"units": "rad", "long_name": "peak rotation"}),
+        "top_displacement": (
+            "period",
+            block.top_height * np.sin(rotation),
+            {"units": "m", "long_name": "largest top displacement"},
+        ),
+    }
+    variables |= {
+        field.name: ("period", getattr(found, field.name), {"units": field.unit} | field.attributes)
+        for field in (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, ERROR_BOUND)
+    }
+    coordinates = {
+        "period": ("period", periods, {"units": "s", "long_name": "period of the pulse"}),
+        "frequency_ratio": ("period", ratio, {"units": "1", "long_name": "frequency ratio omega_g/p"}),
+    }
+    return xr.Dataset(
+        variables, coordinates, _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
+    )
+
+
+def block_boundary(
+    block: AbstractBlock,
+    pulse: str | AbstractPulse,
+    *,
+    restitution: Scalar = "housner",
+    period: tuple[float, float] | None = None,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Boundary curves of overturning of a block: peak acceleration against period.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    pulse : str or AbstractPulse
+        The pulse.
+    restitution : float or "housner"
+        eta [-], [0, 1]; or that of the geometry.
+    period : (float, float), optional
+        Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `rocking.overturning_boundary`, with peak_acceleration(point) [m/s2] and period(point) [s] beside the groups.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    window = frequency_window(period, lambda one: frequency_ratio_of(block, one))
+    eta = restitution_of(block, restitution)
+    found = overturning_boundary(pulse, restitution=eta, alpha=block.equation_alpha, frequency_ratio=window, stop=stop)
+    return add_si_axes(found, block)
+
+
+def frequency_window(
+    period: tuple[float, float] | None, frequency_ratio: Callable[[float], float]
+) -> tuple[float, float]:
+    """Window of frequency ratios of a window of periods [s], 0 < low < high; 0.2 to 15 without one.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a period is out of range, or they do not ascend.
+    """
+    if period is None:
+        return 0.2, 15.0
+    ends = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise InvalidArgumentError("period", period, "the two ends of a window, ascending [s]")
+    low, high = ends.tolist()
+    return frequency_ratio(high), frequency_ratio(low)
+
+
+def add_si_axes(curves: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
+    """Boundary curves with peak_acceleration(point) [m/s2] and period(point) [s] of a block of their alpha."""
+    return with_si_axes(curves, block.uplift_acceleration, period_of(block, 1.0))
+
+
+def with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: float) -> xr.Dataset:
+    """The same, from the acceleration at slenderness 1 [m/s2] and the period at frequency ratio 1 [s]."""
+    return curves.assign(
+        peak_acceleration=(
+            "point",
+            uplift_acceleration / curves["slenderness"].values,
+            {"units": "m s-2", "long_name": "peak acceleration a_g"},
+        ),
+        period=(
+            "point",
+            unit_period / curves["frequency_ratio"].values,
+            {"units": "s", "long_name": "period of the pulse"},
+        ),
+    )
+
+
+def _description(block: AbstractBlock, peak_acceleration: float, restitution: float) -> dict[str, float]:
+    """Attributes that name the problem, in SI units."""
+    return {
+        "half_width": block.half_width,
+        "half_height": block.half_height,
+        "alpha": block.alpha,
+        "gravity": block.gravity,
+        "peak_acceleration": peak_acceleration,
+        "restitution": restitution,
+    }

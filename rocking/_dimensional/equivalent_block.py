@@ -1,0 +1,320 @@
+"""Structures that rock like a block (DeJong & Dimitrakopoulos 2014): frames, rigid bodies, linearised mechanisms.
+
+A structure with one degree of freedom that is closed at theta = 0 and dissipates energy at impacts is described by the
+frequency parameter p, the rotation alpha at which its restoring moment vanishes, its uplift acceleration and its
+coefficient of restitution. Bodies and frames obey (2.2) exactly; for other mechanisms the equation is linearised about
+theta = 0 and reads as (3.1), with p^2 = K/M, alpha = C/K and uplift acceleration C/B of
+
+    M theta'' - K theta + C = -B a,  theta > 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Self, final
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError, number, positive
+from rocking._base.units import Scalar
+from rocking._dimensional.block import RespondingBlock
+from rocking._model import block as geometry
+from rocking._model.checks import check_number
+from rocking._model.linkage import LinearEquation
+from rocking._model.masonry_arch import MasonryArch
+from rocking._model.parameters import FREQUENCY_PARAMETER, RESTITUTION
+
+
+@final
+@dataclass(frozen=True, init=False, repr=False)
+class EquivalentBlock(RespondingBlock):
+    """The block that rocks like a structure; it is accepted wherever a `Block` is.
+
+    `half_width` and `half_height` are those of the rectangular block of this alpha and p. Contact forces and friction
+    demand are not known. The structure has to rock to both sides alike.
+
+    Parameters
+    ----------
+    alpha : float
+        Rotation at which the restoring moment vanishes [rad], (0, pi/2).
+    frequency_parameter : float
+        p [rad/s], [1e-6, 1e6].
+    restitution : float
+        eta [-], [0, 1].
+    uplift_acceleration : float, optional
+        Smallest ground acceleration that starts rocking [m/s2], > 0. If given, the equation of motion is linear as
+        (3.1), else it is (2.2) with g tan(alpha).
+    gravity : float
+        g [m/s2], > 0.
+    top_height : float, optional
+        Height of the point whose displacement is given, above the pivot [m], > 0; by default that of the top of the
+        rectangular block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+
+    _alpha: float = field(init=False)
+    _frequency_parameter: float = field(init=False)
+    _restitution: float = field(init=False)
+    _uplift_acceleration: float | None = field(init=False)
+    _top_height: float | None = field(init=False)
+
+    def __init__(
+        self,
+        alpha: Scalar,
+        frequency_parameter: Scalar,
+        *,
+        restitution: Scalar,
+        uplift_acceleration: Scalar | None = None,
+        gravity: Scalar = STANDARD_GRAVITY,
+        top_height: Scalar | None = None,
+    ) -> None:
+        angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
+        p = check_number(FREQUENCY_PARAMETER, frequency_parameter)
+        g = positive("gravity", gravity, "m/s2")
+        uplift, top = (
+            None if value is None else positive(name, value, unit)
+            for name, value, unit in (
+                ("uplift_acceleration", uplift_acceleration, "m/s2"),
+                ("top_height", top_height, "m"),
+            )
+        )
+        eta = check_number(RESTITUTION, restitution)
+        size = 0.75 * g / p**2  # p = sqrt(3 g/(4 R)), below (2.2)
+        super().__init__(size * math.sin(angle), size * math.cos(angle), g)
+        own = {
+            "_alpha": angle,
+            "_frequency_parameter": p,
+            "_restitution": eta,
+            "_uplift_acceleration": uplift,
+            "_top_height": top,
+        }
+        for name, value in own.items():
+            object.__setattr__(self, name, value)  # a frozen dataclass
+
+    @property
+    def alpha(self) -> float:
+        """Rotation at which the restoring moment vanishes [rad]."""
+        return self._alpha
+
+    @property
+    def frequency_parameter(self) -> float:
+        """p [rad/s]."""
+        return self._frequency_parameter
+
+    @property
+    def uplift_acceleration(self) -> float:
+        """Smallest ground acceleration that starts rocking [m/s2]."""
+        if self._uplift_acceleration is None:
+            return self.gravity * self.half_width / self.half_height  # below (2.1)
+        return self._uplift_acceleration
+
+    @property
+    def equation_alpha(self) -> float:
+        """Alpha in the equation of motion [rad]; 0 for the linear equation (3.1)."""
+        return self._alpha if self._uplift_acceleration is None else 0.0
+
+    @property
+    def housner_restitution(self) -> float:
+        """Coefficient of restitution of the structure [-]."""
+        return self._restitution
+
+    @property
+    def inelastic_restitution(self) -> float:
+        """Coefficient of restitution of the structure [-]."""
+        return self._restitution
+
+    @property
+    def top_height(self) -> float:
+        """Height above the pivot of the point whose displacement is given [m]."""
+        return super().top_height if self._top_height is None else self._top_height
+
+    @property
+    def description(self) -> str:
+        """The structure in words."""
+        return f"structure of alpha {math.degrees(self.alpha):.4g} deg and p {self.frequency_parameter:.4g} rad/s"
+
+    @property
+    def contact_is_known(self) -> bool:
+        """False: the forces at the pivots depend on more than the parameters of the motion."""
+        return False
+
+    def __repr__(self) -> str:
+        own = "" if self._uplift_acceleration is None else f", uplift_acceleration={self._uplift_acceleration!r}"
+        top = "" if self._top_height is None else f", top_height={self._top_height!r}"
+        return (
+            f"EquivalentBlock(alpha={self._alpha!r}, frequency_parameter={self._frequency_parameter!r}, "
+            f"restitution={self._restitution!r}{own}, gravity={self.gravity!r}{top})"
+        )
+
+    @classmethod
+    def rigid_body(
+        cls,
+        *,
+        mass: Scalar,
+        inertia: Scalar,
+        base: Scalar,
+        centre_height: Scalar,
+        top_height: Scalar | None = None,
+        gravity: Scalar = STANDARD_GRAVITY,
+    ) -> Self:
+        """A symmetric rigid body of any shape on two pivots; exact.
+
+        Parameters
+        ----------
+        mass : float
+            m [kg], > 0.
+        inertia : float
+            Mass moment of inertia about the centre of mass [kg m2], > 0.
+        base : float
+            Distance of the pivots [m], > 0; smaller than the width where the edges are rounded or crushed.
+        centre_height : float
+            Height of the centre of mass above the pivots [m], > 0.
+        top_height, gravity
+            As for `EquivalentBlock`; by default the displacement is that at twice the height of the centre.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, or the body would bounce: a negative coefficient of restitution.
+        """
+        mass, inertia = positive("mass", mass, "kg"), positive("inertia", inertia, "kg m2")
+        base, centre_height = positive("base", base, "m"), positive("centre_height", centre_height, "m")
+        gravity = positive("gravity", gravity, "m/s2")
+        radius = math.hypot(0.5 * base, centre_height)
+        about_pivot = inertia + mass * radius * radius
+        # angular momentum about the new pivot, as for (2.4)
+        restitution = 1.0 - 0.5 * mass * base * base / about_pivot
+        if restitution < 0.0:
+            raise InvalidArgumentError("base", base, "a base so narrow that the body does not bounce at impacts")
+        return cls(
+            math.atan2(0.5 * base, centre_height),
+            math.sqrt(mass * gravity * radius / about_pivot),
+            restitution=restitution,
+            gravity=gravity,
+            top_height=2.0 * centre_height if top_height is None else top_height,
+        )
+
+    @classmethod
+    def rocking_frame(cls, column: geometry.Block, *, mass_ratio: Scalar) -> Self:
+        """Equal columns that carry a rigid beam without mortar; exact (Makris & Vassiliou 2013).
+
+        Parameters
+        ----------
+        column : Block
+            One of the columns.
+        mass_ratio : float
+            Mass of the beam over that of all columns [-], >= 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If `mass_ratio` is out of range, or the frame would bounce at impacts.
+        """
+        if not isinstance(column, geometry.Block):
+            raise InvalidArgumentError("column", column, "a rocking.Block")
+        mass_ratio = number("mass_ratio", mass_ratio, 0.0, math.inf, closed="left")
+        alpha, inertia = column.alpha, 1.0 + 3.0 * mass_ratio
+        # the beam moves as a point mass on the circle of radius 2 R of the tops of the columns
+        restitution = (1.0 - 1.5 * math.sin(alpha) ** 2 + 3.0 * mass_ratio * math.cos(2.0 * alpha)) / inertia
+        if restitution < 0.0:
+            raise InvalidArgumentError("column", column, "columns so slender that the frame does not bounce at impacts")
+        return cls(
+            alpha,
+            column.frequency_parameter * math.sqrt((1.0 + 2.0 * mass_ratio) / inertia),
+            restitution=restitution,
+            gravity=column.gravity,
+            top_height=2.0 * column.half_height,
+        )
+
+    @classmethod
+    def linear_mechanism(
+        cls,
+        *,
+        mass: Scalar,
+        stiffness: Scalar,
+        restoring: Scalar,
+        load: Scalar,
+        restitution: Scalar,
+        top_height: Scalar,
+        gravity: Scalar = STANDARD_GRAVITY,
+    ) -> Self:
+        """Any mechanism by its linearised equation M theta'' - K theta + C = -B a.
+
+        Parameters
+        ----------
+        mass, stiffness, restoring, load : float
+            M [kg m2], K [N m], C [N m] and |B| [kg m], > 0.
+        restitution : float
+            eta [-], [0, 1].
+        top_height : float
+            Height above the pivot of the point whose displacement is wanted [m], > 0.
+        gravity : float
+            g [m/s2], > 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, or C/K is not below pi/2.
+        """
+        mass, stiffness = positive("mass", mass, "kg m2"), positive("stiffness", stiffness, "N m")
+        restoring, load = positive("restoring", restoring, "N m"), positive("load", load, "kg m")
+        return cls(
+            restoring / stiffness,
+            math.sqrt(stiffness / mass),
+            restitution=restitution,
+            uplift_acceleration=restoring / load,
+            gravity=gravity,
+            top_height=top_height,
+        )
+
+    @classmethod
+    def masonry_arch(
+        cls,
+        *,
+        radius: Scalar,
+        thickness: Scalar,
+        embrace: Scalar,
+        voussoirs: int,
+        restitution: Scalar | None = None,
+        gravity: Scalar = STANDARD_GRAVITY,
+    ) -> Self:
+        """A circular masonry arch, which opens as a four-bar linkage; linearised.
+
+        The rotation is that of the part of the arch next to its first hinge, the displacement that of its other end.
+        The hinges are those of the mechanism of least uplift acceleration.
+
+        Parameters
+        ----------
+        radius, thickness : float
+            Of the centre line, [1e-3, 1e6], and of the voussoirs, from 1e-6 to below 2 times the radius [m].
+        embrace : float
+            Angle between the springings [rad], (0, pi].
+        voussoirs : int
+            Their number, 4 to 24.
+        restitution : float, optional
+            eta [-], [0, 1]; by default that of an impact without bouncing between the mechanism and its mirror image.
+        gravity : float
+            g [m/s2], > 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, or the arch does not stand under its weight.
+        """
+        arch = MasonryArch(radius, thickness, embrace, voussoirs, gravity)
+        mechanism = arch.mechanism()
+        equation: LinearEquation = mechanism.equation
+        first, second, *_ = mechanism.linkage.hinges
+        return cls.linear_mechanism(
+            mass=equation.mass,
+            stiffness=equation.stiffness,
+            restoring=equation.restoring,
+            load=abs(equation.load),
+            restitution=arch.restitution(mechanism) if restitution is None else restitution,
+            top_height=abs((second - first).imag),
+            gravity=gravity,
+        )

@@ -1,0 +1,154 @@
+"""Distance of a block from another outcome, in amplitude, period and size, by the rigid equation (2.2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.threshold import Threshold
+from rocking._model.parameters import FREQUENCY_RATIO
+from rocking._numba.cancellation import StopFlag
+
+HIGHEST_AMPLITUDE = 100.0
+"""Largest a = a_g/(g tan alpha) searched for changes of outcome [-], or ten times that of the problem if larger."""
+
+SEARCH_FACTOR = 10.0
+"""Ratio of the largest period searched to that of the pulse, and its inverse [-]; sizes go with its square."""
+
+
+@dataclass(frozen=True)
+class Margins:
+    """How far a block is from another outcome.
+
+    Attributes
+    ----------
+    nearest_acceleration : float or None
+        Peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found.
+    acceleration_factor : float or None
+        That over the peak acceleration of the problem [-].
+    nearest_period, period_factor : float or None
+        The same for the period [s], [-].
+    periods : tuple of Threshold
+        All periods at which the outcome changes, ascending [s].
+    periods_searched : (float, float)
+        Smallest and largest [s].
+    smallest_surviving_half_diagonal : float or None
+        Smallest R of this shape searched that survives this pulse [m]; a larger one may overturn.
+    surviving_from_half_diagonal : float or None
+        R from which every larger size searched survives [m]; None if the largest overturns.
+    sizes : tuple of Threshold
+        All half-diagonals of this shape at which the outcome changes, ascending [m].
+    sizes_searched : (float, float)
+        Smallest and largest half-diagonal [m].
+    """
+
+    nearest_acceleration: float | None
+    acceleration_factor: float | None
+    nearest_period: float | None
+    period_factor: float | None
+    periods: tuple[Threshold, ...]
+    periods_searched: tuple[float, float]
+    smallest_surviving_half_diagonal: float | None
+    surviving_from_half_diagonal: float | None
+    sizes: tuple[Threshold, ...]
+    sizes_searched: tuple[float, float]
+
+
+def acceleration_thresholds(problem: BlockProblem, stop: StopFlag | None = None) -> tuple[Threshold, ...]:
+    """Peak accelerations [m/s2] at which the outcome changes at this period, ascending.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    groups = problem.groups
+    highest = min(max(HIGHEST_AMPLITUDE, 10.0 / groups["slenderness"]), 1e6)
+    changes = critical_amplitude(
+        problem.pulse,
+        frequency_ratio=groups["frequency_ratio"],
+        restitution=groups["restitution"],
+        alpha=groups["alpha"],
+        highest_amplitude=highest,
+        stop=stop,
+    )
+    return tuple(
+        Threshold(a * problem.block.uplift_acceleration, above)
+        for a, above in zip(changes.amplitude.tolist(), changes.overturns_above.tolist(), strict=True)
+    )
+
+
+def margins_of(
+    problem: BlockProblem,
+    accelerations: tuple[Threshold, ...],
+    stop: StopFlag | None = None,
+    served: tuple[float, float] = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper),
+) -> Margins:
+    """Nearest changes of outcome.
+
+    Parameters
+    ----------
+    problem : BlockProblem
+        The problem.
+    accelerations : tuple of Threshold
+        As `acceleration_thresholds` finds them.
+    stop : StopFlag, optional
+        Cancels the work.
+    served : (float, float)
+        Frequency ratios beyond which periods are not searched [-].
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    groups, block = problem.groups, problem.block
+    omega = groups["frequency_ratio"]
+    low, high = max(omega / SEARCH_FACTOR, served[0]), min(omega * SEARCH_FACTOR, served[1])
+    found = critical_frequency_ratio(
+        problem.pulse,
+        slenderness=groups["slenderness"],
+        restitution=groups["restitution"],
+        alpha=groups["alpha"],
+        window=(low, high),
+        stop=stop,
+    )
+    changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))
+
+    def period(ratio: float) -> float:
+        return problem.period * omega / ratio  # omega_g = 2 pi/T_p: longer is lower
+
+    def size(ratio: float) -> float:
+        return float(block.half_diagonal * (ratio / omega) ** 2)  # p = sqrt(3 g/(4 R)): larger is higher (2.2)
+
+    periods = tuple(Threshold(period(w), not above) for w, above in reversed(changes))
+    sizes = tuple(Threshold(size(w), above) for w, above in changes)
+    smallest, largest = size(low), size(high)
+    overturns_small, overturns_large = found.overturns_at_ends
+    nearest_acceleration = _nearest(problem.peak_acceleration, accelerations)
+    nearest_period = _nearest(problem.period, periods)
+    return Margins(
+        nearest_acceleration=nearest_acceleration,
+        acceleration_factor=_factor(nearest_acceleration, problem.peak_acceleration),
+        nearest_period=nearest_period,
+        period_factor=_factor(nearest_period, problem.period),
+        periods=periods,
+        periods_searched=(period(high), period(low)),
+        smallest_surviving_half_diagonal=(
+            smallest if not overturns_small else next((one.value for one in sizes if not one.overturns_above), None)
+        ),
+        surviving_from_half_diagonal=None if overturns_large else sizes[-1].value if sizes else smallest,
+        sizes=sizes,
+        sizes_searched=(smallest, largest),
+    )
+
+
+def _nearest(value: float, candidates: tuple[Threshold, ...]) -> float | None:
+    return min((one.value for one in candidates), key=lambda candidate: abs(math.log(candidate / value)), default=None)
+
+
+def _factor(value: float | None, of: float) -> float | None:
+    return None if value is None else value / of

@@ -1,0 +1,60 @@
+"""Mass properties of a surface mesh in a vertical plane, by trimesh (extra `mesh`)."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from rocking._base.errors import InvalidArgumentError, one_of
+from rocking._base.units import UNITS
+from rocking._model.body import PolygonProperties
+
+FOOTPRINT = 1e-3
+"""Height above the lowest point up to which vertices belong to the footprint, over the height of the mesh [-]."""
+
+
+def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[PolygonProperties, bool]:
+    """Edges, centre of mass and radius of gyration in the plane of a direction, in metres; whether the mesh is closed.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; z is upwards.
+    direction : float
+        Angle from the x axis towards the y axis [rad].
+    unit : str
+        Of the lengths in the file.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the file cannot be read, encloses no volume, or does not stand.
+    """
+    factor = UNITS["m"][one_of("unit", unit, UNITS["m"])]
+    try:
+        mesh = trimesh.load_mesh(Path(path), process=True)
+    except Exception as error:  # noqa: BLE001  (each format has its own errors)
+        raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
+    if not len(mesh.vertices) or not abs(mesh.volume) > 0.0:
+        raise InvalidArgumentError("path", str(path), "a mesh that encloses a volume")
+    along = np.array([math.cos(direction), math.sin(direction), 0.0])
+    across = np.cross([0.0, 0.0, 1.0], along)
+    points, centre = np.asarray(mesh.vertices), np.asarray(mesh.center_mass)
+    lowest, highest = float(points[:, 2].min()), float(points[:, 2].max())
+    footprint = points[points[:, 2] <= lowest + FOOTPRINT * (highest - lowest)] @ along
+    left, right = float(centre @ along - footprint.min()), float(footprint.max() - centre @ along)
+    if not (left > 0.0 and right > 0.0):
+        raise InvalidArgumentError("path", str(path), "a body whose centre of mass lies above its footprint")
+    # rotation is about the horizontal axis normal to the plane, through the centre of mass
+    about = float(across @ np.asarray(mesh.moment_inertia) @ across)
+    found = PolygonProperties(
+        left * factor,
+        right * factor,
+        (float(centre[2]) - lowest) * factor,
+        math.sqrt(about / float(mesh.mass)) * factor,
+        (highest - lowest) * factor,
+    )
+    return found, bool(mesh.is_watertight)

@@ -1,0 +1,265 @@
+"""`rocking.RigidBody`: a rigid body on two edges, from dimensions, an outline or a mesh."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Self, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, positive
+from rocking._base.units import Scalar, Values
+from rocking._dimensional.body import RespondingBody
+from rocking._model.body import Edge, polygon_properties, rigid_edge
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class RigidBody(RespondingBody):
+    """A rigid body that stands on two edges, its centre of mass anywhere between them.
+
+    All arguments may be arrays, which broadcast: an array of bodies. Here and wherever a quantity is expected, a number
+    is in the SI unit; quantities of pint and texts such as "20 cm" are converted.
+
+    Parameters
+    ----------
+    left, right : float
+        Distances of the centre of mass from the left and the right edge along the base [m], > 0.
+    height : float
+        Height of the centre of mass above the base [m], > 0.
+    gyration : float, optional
+        Radius of gyration about the centre of mass [m], > 0; that of the uniform rectangle of width `left` + `right`
+        and twice this height without it.
+    inclination : float
+        Angle by which the base is inclined towards the right [rad], (-pi/2, pi/2); see `tilted`.
+    gravity : float
+        g [m/s2], > 0.
+    top_height : float, optional
+        Height above the base of the point whose displacement is given [m], > 0; by default twice `height`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a length or gravity is not finite and positive, or the body does not stand at its inclination.
+
+    Examples
+    --------
+    >>> vase = RigidBody(left="12 cm", right="18 cm", height="40 cm")
+    >>> bool(vase.response("sine", peak_acceleration="0.4 g", period="0.5 s").overturned)
+    False
+    """
+
+    _given: dict[str, Array]
+
+    def __init__(
+        self,
+        left: Values,
+        right: Values,
+        height: Values,
+        gyration: Values | None = None,
+        *,
+        inclination: Values = 0.0,
+        gravity: Values = STANDARD_GRAVITY,
+        top_height: Values | None = None,
+    ) -> None:
+        lengths: dict[str, Values | None] = {
+            "left": left,
+            "right": right,
+            "height": height,
+            "gyration": gyration,
+            "top_height": top_height,
+        }
+        given = {name: value for name, value in lengths.items() if value is not None}
+        checked = {
+            name: in_range(name, value, 0.0, math.inf, closed="neither", unit="m") for name, value in given.items()
+        }
+        checked["gravity"] = in_range("gravity", gravity, 0.0, math.inf, closed="neither", unit="m/s2")
+        half = math.pi / 2
+        checked["inclination"] = in_range("inclination", inclination, -half, half, closed="neither", unit="rad")
+        given |= {"gravity": gravity, "inclination": inclination}
+        broadcast(given, list(checked.values()))
+        object.__setattr__(self, "_given", checked)  # a frozen dataclass
+        for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
+            if not np.all(edge.alpha > 0.0):
+                limit = math.degrees(float(np.min(edge.alpha + sign * self.tilt)))
+                raise InvalidArgumentError(
+                    "inclination", inclination, f"less than {limit:.4g} degrees: the body falls over by itself"
+                )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RigidBody):
+            return NotImplemented
+        return self._given.keys() == other._given.keys() and all(
+            np.array_equal(value, other._given[name]) for name, value in self._given.items()
+        )
+
+    def __hash__(self) -> int:
+        return hash(tuple((name, value.tobytes(), value.shape) for name, value in self._given.items()))
+
+    def __repr__(self) -> str:
+        """The body in words."""
+        return f"<rocking.RigidBody: {self.description}>"
+
+    @property
+    def width(self) -> Array:
+        """Distance of the edges [m]."""
+        return np.asarray(self._given["left"] + self._given["right"])
+
+    @property
+    def height(self) -> Array:
+        """Height of the centre of mass above the base [m]."""
+        return self._given["height"]
+
+    @property
+    def gyration(self) -> Array:
+        """Radius of gyration about the centre of mass [m]."""
+        if "gyration" in self._given:
+            return self._given["gyration"]
+        return np.asarray(np.hypot(self.width, 2.0 * self.height) / math.sqrt(12.0))
+
+    @property
+    def tilt(self) -> Array:
+        """Angle by which the base is inclined towards the right [rad]."""
+        return self._given["inclination"]
+
+    @property
+    def gravity(self) -> Array:
+        """g [m/s2]."""
+        return self._given["gravity"]
+
+    @property
+    def top_height(self) -> Array:
+        """Height above the base of the point whose displacement is given [m]."""
+        return self._given.get("top_height", 2.0 * self.height)
+
+    @cached_property
+    def right(self) -> Edge:
+        """The right edge, about which theta is positive."""
+        return self._edge("right", "left", self.tilt)
+
+    @cached_property
+    def left(self) -> Edge:
+        """The left edge."""
+        return self._edge("left", "right", -self.tilt)
+
+    @property
+    def parameters(self) -> dict[str, Array]:
+        """The arguments that were given, as arrays."""
+        return self._given
+
+    @property
+    def description(self) -> str:
+        if self.shape:
+            return f"{' x '.join(map(str, self.shape))} bodies"
+        left, right, height = (float(self._given[name]) for name in ("left", "right", "height"))
+        leaning = f", inclined by {math.degrees(float(self.tilt)):.4g} deg" if self.tilt else ""
+        return f"body on edges {left:.4g} m left and {right:.4g} m right of its mass at {height:.4g} m{leaning}"
+
+    def _edge(self, name: str, other: str, tilt: Array) -> Edge:
+        given = self._given
+        return rigid_edge(given[name], given[other], self.height, self.gyration, self.gravity, tilt)
+
+    def tilted(self, angle: Values) -> RigidBody:
+        """The body on a base that is inclined further towards the right.
+
+        The rotation is counted from there; alpha of the right edge becomes smaller by the angle, that of the left one
+        larger. Reactions are along the inclined base and normal to it.
+
+        Parameters
+        ----------
+        angle : array_like
+            Angle [rad], or a text such as "2 deg"; negative towards the left.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the body does not stand there.
+        """
+        added = in_range("angle", angle, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
+        return RigidBody(**(self._given | {"inclination": self.tilt + added}))
+
+    def scaled(self, size: Values) -> RigidBody:
+        factor = in_range("size", size, 0.0, math.inf, closed="neither")
+        lengths = {
+            name: value if name in ("gravity", "inclination") else value * factor for name, value in self._given.items()
+        }
+        return RigidBody(**lengths)
+
+    @classmethod
+    def from_polygon(cls, vertices: ArrayLike, *, gravity: Scalar = STANDARD_GRAVITY) -> Self:
+        """A body of uniform density from its outline, standing on its lowest edge; its top is its highest vertex.
+
+        Parameters
+        ----------
+        vertices : array_like (vertices, 2)
+            Corners x, y [m] in order, either way round; y is upwards.
+        gravity : float
+            g [m/s2], > 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the outline crosses itself, encloses no area, or does not stand.
+
+        Examples
+        --------
+        >>> RigidBody.from_polygon([(0, 0), (0.3, 0), (0.3, 1.0), (0.1, 1.2), (0, 1.0)])
+        <rocking.RigidBody: body on edges 0.1485 m left and 0.1515 m right of its mass at 0.5515 m>
+        """
+        g = positive("gravity", gravity, "m/s2")
+        found = polygon_properties(vertices)
+        return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)
+
+    @classmethod
+    def from_mesh(
+        cls,
+        path: str | Path,
+        direction: Scalar = 0.0,
+        *,
+        unit: str = "m",
+        gravity: Scalar = STANDARD_GRAVITY,
+    ) -> Self:
+        """A body of uniform density from a surface mesh, which stands on its lowest points; z is upwards.
+
+        It rocks in the vertical plane of the direction, on the outermost points of its footprint there: the planar
+        model of a base of any shape, which leaves out that a round base also rolls.
+
+        Parameters
+        ----------
+        path : str or Path
+            A file that trimesh reads (STL, PLY, OBJ, GLB, ...); needs the extra `mesh`.
+        direction : float
+            Angle of the ground motion from the x axis towards the y axis [rad], or a text such as "30 deg".
+        unit : str
+            Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft".
+        gravity : float
+            g [m/s2], > 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the file cannot be read, encloses no volume, or does not stand.
+        ImportError
+            If trimesh is not installed.
+
+        Warns
+        -----
+        UserWarning
+            If the mesh is not closed: its volume, and with it its centre of mass, is that of the surface as it is.
+        """
+        from rocking._dimensional.mesh import mesh_properties  # noqa: PLC0415  (trimesh is an extra)
+
+        g = positive("gravity", gravity, "m/s2")
+        angle = number("direction", direction, -2.0 * math.pi, 2.0 * math.pi, unit="rad")
+        found, closed = mesh_properties(path, angle, unit)
+        if not closed:
+            warnings.warn(f"{Path(path).name} is not closed: its centre of mass is uncertain", UserWarning, 2)
+        return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)

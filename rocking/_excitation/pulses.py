@@ -1,0 +1,223 @@
+"""Catalogue of ground-acceleration pulses, each defined by a shape f(phi) of unit peak on a window of the phase phi.
+
+The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; a positive one starts a
+rotation in the negative direction. Those of the catalogue are of two families: sums of sinusoids, for which the slender
+block has exact arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low
+frequencies. To add a pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time, of these
+families or of one's own (`SmoothPulse`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+
+from rocking._base.errors import InvalidArgumentError, number, one_of
+from rocking._excitation.shapes import AbstractPulse, checked_number
+from rocking._excitation.sinusoids import SinusoidalPulse
+from rocking._excitation.smooth import SmoothPulse
+from rocking._excitation.wavelets import WaveletPulse
+
+__all__ = [
+    "PULSE_NAMES",
+    "AbstractPulse",
+    "SinusoidalPulse",
+    "SmoothPulse",
+    "WaveletPulse",
+    "as_pulse",
+    "get_pulse",
+    "pulse_names",
+    "pulse_number",
+    "register",
+]
+
+
+def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]) -> SinusoidalPulse:
+    """cos(phi) on a window of phi."""
+    return SinusoidalPulse(name, start, end, stationary, ((1.0, 1.0, 0.0),))
+
+
+def sine() -> SinusoidalPulse:
+    """One full sine, sin(phi), 0 to 2 pi, (3.2)."""
+    term = ((1.0, 1.0, -math.pi / 2),)
+    return SinusoidalPulse("sine", 0.0, 2 * math.pi, (math.pi / 2, 3 * math.pi / 2), term)
+
+
+def cosine() -> SinusoidalPulse:
+    """One full cosine, cos(phi), 0 to 2 pi (figures 5 to 8)."""
+    return _sinusoid("cosine", 0.0, 2 * math.pi, (math.pi,))
+
+
+def half_sine() -> SinusoidalPulse:
+    """Half a sine, sin(phi), 0 to pi (Housner 1963; Shi et al. 1996)."""
+    return SinusoidalPulse("half_sine", 0.0, math.pi, (math.pi / 2,), ((1.0, 1.0, -math.pi / 2),))
+
+
+def rectangular() -> SinusoidalPulse:
+    """Constant 1, 0 to pi: duration T_p/2, as the half sine (Housner 1963)."""
+    return SinusoidalPulse("rectangular", 0.0, math.pi, (), ((1.0, 0.0, 0.0),))
+
+
+def c1() -> SinusoidalPulse:
+    """Type C_1 of Makris & Chang (2000): displacement and velocity end at zero after 1.5 cycles."""
+    return _type_c(1)
+
+
+def c2() -> SinusoidalPulse:
+    """Type C_2 of Makris & Chang (2000): displacement and velocity end at zero after 2.5 cycles."""
+    return _type_c(2)
+
+
+def _type_c(cycles: int) -> SinusoidalPulse:
+    from scipy.optimize import brentq  # takes longer to import than the rest of the package; only these pulses need it
+
+    span = (2 * cycles + 1) * math.pi
+
+    def end_displacement(x: float) -> float:
+        return math.cos(span - x) + (span - 2 * x) * math.sin(x) - math.cos(x)
+
+    start = float(brentq(end_displacement, 0.0, 0.5, xtol=1e-16, rtol=8.9e-16))
+    stationary = tuple(k * math.pi for k in range(1, 2 * cycles + 1))
+    return _sinusoid(f"c{cycles}", start, span - start, stationary)
+
+
+def ricker() -> WaveletPulse:
+    """Symmetric Ricker wavelet (1 - phi^2/2) exp(-phi^2/4), -4 pi to 4 pi."""
+    root = math.sqrt(6.0)
+    return WaveletPulse("ricker", -4 * math.pi, 4 * math.pi, (-root, 0.0, root), (1.0, 0.0, -0.5), 4.0)
+
+
+def ricker_antisymmetric() -> WaveletPulse:
+    """Antisymmetric Ricker wavelet (z^2 - 3) z exp(-z^2/2)/beta, z = phi/sqrt(3), -4 pi to 4 pi."""
+    square = 3.0 - math.sqrt(6.0)  # z^2 at the largest peak
+    beta = math.sqrt(6.0) * math.sqrt(square) * math.exp(-square / 2)
+    inner, outer = math.sqrt(3 * square), math.sqrt(3 * (3.0 + math.sqrt(6.0)))
+    polynomial = (0.0, -math.sqrt(3.0) / beta, 0.0, 1.0 / (3.0 * math.sqrt(3.0) * beta))
+    return WaveletPulse(
+        "ricker_antisymmetric", -4 * math.pi, 4 * math.pi, (-outer, -inner, inner, outer), polynomial, 6.0
+    )
+
+
+def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> SinusoidalPulse:
+    """Acceleration of the velocity pulse of Mavroeidis & Papageorgiou (2003), scaled to unit peak.
+
+    Parameters
+    ----------
+    cycles : float
+        gamma [-], (1, 20]: number of cycles within the envelope.
+    phase : float
+        nu [rad], [-2 pi, 2 pi].
+
+    Notes
+    -----
+    -[sin(phi/gamma) cos(phi + nu) + gamma sin(phi + nu) (1 + cos(phi/gamma))] is the sum of three sinusoids
+    -[gamma sin B + (gamma + 1)/2 sin(B + A) + (gamma - 1)/2 sin(B - A)], A = phi/gamma, B = phi + nu.
+    """
+    cycles = number("cycles", cycles, 1.0, 20.0, closed="right")
+    phase = number("phase", phase, -2 * math.pi, 2 * math.pi, unit="rad")
+    shift = phase + math.pi / 2  # -sin x = cos(x + pi/2)
+    raw = (
+        (cycles, 1.0, shift),
+        ((cycles + 1) / 2, 1 + 1 / cycles, shift),
+        ((cycles - 1) / 2, 1 - 1 / cycles, shift),
+    )
+    end = math.pi * cycles
+    return SinusoidalPulse.of_unit_peak("mavroeidis_papageorgiou", -end, end, raw)
+
+
+_FACTORIES: dict[str, Callable[..., AbstractPulse]] = {
+    factory.__name__: factory
+    for factory in (
+        sine,
+        cosine,
+        half_sine,
+        rectangular,
+        c1,
+        c2,
+        ricker,
+        ricker_antisymmetric,
+        mavroeidis_papageorgiou,
+    )
+}
+
+PULSE_NAMES: tuple[str, ...] = tuple(_FACTORIES)
+"""Names of the pulses of this package; a leading minus mirrors one. Files store their places: append only."""
+
+
+_REGISTERED: dict[str, AbstractPulse] = {}
+
+
+def register(pulse: AbstractPulse) -> None:
+    """Make a pulse of one's own available by its name, to every function and to the service of this process.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+        Its name must be an identifier that is not taken, without a leading minus.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is no pulse or the name cannot be used.
+    """
+    if not isinstance(pulse, AbstractPulse):
+        raise InvalidArgumentError("pulse", pulse, "a pulse such as SinusoidalPulse")
+    if not pulse.name.isidentifier() or pulse.name in pulse_names():
+        raise InvalidArgumentError("name", pulse.name, "an identifier that no other pulse has")
+    _REGISTERED[pulse.name] = pulse
+
+
+def pulse_names() -> tuple[str, ...]:
+    """Names of all pulses: those of the package, then the registered ones."""
+    return (*PULSE_NAMES, *_REGISTERED)
+
+
+def pulse_number(name: str) -> int:
+    """Number of a pulse in data files: its place in `PULSE_NAMES`, which never changes, or -1 for a registered one."""
+    return PULSE_NAMES.index(name) if name in PULSE_NAMES else -1
+
+
+def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
+    """The pulse itself, or the one of that name.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For anything else.
+    """
+    return pulse if isinstance(pulse, AbstractPulse) else get_pulse(pulse)
+
+
+def get_pulse(name: str, **parameters: float) -> AbstractPulse:
+    """The pulse of that name; `"-sine"` is the mirrored sine.
+
+    Parameters
+    ----------
+    name : str
+        One of `PULSE_NAMES` or of a registered pulse, with an optional leading minus.
+    **parameters : float
+        `cycles` and `phase`, for mavroeidis_papageorgiou only.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an unknown name or parameter, or a parameter out of range.
+    """
+    if not isinstance(name, str):
+        allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
+        raise InvalidArgumentError("pulse", name, allowed)
+    registered = _REGISTERED.get(name.removeprefix("-"))
+    if registered is not None and not parameters:
+        return registered.mirrored() if name.startswith("-") else registered
+    return _build_pulse(name, **{key: checked_number(key, value) for key, value in parameters.items()})
+
+
+@lru_cache(maxsize=256)
+def _build_pulse(name: str, **parameters: float) -> AbstractPulse:
+    base = one_of("pulse", name.removeprefix("-"), pulse_names())
+    allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
+    for parameter in parameters:
+        one_of(f"parameter of pulse {base}", parameter, allowed)
+    made = _FACTORIES[base](**parameters)
+    return made.mirrored() if name.startswith("-") else made

@@ -1,0 +1,67 @@
+"""PEER AT2 files: four header lines, then values in g, five on a line.
+
+The fourth line has one of the forms `NPTS=  4000, DT= .01000 SEC`, `NPTS=  4000, DT= .01000`, `NPTS 4000 DT 0.01`,
+`DT= .01 SEC, NPTS= 4000` or, in older files, `4000 0.0100 NPTS, DT`; the comma may be missing. Some files have more or
+fewer lines of text before it.
+"""
+
+from __future__ import annotations
+
+import re
+
+from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
+from rocking._excitation.records.record import Record
+
+HEADER_LINES = 12
+"""Largest number of lines before the line with NPTS and DT."""
+
+_NAMED = r"\s*+[=:]?\s*+([^\s,;=]+)"
+
+
+def header_line(file: TextFile) -> int | None:
+    """Index of the line with NPTS and DT, None if the file is no AT2 file."""
+    for k, line in enumerate(file.head[:HEADER_LINES]):
+        if re.search(r"\bNPTS\b", line, re.I) and re.search(r"\bDT\b", line, re.I):
+            return k
+    return None
+
+
+def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
+    """Read an AT2 file; arguments and errors as for `read_record`."""
+    place = header_line(file)
+    if place is None:
+        raise file.error(None, "no line with NPTS and DT", "one within the first lines of an AT2 file")
+    count_text, step_text = _count_and_step(file, place)
+    stated_count = file.count(place, count_text, "the number of points NPTS")
+    stated_step = file.positive(place, step_text, "the time step DT [s]")
+    title, unit_line, stated_unit = "", None, None
+    for k, line in enumerate(file.head[:place]):
+        if re.search(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", line, re.I):
+            raise file.error(k, line.strip(), "an acceleration time history")
+        named = re.search(r"UNITS?(?:\s+OF|\s*[:=])?\s+(\S+)", line, re.I) or re.search(
+            r"[(\[]([^()\[\]]+)[)\]]$", line.rstrip()
+        )
+        if named and parse_unit(named[1].rstrip(".,;")):
+            unit_line, stated_unit = k, parse_unit(named[1].rstrip(".,;"))
+        elif named and re.search(r"\bUNITS?\b", line, re.I):
+            raise file.error(k, named[1], "a unit of acceleration, such as G")
+        if k == 1:
+            title = line.strip()
+    agreed = agreed_unit(file, unit_line if unit_line is not None else place, stated_unit, unit)
+    step = agreed_step(file, place, stated_step, time_step)
+    values = file.values(place + 1)
+    remarks = file.checked_count(values, stated_count, place)
+    source = f"{file.name} (PEER AT2)"
+    return Record(values, step, agreed, name=title or file.name, source=source, remarks=remarks)
+
+
+def _count_and_step(file: TextFile, place: int) -> tuple[str, str]:
+    """The texts of NPTS and DT on the header line."""
+    line = file.head[place]
+    leading = re.split(r"[\s,]+", line.strip(), maxsplit=2)
+    if len(leading) > 2 and all(map(NUMBER.fullmatch, leading[:2])) and re.match(r"NPTS\b", leading[2], re.I):
+        return leading[0], leading[1]  # values before their names, in the order of these
+    count, step = re.search(r"\bNPTS\b" + _NAMED, line, re.I), re.search(r"\bDT\b" + _NAMED, line, re.I)
+    if count is None or step is None:
+        raise file.error(place, line.strip(), "a form such as NPTS=  4000, DT= .01000 SEC")
+    return count[1], re.sub(r"(?i)s(ec)?\.?$", "", step[1])

@@ -1,0 +1,187 @@
+"""`read_record`: reads an accelerogram file; the format is recognised by the content, not by the name."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, TypedDict
+
+import numpy as np
+
+from rocking._base.errors import InvalidArgumentError, RecordFileError, number, one_of
+from rocking._base.units import Scalar
+from rocking._excitation.records.readers import columns, esm, knet, peer_at2, seismic
+from rocking._excitation.records.readers.lines import MAX_LINE, TextFile
+from rocking._excitation.records.record import TIME_STEP, UNITS, Record
+
+if TYPE_CHECKING:  # loads the compiler
+    from rocking._numba.cancellation import StopFlag
+
+MAX_BYTES = 200_000_000
+"""Largest file that is read [bytes]."""
+
+MAX_SHIFT = 0.02
+"""Largest distance in time of the last samples of two components whose steps differ by rounding, in steps [-]."""
+
+MAX_LENGTH_RATIO = 1.1
+"""Largest ratio of the numbers of samples of two components of one record [-]."""
+
+
+def read_record(
+    path: str | PathLike[str],
+    *,
+    unit: str | None = None,
+    time_step: Scalar | None = None,
+    component: str | None = None,
+    vertical: str | PathLike[str] | None = None,
+) -> Record:
+    """Read a recorded ground acceleration from a file, or from two where the vertical component has its own.
+
+    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, columns of times and accelerations or of
+    accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is corrected or resampled.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+    unit : str, optional
+        Unit of the samples, a key of `rocking._excitation.records.record.UNITS`. Required where the file states none;
+        refused where it states another.
+    time_step : float, optional
+        Time step [s], [1e-6, 10]; likewise.
+    component : str, optional
+        Name of the column or trace, where the file has several.
+    vertical : str or path, optional
+        File of the vertical component, upwards positive, with one component that starts at the same time; or, where
+        there is no file of this name, its column or trace in the first file. `unit` and `time_step` count for both. A
+        vertical component of another length, by a tenth at most, is cut or continued by zeros, with a remark.
+
+    Raises
+    ------
+    RecordFileError
+        If a file is damaged, ambiguous or of an unknown format: with the line, what was found and what was expected.
+    InvalidArgumentError
+        If a file cannot be read, an argument is out of range, or the components differ in step or length.
+    """
+    content, name = _content("path", path), Path(path).name
+    stated: _Stated = {"unit": unit, "time_step": time_step}
+    if vertical is None or not (isinstance(vertical, PathLike) or Path(vertical).is_file()):
+        return parse_record(content, name, **stated, component=component, vertical=vertical)
+    found = parse_record(content, name, **stated, component=component)
+    return _with_vertical(found, parse_record(_content("vertical", vertical), Path(vertical).name, **stated))
+
+
+class _Stated(TypedDict):
+    """What the caller states of all files."""
+
+    unit: str | None
+    time_step: Scalar | None
+
+
+def _content(parameter: str, path: str | PathLike[str]) -> bytes:
+    """The bytes of a file, one more than is allowed at most."""
+    try:
+        with Path(path).open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise InvalidArgumentError(parameter, str(path), f"a file that can be read ({error.strerror})") from None
+
+
+def _with_vertical(found: Record, upwards: Record) -> Record:
+    """A record with another one as its vertical component."""
+    shift = abs(upwards.time_step / found.time_step - 1.0) * min(found.samples, upwards.samples)
+    if shift > MAX_SHIFT:
+        allowed = f"a component with the step of the horizontal one, {found.time_step:g} s"
+        raise InvalidArgumentError("vertical", f"a time step of {upwards.time_step:g} s", allowed)
+    counts = sorted((found.samples, upwards.samples))
+    if counts[1] > MAX_LENGTH_RATIO * counts[0]:
+        allowed = f"about as many samples as the horizontal component, {found.samples}"
+        raise InvalidArgumentError("vertical", f"{upwards.samples} samples", allowed)
+    remarks = [*found.remarks, *(f"vertical component: {remark}" for remark in upwards.remarks)]
+    if upwards.samples != found.samples:
+        done = "cut" if upwards.samples > found.samples else "continued by zeros"
+        remarks.append(
+            f"the vertical component has {upwards.samples} samples and the horizontal one {found.samples}: it is {done}"
+        )
+    samples = np.zeros(found.samples)
+    samples[: upwards.samples] = upwards.acceleration[: found.samples]
+    source = f"{found.source}; vertical: {upwards.name}, {upwards.source}"
+    about = found.name, source, remarks
+    return Record(found.acceleration, found.time_step, "m/s2", *about, vertical=samples)
+
+
+def parse_record(
+    content: bytes,
+    name: str,
+    *,
+    unit: str | None = None,
+    time_step: Scalar | None = None,
+    component: str | None = None,
+    vertical: str | None = None,
+    stop: StopFlag | None = None,
+) -> Record:
+    """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
+
+    `vertical` is a column or trace of this file. `stop` cancels the work, which then raises `StoppedError`. Other
+    parameters and errors as for `read_record`.
+    """
+    found = _parsed(content, name, unit, time_step, component, stop)
+    if vertical is None:
+        return found
+    try:
+        upwards = _parsed(content, name, unit, time_step, vertical, stop)
+    except RecordFileError as error:
+        raise InvalidArgumentError("vertical", vertical, f"a component of {name} ({error})") from None
+    return _with_vertical(found, upwards)
+
+
+def _parsed(
+    content: bytes,
+    name: str,
+    unit: str | None,
+    time_step: Scalar | None,
+    component: str | None,
+    stop: StopFlag | None,
+) -> Record:
+    """One component."""
+    if unit is not None:
+        one_of("unit", unit, UNITS)
+    step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
+    if len(content) > MAX_BYTES:
+        raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
+    if seismic.is_seismic(content):
+        return seismic.read(content, name, unit, step, component)
+    _check_text(content, name)
+    file = TextFile(name, content, stop)
+    try:
+        return _read_text(file, unit, step, component)
+    except RecordFileError:
+        raise
+    except InvalidArgumentError as error:  # samples that make no record, such as zeros only
+        raise file.error(None, f"{error.parameter} {error.value}", error.allowed) from None
+
+
+def _read_text(file: TextFile, unit: str | None, time_step: float | None, component: str | None) -> Record:
+    if esm.is_esm(file):
+        found = esm.read(file, unit, time_step)
+    elif knet.is_knet(file):
+        found = knet.read(file, unit, time_step)
+    elif peer_at2.header_line(file) is not None:
+        found = peer_at2.read(file, unit, time_step)
+    else:
+        return columns.read(file, unit, time_step, component)
+    if component is not None:
+        raise file.error(None, "a file with one component", "no name of a component")
+    return found
+
+
+def _check_text(content: bytes, name: str) -> None:
+    """Refuse what is no text of numbers."""
+    if not content or content.isspace():
+        raise RecordFileError(name, None, "an empty file", "a recorded ground acceleration")
+    if b"\0" in content:
+        raise RecordFileError(name, None, "binary content", "text, or a SAC or miniSEED file")
+    start = content[:MAX_LINE].lstrip()[:40].decode("latin-1")
+    if start.startswith(("<", "{")):
+        expected = "numbers or the header of a known format, not a web page or JSON"
+        raise RecordFileError(name, 1, start.splitlines()[0], expected)

@@ -1,0 +1,141 @@
+"""The protocol of an excitation, `AbstractPulse`; each family of pulses is a module beside this one.
+
+An excitation gives its shape f(phi), the phases that divide it into monotone intervals, and the coefficients by which
+the solver expands f (`rocking._excitation.series`). Arguments are checked at construction.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.errors import InvalidArgumentError, float_array, in_range, number
+from rocking._excitation.series import ExcitationSeries
+
+MAX_PIECES = 84
+"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
+
+MAX_MAGNITUDE = 1e6
+"""Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase has fewer than six digits."""
+
+PEAK_TOLERANCE = 1e-12
+"""Largest difference of max |f| from 1 [-]."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AbstractPulse(ABC):
+    """A pulse shape f(phi), max |f| = 1, zero outside `start` <= phi <= `end` [rad].
+
+    Attributes
+    ----------
+    name : str
+        Not empty.
+    start, end : float
+        Window of the phase [rad], start < end, within +-`MAX_MAGNITUDE`.
+    stationary : tuple of float
+        All phases strictly inside the window at which f' changes its sign [rad], ascending; at most `MAX_PIECES` - 1.
+        If empty, they are computed.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range, `stationary` is incomplete, or max |f| is not 1 to within `PEAK_TOLERANCE`.
+    """
+
+    name: str
+    start: float
+    end: float
+    stationary: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        self._check_window()
+        start, end = self.start, self.end
+        found = self._stationary_phases(start, end)
+        given = checked_numbers("stationary", self.stationary, unit="rad")
+        if given and not (len(given) == len(found) and np.allclose(given, found, rtol=0.0, atol=1e-10 * (end - start))):
+            raise InvalidArgumentError(
+                "stationary", given, f"(), or all phases inside where f' changes its sign: {found}"
+            )
+        if len(found) >= MAX_PIECES:
+            raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
+        object.__setattr__(self, "stationary", given or found)
+        peak = peak_amplitude(self.shape, start, end, found)
+        if not abs(peak - 1.0) <= PEAK_TOLERANCE:
+            raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
+
+    def _check_window(self) -> None:
+        """Check the name and the window, and make its ends numbers."""
+        if not (self.name and isinstance(self.name, str)):
+            raise InvalidArgumentError("name", self.name, "a string that is not empty")
+        for name, value in zip(("start", "end"), checked_window(self.start, self.end), strict=True):
+            object.__setattr__(self, name, value)
+
+    @abstractmethod
+    def shape(self, phi: ArrayLike) -> Array:
+        """f(phi) [-] on the window, its smooth continuation outside; `phi` [rad], any shape."""
+
+    @abstractmethod
+    def mirrored(self) -> AbstractPulse:
+        """The pulse -f(phi)."""
+
+    @property
+    @abstractmethod
+    def series(self) -> ExcitationSeries:
+        """Family and coefficients by which the solver evaluates and expands f."""
+
+    @abstractmethod
+    def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
+        """The phases strictly inside the window at which f' changes its sign [rad]."""
+
+    def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
+        phi = float_array("phi", phi, unit="rad")
+        return np.where((phi >= self.start) & (phi <= self.end), self.shape(np.clip(phi, self.start, self.end)), 0.0)
+
+    @property
+    def samples(self) -> tuple[Array, Array] | None:
+        """Phases [rad] and values of f between which it is linear, None if it is not given so."""
+        return None
+
+    @property
+    def monotone_pieces(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of phi [rad] that cover the window, on each of which f is monotone."""
+        ends = (self.start, *self.stationary, self.end)
+        return tuple(pairwise(ends))
+
+
+def checked_number(parameter: str, value: ArrayLike, *, low: float = -MAX_MAGNITUDE, unit: str = "-") -> float:
+    """A number from `low` to `MAX_MAGNITUDE`, checked."""
+    return number(parameter, value, low, MAX_MAGNITUDE, unit=unit)
+
+
+def checked_window(start: ArrayLike, end: ArrayLike) -> tuple[float, float]:
+    """The ends of a window [rad], checked."""
+    first, last = checked_number("start", start, unit="rad"), checked_number("end", end, unit="rad")
+    in_range("end", last, first, MAX_MAGNITUDE, closed="right", unit="rad")
+    return first, last
+
+
+def checked_numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple[float, ...]:
+    """Numbers within +-`MAX_MAGNITUDE`, checked."""
+    array = in_range(parameter, values, -MAX_MAGNITUDE, MAX_MAGNITUDE, unit=unit)
+    if array.ndim != 1:
+        raise InvalidArgumentError(parameter, values, "a sequence of numbers")
+    return tuple(array.tolist())
+
+
+def peak_amplitude(shape: Callable[[Array], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
+    """max |f| on the window [-]."""
+    return float(np.max(np.abs(shape(np.array([start, *turns, end])))))
+
+
+def mirrored_name(name: str) -> str:
+    """The name of the mirrored pulse: with a leading minus, or without it."""
+    return name.removeprefix("-") if name.startswith("-") else "-" + name

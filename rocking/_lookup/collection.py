@@ -1,0 +1,273 @@
+"""All spectrum cubes of a results folder; each is read when first needed.
+
+A missing, damaged or unreadable cube never gives a wrong result: the solver computes it instead, and
+`CubeCollection.problems` reports the file. Files that change are read again.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking._base.errors import DatasetError
+from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
+from rocking._datasets.checksum import sha256_of
+from rocking._datasets.cube import decode_dataset
+from rocking._datasets.shared_cache import KnownVersion, SharedCache
+from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._lookup.cube import Cube
+from rocking._lookup.cube_slice import CubeSlice, check_slice, decode_slice
+from rocking._lookup.packed_tables import PackedTables
+from rocking._numba.cancellation import StopFlag
+from rocking._solver.bounded_response import BoundedResponse
+
+MAX_PRIVATE_BYTES = 500_000_000
+"""Tables in private memory that a collection with a cache keeps, where the cache cannot be written [bytes]."""
+
+
+NO_CUBES = "no spectrum cubes; `make reproduce` builds them"
+"""What `CubeCollection.problems` reports where nothing is damaged, but there are no cubes."""
+
+
+class CubeCollection:
+    """The spectrum cubes below a results folder.
+
+    Parameters
+    ----------
+    results : path
+        Folder that the workflow fills; it need not exist yet.
+    cache : path, optional
+        Folder in which processes share tables of the cubes and results of checks; by default nothing is shared.
+
+    Attributes
+    ----------
+    catalogue : Catalogue
+        All files of the folder.
+    """
+
+    def __init__(self, results: Path | str, cache: Path | None = None) -> None:
+        self._cache = None if cache is None else SharedCache(cache, Path(results))
+        self.catalogue = Catalogue(results, self._cache)
+        self._tables = None if self._cache is None else PackedTables(self._cache, self.catalogue)
+        self._slices = VersionCache[tuple[str, float], CubeSlice | DatasetError]()
+        self._restitutions = VersionCache[str, list[float]]()
+        self._problems = VersionCache[str, str | None]()
+
+    def restitutions(self, pulse: str) -> list[float]:
+        """Restitutions for which the folder has a cube of the pulse, ascending."""
+        key = pulse.removeprefix("-")
+        known = self._restitutions.current(key)
+        if known is not None:
+            return known
+        folder = self.catalogue.results / "spectra" / key
+        version = version_of(folder)
+        if version is None:
+            return []
+        found = sorted(_restitution_of(path.stem) for path in folder.glob("eta-?.??.nc"))
+        if version.is_settled:
+            self._restitutions.store(key, folder, version, found)
+        return found
+
+    def slice_at(self, pulse: str, restitution: float) -> CubeSlice | None:
+        """The cube of a pulse and a restitution, None if there is none.
+
+        A mirrored pulse has the same peaks and outcomes, hence the same cube.
+
+        Raises
+        ------
+        DatasetError
+            If the file is damaged, cannot be read, or does not contain the cube that its name states.
+        """
+        key = pulse.removeprefix("-"), restitution
+        known = self._slices.current(key)
+        if known is None:
+            try:
+                # under the lock: another thread may read the same file, which is then read once
+                with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
+                    known = self._slices.value(key, file, lambda file: self._open(file, *key))
+                    self._limit_private_memory(key)
+            except UnknownDatasetError:
+                return None
+        if isinstance(known, DatasetError):
+            raise known
+        return known
+
+    def cube(self, pulse: str, method: str = "auto") -> Cube:
+        """The cubes of a pulse; each is read when first needed.
+
+        A damaged cube then raises `DatasetError` with `method="cube"`; otherwise it is treated as missing and reported
+        by `problems`.
+        """
+        restitutions = np.array(self.restitutions(pulse))
+
+        @cache  # one response uses one version of each file
+        def slice_at(k: int) -> CubeSlice | None:
+            try:
+                return self.slice_at(pulse, float(restitutions[k]))
+            except DatasetError:
+                if method == "cube":
+                    raise
+                return None
+
+        return Cube(pulse, restitutions, slice_at)
+
+    def is_open(self, pulse: str, restitution: float) -> bool:
+        """True if no file has to be read for a response with this restitution."""
+        restitutions = self.restitutions(pulse)
+        if not restitutions or not restitutions[0] <= restitution <= restitutions[-1]:
+            return True
+        used = Cube(pulse, np.array(restitutions), lambda _: None).used(np.array([restitution]))
+        return all(self._slices.current((pulse.removeprefix("-"), restitutions[k])) for k in used)
+
+    def problems(self) -> dict[str, str]:
+        """Read and check every data set once per version of its file; descriptions of the problems by name.
+
+        The name "spectra" is used if there are no cubes at all. Folders that cannot be read are listed by their names.
+        """
+        names, found = self.catalogue.scan()
+        if not any(name.startswith("spectra/") for name in names):
+            found.setdefault("spectra", NO_CUBES)
+        elif self._cache is not None:
+            self._cache.keep_only(names)
+        for name in names:
+            try:
+                problem = self.problem(name)
+            except UnknownDatasetError:  # deleted in the meantime
+                continue
+            if problem is not None:
+                found[name] = problem
+        return found
+
+    def response(
+        self,
+        pulse: str | AbstractPulse,
+        *,
+        slenderness: ArrayLike,
+        frequency_ratio: ArrayLike,
+        restitution: ArrayLike,
+        alpha: ArrayLike | None = None,
+        tolerance: float = 1e-4,
+        method: str = "auto",
+        threads: int | None = None,
+        stop: StopFlag | None = None,
+    ) -> tuple[BoundedResponse, tuple[str, ...]]:
+        """Responses as `Cube.response`, from all cubes of a pulse, and the sha256 of each cube that was used.
+
+        Parameters
+        ----------
+        pulse : str or AbstractPulse
+            The pulse, by its name if cubes are to be used.
+        slenderness, frequency_ratio, restitution : array_like, broadcasting
+            1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
+        alpha : array_like, optional
+            Slenderness angle [rad]; None or 0 for the slender limit.
+        tolerance : float
+            Largest error of an interpolated peak_rotation [-], >= 0.
+        method : {"auto", "cube", "solver"}
+            As `Cube.response`; "auto" also uses the solver where a cube is missing or damaged.
+        threads : int, optional
+            Number of threads for large arrays, >= 1; by default all cores.
+        stop : StopFlag, optional
+            The computation ends with `StoppedError` soon after another thread sets it.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range.
+        OutsideCubeError
+            With `method="cube"`, for a point where the cubes give no response.
+        DatasetError
+            With `method="cube"`, for a damaged cube.
+        """
+        as_pulse(pulse)
+        cube = self.cube(pulse, method) if isinstance(pulse, str) else Cube(pulse, np.empty(0), lambda _: None)
+        result, used = cube.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop)
+        return result, tuple(one.sha256 for one in used)
+
+    def problem(self, name: str) -> str | None:
+        """Description of the problem of a data set; None if it is intact.
+
+        Raises
+        ------
+        UnknownDatasetError
+            If there is no data set of that name.
+        """
+        try:
+            with self.catalogue.open(name) as file:
+                return self.problem_of(file)
+        except DatasetError as error:
+            return str(error)
+
+    def problem_of(self, file: DataFile) -> str | None:
+        """The same for an open data set, which is read and checked once per version of its file."""
+        with self.catalogue.lock:
+            return self._problems.value(file.name, file, self._check)
+
+    def _limit_private_memory(self, newest: tuple[str, float]) -> None:
+        """Forget the oldest tables in private memory, which are read again when needed; tables in files need none."""
+        if self._cache is None:
+            return
+        sizes = {key: 0 if isinstance(one, DatasetError) else one.private_bytes for key, one in self._slices.items()}
+        excess = sum(sizes.values()) - MAX_PRIVATE_BYTES
+        for key, size in sizes.items():
+            if excess > 0 and size and key != newest:
+                self._slices.forget(key)
+                excess -= size
+
+    def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
+        try:
+            cube = decode_slice(file.content(), file.name) if self._tables is None else self._tables.slice_of(file)
+            sampled = None if isinstance(cube.pulse, str) else cube.pulse
+            found = str(cube.pulse) if sampled is None else sampled.name
+            _check_content(file.name, (found, cube.restitution), (pulse, restitution))
+            if sampled is not None and sampled != as_pulse(pulse):
+                raise DatasetError(f"{file.name}: holds other samples than the pulse {pulse}; build it again")
+        except DatasetError as error:
+            return error
+        return cube
+
+    def _check(self, file: DataFile) -> str | None:
+        """Read a data set, unless another process has; description of its problem, None if it is intact."""
+        if self._cache is None:
+            return _problem_of(file.name, file.content())
+        with self._cache.alone(file.name):
+            known = self._cache.known(file.name, file.version)
+            if known is None or not known.checked:
+                content = file.content()
+                known = KnownVersion(sha256_of(content), checked=True, problem=_problem_of(file.name, content))
+                self._cache.store(file.name, file.version, known)
+        return known.problem
+
+
+def _cube_name(pulse: str, restitution: float) -> str:
+    return f"spectra/{pulse.removeprefix('-')}/eta-{restitution:.2f}"
+
+
+def _restitution_of(stem: str) -> float:
+    """Restitution in the name of a file; nan, which equals no restitution, if the name has none."""
+    try:
+        return float(stem.removeprefix("eta-"))
+    except ValueError:
+        return np.nan
+
+
+def _check_content(name: str, found: tuple[str, float], expected: tuple[str, float]) -> None:
+    """Raise `DatasetError` if a data set has another pulse or restitution than expected."""
+    if found != expected:
+        raise DatasetError(f"{name}: holds {found[0]} with restitution {found[1]:g}; build it again")
+
+
+def _problem_of(name: str, content: bytes) -> str | None:
+    """Description of the problem of a data set with these bytes, None if it is intact."""
+    kind, *rest = name.split("/")
+    try:
+        if kind == "spectra" and len(rest) == 2:
+            _check_content(name, check_slice(content, name), (rest[0], _restitution_of(rest[1])))
+        else:
+            decode_dataset(content, name)
+    except DatasetError as error:
+        return str(error)
+    return None

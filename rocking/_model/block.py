@@ -1,0 +1,172 @@
+"""The rigid rectangular block: parameters of the equation of motion from its geometry (section 2 of the paper).
+
+`AbstractBlock` is what responses need to know of anything that rocks like a block.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Self
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import number, positive
+from rocking._base.units import Scalar
+
+
+@dataclass(frozen=True, init=False)
+class AbstractBlock(ABC):
+    """What rocks like a block.
+
+    Parameters
+    ----------
+    half_width : float
+        b of the rectangular block of this alpha and p [m], > 0.
+    half_height : float
+        h of the same [m], > 0.
+    gravity : float
+        g [m/s2], > 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a length or gravity is not finite and positive.
+    """
+
+    half_width: float
+    half_height: float
+    gravity: float
+
+    def __init__(self, half_width: Scalar, half_height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
+        object.__setattr__(self, "half_width", positive("half_width", half_width, "m"))  # a frozen dataclass
+        object.__setattr__(self, "half_height", positive("half_height", half_height, "m"))
+        object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
+
+    @property
+    def half_diagonal(self) -> float:
+        """R = sqrt(b^2 + h^2) [m] (figure 1)."""
+        return math.hypot(self.half_width, self.half_height)
+
+    @property
+    @abstractmethod
+    def alpha(self) -> float:
+        """Rotation at which the restoring moment vanishes [rad], (0, pi/2)."""
+
+    @property
+    @abstractmethod
+    def equation_alpha(self) -> float:
+        """Alpha in the equation of motion [rad]; 0 for the linear equation (3.1)."""
+
+    @property
+    @abstractmethod
+    def description(self) -> str:
+        """The block in words."""
+
+    @property
+    @abstractmethod
+    def contact_is_known(self) -> bool:
+        """Whether the contact forces follow from the motion."""
+
+    @property
+    @abstractmethod
+    def frequency_parameter(self) -> float:
+        """p [rad/s]."""
+
+    @property
+    @abstractmethod
+    def uplift_acceleration(self) -> float:
+        """Smallest ground acceleration that starts rocking [m/s2]."""
+
+    @property
+    @abstractmethod
+    def housner_restitution(self) -> float:
+        """Coefficient of restitution by conservation of angular momentum [-]."""
+
+    @property
+    @abstractmethod
+    def inelastic_restitution(self) -> float:
+        """Coefficient of restitution of an impact without bouncing [-], [0, 1]."""
+
+    @property
+    def top_height(self) -> float:
+        """Height of a top corner above the pivot below it [m], 2 h."""
+        return 2.0 * self.half_height
+
+    def top_displacement(self, rotation: float) -> float:
+        """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
+        return self.top_height * math.sin(rotation) if math.isfinite(rotation) else math.nan
+
+
+@dataclass(frozen=True, init=False)
+class Block(AbstractBlock):
+    """A free-standing rigid rectangular block of uniform density (figure 1).
+
+    Parameters
+    ----------
+    half_width : float
+        b [m], > 0; the base is 2b wide.
+    half_height : float
+        h [m], > 0; the block is 2h high.
+    gravity : float
+        g [m/s2], > 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a length or gravity is not finite and positive.
+    """
+
+    @classmethod
+    def from_slenderness_angle(cls, alpha: Scalar, half_diagonal: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> Self:
+        """Build a block from alpha [rad], (0, pi/2), and R [m], > 0."""
+        angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
+        radius = positive("half_diagonal", half_diagonal, "m")
+        return cls(radius * math.sin(angle), radius * math.cos(angle), gravity)
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle alpha [rad], (0, pi/2): tan(alpha) = b/h, below (2.1)."""
+        return math.atan2(self.half_width, self.half_height)
+
+    @property
+    def equation_alpha(self) -> float:
+        """Alpha in the equation of motion [rad]: that of the block; (2.2) tends to (3.1) as it goes to 0."""
+        return self.alpha
+
+    @property
+    def description(self) -> str:
+        return f"block of {2 * self.half_width:.4g} m x {2 * self.half_height:.4g} m"
+
+    @property
+    def contact_is_known(self) -> bool:
+        return True
+
+    @property
+    def frequency_parameter(self) -> float:
+        """p = sqrt(3 g/(4 R)) [rad/s], below (2.2)."""
+        return math.sqrt(0.75 * self.gravity / self.half_diagonal)
+
+    @property
+    def uplift_acceleration(self) -> float:
+        """Smallest ground acceleration that starts rocking, g tan(alpha) [m/s2], below (2.1)."""
+        return self.gravity * self.half_width / self.half_height
+
+    @property
+    def housner_restitution(self) -> float:
+        """Coefficient of restitution eta = 1 - (3/2) sin^2(alpha) [-], (2.4) (Housner 1963).
+
+        Negative for alpha above 54.7 degrees, where `inelastic_restitution` applies.
+        """
+        sin_alpha = self.half_width / self.half_diagonal
+        return 1.0 - 1.5 * sin_alpha * sin_alpha  # (2.4)
+
+    @property
+    def inelastic_restitution(self) -> float:
+        """Coefficient of restitution of an impact without bouncing [-], [0, 1): the larger of (2.4) and 0.
+
+        (2.4) assumes that the whole impulse acts at the new pivot and that the old pivot rises. Above
+        alpha = 54.7 degrees it is negative: the old pivot would move into the ground. The ground then exerts an impulse
+        there too, and with impulses at both corners the block stops.
+        """
+        return max(self.housner_restitution, 0.0)  # departs from (2.4) where that is negative

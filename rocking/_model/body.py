@@ -1,0 +1,201 @@
+"""Bodies with two edges: the parameters of their equation of motion from mass and geometry.
+
+About the edge s (right: theta > 0) a rigid body on a ground that accelerates by a to the right and w upwards obeys
+
+    theta'' = -p_s^2 (sgn(theta) (1 + w/g) sin(alpha_s - |theta|) + (a/g) cos(alpha_s - |theta|)),
+
+(2.2) for equal edges and w = 0, with R_s^2 = h^2 + b_s^2, tan(alpha_s) = b_s/h and p_s^2 = g R_s/(r^2 + R_s^2), where
+b_s is the distance of the centre of mass from the edge, h its height and r the radius of gyration about it.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.errors import InvalidArgumentError, in_range
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """One edge of a body and the rotation about it; float64 arrays that broadcast.
+
+    Attributes
+    ----------
+    alpha : float array [rad]
+        Rotation at which the body is balanced on the edge, (0, 1.57].
+    frequency_parameter : float array [rad/s]
+        p of small rotations about the equilibrium on the edge, > 0.
+    restitution : float array [-]
+        Velocity ratio of an impact that leaves the edge, at most 1. Negative: the body does not rock on but stops.
+    inertia_ratio : float array [-]
+        R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion.
+    """
+
+    alpha: Array
+    frequency_parameter: Array
+    restitution: Array
+    inertia_ratio: Array
+
+
+def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gravity: Array, tilt: Array) -> Edge:
+    """An edge of a rigid body.
+
+    Parameters
+    ----------
+    distance, other : float arrays
+        Distances b_s, b_-s of the centre of mass from this edge and from the other, along the base [m], > 0.
+    height, gyration : float arrays
+        Height h of the centre of mass above the base, and radius of gyration r about it [m], > 0.
+    gravity : float array
+        g [m/s2], > 0.
+    tilt : float array
+        Angle by which the base is inclined towards this edge [rad].
+    """
+    b, c, h, r = distance, other, height, gyration
+    square = r * r + h * h
+    about_edge = square + b * b
+    radius = np.hypot(h, b)
+    return Edge(
+        alpha=np.arctan2(b, h) - tilt,  # below (2.1)
+        frequency_parameter=np.sqrt(gravity * radius / about_edge),  # below (2.2)
+        # angular momentum about the new edge, (2.4) for a rectangle
+        restitution=(square - b * c) / (square + c * c),
+        inertia_ratio=radius * radius / about_edge,
+    )
+
+
+class AbstractBody(ABC):
+    """What rocks about two edges: everything that responses need to know of it. Attributes broadcast."""
+
+    @property
+    @abstractmethod
+    def right(self) -> Edge:
+        """The edge about which theta is positive."""
+
+    @property
+    @abstractmethod
+    def left(self) -> Edge:
+        """The other one."""
+
+    @property
+    @abstractmethod
+    def gravity(self) -> Array:
+        """g [m/s2]."""
+
+    @property
+    @abstractmethod
+    def top_height(self) -> Array:
+        """Height above the base of the point whose displacement is given [m]."""
+
+    @property
+    @abstractmethod
+    def description(self) -> str:
+        """One body, or several, in words."""
+
+    @property
+    def tilt(self) -> Array:
+        """Angle by which the base is inclined towards the right [rad]; 0 unless a body says otherwise."""
+        return np.zeros(())
+
+    @property
+    def parameters(self) -> dict[str, Array]:
+        """What the body was made from, for exports: arrays by name; nothing unless a body says so."""
+        return {}
+
+    @property
+    def uplift_acceleration(self) -> Array:
+        """Smallest horizontal ground acceleration that starts rocking, g tan(alpha) of the weaker edge [m/s2]."""
+        return np.asarray(self.gravity * np.tan(np.minimum(self.right.alpha, self.left.alpha)))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of an array of bodies, () for one."""
+        edges = [getattr(edge, name) for edge in (self.right, self.left) for name in Edge.__dataclass_fields__]
+        return np.broadcast_shapes(*(np.shape(value) for value in (*edges, self.gravity, self.top_height, self.tilt)))
+
+
+@dataclass(frozen=True)
+class PolygonProperties:
+    """Of a polygon of uniform density that stands on its lowest edge.
+
+    Attributes
+    ----------
+    left, right : float
+        Distances of the centre of mass from the ends of its base [m].
+    height : float
+        Height of the centre of mass above the base [m].
+    gyration : float
+        Radius of gyration about the centre of mass [m].
+    top : float
+        Height of the highest vertex above the base [m].
+    """
+
+    left: float
+    right: float
+    height: float
+    gyration: float
+    top: float
+
+
+def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
+    """Mass properties of an outline, by Green's theorem.
+
+    Parameters
+    ----------
+    vertices : array_like (vertices, 2)
+        Corners x, y [m] in order, either way round, at least three; the outline is closed by the first one and does
+        not cross itself. y is upwards.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the vertices are not so, enclose no area, or do not stand: the base is the part of the outline between the
+        outermost vertices of the lowest height, which needs a length, and the centre of mass must lie above it.
+    """
+    points = in_range("vertices", vertices, -1e6, 1e6, unit="m")
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
+        raise InvalidArgumentError("vertices", f"shape {points.shape}", "at least three pairs x, y")
+    size = float(np.ptp(points, axis=0).max())
+    origin = points.mean(axis=0)
+    x, y = (points - origin).T
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    cross = x * y1 - x1 * y
+    area = 0.5 * float(cross.sum())
+    if not abs(area) > 1e-12 * size * size:
+        raise InvalidArgumentError("vertices", points.tolist(), "an outline that encloses an area")
+    if _crosses_itself(points):
+        raise InvalidArgumentError("vertices", points.tolist(), "an outline that does not cross itself")
+    centre_x = float(((x + x1) * cross).sum()) / (6.0 * area)
+    centre_y = float(((y + y1) * cross).sum()) / (6.0 * area)
+    polar = float(((x * x + x * x1 + x1 * x1 + y * y + y * y1 + y1 * y1) * cross).sum()) / 12.0
+    lowest = float(y.min())
+    base = x[y <= lowest + 1e-9 * size]
+    left, right = centre_x - float(base.min()), float(base.max()) - centre_x
+    if not (left > 0.0 and right > 0.0):
+        raise InvalidArgumentError(
+            "vertices", points.tolist(), "an outline that stands: a base of some length below its centre of mass"
+        )
+    squared = polar / area - centre_x * centre_x - centre_y * centre_y
+    return PolygonProperties(left, right, centre_y - lowest, math.sqrt(squared), float(y.max()) - lowest)
+
+
+def _crosses_itself(points: Array) -> bool:
+    """Whether two sides of a closed outline that are not neighbours meet."""
+    start, end = points, np.roll(points, -1, axis=0)
+
+    def turn(a: Array, b: Array, c: Array) -> Array:
+        """Sign of the area of the triangles a, b, c."""
+        (ux, uy), (vx, vy) = np.moveaxis(b - a, -1, 0), np.moveaxis(c - a, -1, 0)
+        return np.asarray(np.sign(ux * vy - uy * vx))
+
+    a, b = start[:, None], end[:, None]
+    c, d = start[None], end[None]
+    crossing = (turn(a, b, c) * turn(a, b, d) < 0.0) & (turn(c, d, a) * turn(c, d, b) < 0.0)
+    return bool(crossing.any())

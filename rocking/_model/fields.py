@@ -1,0 +1,224 @@
+"""The fields of a response, declared once: name, type, unit, equation, meaning, missing value.
+
+The record of the solver, `Response`, the variables of the data sets, the models of the HTTP service, the columns of CSV
+and netCDF responses and the table in docs/notation.md derive from these declarations; tests compare the annotated
+classes with them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._model.outcome import Outcome
+from rocking._model.residual_energy import residual_energy
+
+
+@dataclass(frozen=True)
+class ResponseField:
+    """A quantity of a response.
+
+    Attributes
+    ----------
+    name : str
+        Name of the attribute, variable or column.
+    dtype : str
+        Type code of numpy in memory.
+    unit : str
+        As CF writes it; "1" for a number.
+    equation : str
+        Number of the equation of the paper that it comes from.
+    meaning : str
+        In a few words, without a capital or a full stop.
+    missing : str
+        Where there is no value, as a clause that follows "where"; empty if there always is one. A missing number is
+        nan in memory and in files, null in JSON, and empty in CSV.
+    detail : str
+        What else has to be known; empty if nothing.
+    at_rest : float
+        Value of a block that does not uplift.
+    derive : callable, optional
+        Computes the field from other fields and the groups, both arrays by name, which broadcast; the groups that a
+        response does not know are not there. None: the solver computes it.
+    """
+
+    name: str
+    dtype: str
+    unit: str
+    equation: str
+    meaning: str
+    missing: str = ""
+    detail: str = ""
+    at_rest: float = 0.0
+    derive: Callable[[Mapping[str, NDArray[Any]], Mapping[str, NDArray[Any]]], NDArray[Any]] | None = None
+
+    @property
+    def file_dtype(self) -> str:
+        """Type code in files, which have no truth values."""
+        return "i1" if self.dtype == "?" else self.dtype
+
+    @property
+    def flags(self) -> dict[str, Any]:
+        """CF attributes of the codes of a field, empty for a number."""
+        if self.name == "outcome":
+            return {
+                "flag_values": np.array([int(outcome) for outcome in Outcome], dtype=np.int8),
+                "flag_meanings": " ".join(outcome.name.lower() for outcome in Outcome),
+            }
+        return {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"} if self.dtype == "?" else {}
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of the variable in a data set, without the unit: long_name, equation, comment, flags."""
+        remarks = [f"missing where {self.missing}"] if self.missing else []
+        comment = "; ".join([*remarks, *([self.detail] if self.detail else [])])
+        return {"long_name": self.meaning, "equation": self.equation, **({"comment": comment} if comment else {})} | (
+            self.flags
+        )
+
+    def description(self, missing: str = "null") -> str:
+        """One line with meaning, unit, and what stands for a missing number."""
+        unit = "" if self.flags or self.dtype in ("?", "U") else f" [{'-' if self.unit == '1' else self.unit}]"
+        remarks = [f"{missing} where {self.missing}"] if self.missing else []
+        return "; ".join([self.meaning + unit, *remarks, *([self.detail] if self.detail else [])])
+
+
+PEAK_ROTATION = ResponseField(
+    "peak_rotation",
+    "f8",
+    "1",
+    "3.2",
+    "peak of |theta|/alpha",
+    "the block overturns",
+    "over the whole response; 0 without uplift",
+)
+OUTCOME = ResponseField("outcome", "i1", "1", "3.8", "final outcome")
+IMPACTS = ResponseField(
+    "impacts",
+    "i4",
+    "1",
+    "2.3",
+    "number of impacts",
+    "",
+    "before the pulse ends, and the one after it that is followed by overturning; impacts that chatter sums up are not "
+    "counted",
+)
+CHATTER = ResponseField("chatter", "?", "1", "2.3", "whether impacts accumulate to rest while the pulse acts")
+EXCEEDED_ALPHA = ResponseField("exceeded_alpha", "?", "1", "3.2", "whether |theta| passed alpha at some time")
+UPLIFT_TIME = ResponseField(
+    "uplift_time",
+    "f8",
+    "1",
+    "3.3",
+    "time p t from the start of the pulse to the first uplift",
+    "there is no uplift",
+    at_rest=math.nan,
+)
+FIRST_IMPACT_TIME = ResponseField(
+    "first_impact_time",
+    "f8",
+    "1",
+    "3.21",
+    "time p t from the uplift to the first impact",
+    "there is none while the pulse acts",
+    at_rest=math.nan,
+)
+FIRST_IMPACT_VELOCITY = ResponseField(
+    "first_impact_velocity",
+    "f8",
+    "1",
+    "3.22",
+    "angular velocity theta'/(p alpha) just before the first impact",
+    "there is none while the pulse acts",
+    at_rest=math.nan,
+)
+PEAK_MODE = ResponseField(
+    "peak_mode",
+    "i4",
+    "1",
+    "3.4",
+    "arc on which the peak is reached",
+    "",
+    "twice the impacts before it since the last uplift from rest, plus one if reached in free rocking, plus 65536 for "
+    "each such uplift after the first; -1 where there is no peak",
+    at_rest=-1,
+)
+END_ROTATION = ResponseField(
+    "end_rotation", "f8", "1", "3.11", "rotation |theta|/alpha when the pulse ends, or when overturning is certain"
+)
+END_VELOCITY = ResponseField("end_velocity", "f8", "1", "3.11", "rate of |theta|/alpha with respect to p t then")
+RESIDUAL_ENERGY = ResponseField(
+    "residual_energy",
+    "f8",
+    "1",
+    "3.11",
+    "kinetic and potential energy at the end of the pulse over that of the unstable equilibrium at alpha",
+    "it is interpolated in a data set, or the angle alpha is not known",
+    "both from the energy at rest; where overturning is certain earlier, the energy then",
+    derive=residual_energy,
+)
+
+OVERTURNED = ResponseField("overturned", "?", "1", "3.8", "whether the block overturns")
+ERROR_BOUND = ResponseField(
+    "error_bound",
+    "f8",
+    "1",
+    "3.2",
+    "bound of the absolute error of peak_rotation",
+    "the block overturns",
+    "infinite where the outcome changes within the rounding of the parameters",
+)
+FROM_CUBE = ResponseField("from_cube", "?", "1", "3.2", "whether it is interpolated in a data set; else it is solved")
+SOURCE = ResponseField("source", "U", "1", "3.2", "cube (interpolated data set) or solver")
+
+SOLVED_FIELDS = (
+    PEAK_ROTATION,
+    OUTCOME,
+    IMPACTS,
+    CHATTER,
+    EXCEEDED_ALPHA,
+    UPLIFT_TIME,
+    FIRST_IMPACT_TIME,
+    FIRST_IMPACT_VELOCITY,
+    PEAK_MODE,
+    END_ROTATION,
+    END_VELOCITY,
+)
+"""Fields of the record that the solver writes for each block."""
+
+DERIVED_FIELDS = (RESIDUAL_ENERGY,)
+"""Numbers that are computed from fields of a response when they are read, without a kernel."""
+
+RESPONSE_FIELDS = (*SOLVED_FIELDS, *DERIVED_FIELDS)
+"""Fields of `rocking.Response`, in order."""
+
+BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, FROM_CUBE)
+"""Fields of a response with an error bound, of an interpolated cube or of the solver."""
+
+CUBE_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, PEAK_MODE)
+"""Fields of a response that a spectrum cube stores; those of `DERIVED_FIELDS` on request."""
+
+COLUMN_FIELDS = (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, SOURCE, *DERIVED_FIELDS)
+"""Columns of a response as CSV and JSON."""
+
+
+def record_dtype(fields: Sequence[ResponseField]) -> np.dtype[np.void]:
+    """The record with these fields, for a kernel; larger types come first, so that there are no gaps between them."""
+    ordered = sorted(fields, key=lambda field: -np.dtype(field.dtype).itemsize)
+    return np.dtype([(field.name, field.dtype) for field in ordered], align=True)
+
+
+def markdown_table() -> str:
+    """The fields as a table for docs/notation.md."""
+    rows = ["| field | type | unit | equation | meaning |", "|---|---|---|---|---|"]
+    for field in dict.fromkeys((*RESPONSE_FIELDS, *COLUMN_FIELDS)):
+        kind = {"?": "bool", "U": "text", "i1": "int8", "i4": "int32", "f8": "float64"}[field.dtype]
+        unit = "-" if field.unit == "1" else field.unit
+        meaning = field.description("nan").replace(" [-]", "").replace("|theta|", "abs(theta)")
+        rows.append(f"| `{field.name}` | {kind} | {unit} | ({field.equation}) | {meaning} |")
+    return "\n".join(rows)

@@ -1,0 +1,186 @@
+"""The response of one block or of an array of blocks to a pulse."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import Quantity
+from rocking._model.derived_fields import DerivedFields
+from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField
+from rocking._model.outcome import Outcome
+from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+__all__ = ["Outcome", "Response", "dimensions_of"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(DerivedFields, EqualByValue):
+    """Responses of blocks to a pulse. Every field is an array of the broadcast shape of the arguments.
+
+    The fields are declared, with their equations, in `rocking._model.fields`.
+
+    Attributes
+    ----------
+    peak_rotation : float64 array [-]
+        Peak of |theta|/alpha over the whole response, free rocking included; nan where the block
+        overturns, 0 without uplift.
+    outcome : int8 array
+        Final outcome, a code of `Outcome`.
+    impacts : int32 array
+        Number of impacts before the pulse ends, and the one after it that is followed by overturning. Impacts that
+        chatter sums up are not counted.
+    chatter : bool array
+        Whether impacts accumulate to rest while the pulse acts.
+    exceeded_alpha : bool array
+        Whether |theta| passed alpha at some time.
+    uplift_time : float64 array [-]
+        Time p t from the start of the pulse to the first uplift; nan where there is no uplift.
+    first_impact_time : float64 array [-]
+        Time p t from the uplift to the first impact; nan where there is none while the pulse acts.
+    first_impact_velocity : float64 array [-]
+        Angular velocity theta'/(p alpha) just before the first impact; nan likewise.
+    peak_mode : int32 array
+        Arc on which the peak is reached: twice the impacts before it since the last uplift from rest, plus one if it is
+        reached in free rocking, plus 65536 for each such uplift after the first; -1 where there is no peak. Within one
+        mode the peak is a smooth function of the groups.
+    end_rotation, end_velocity : float64 arrays [-]
+        Rotation |theta|/alpha and its rate with respect to p t when the pulse ends, or when overturning is certain.
+    residual_energy : float64 array [-]
+        Kinetic and potential energy at the end of the pulse over that of the unstable equilibrium at alpha, both from
+        the energy at rest; where overturning is certain earlier, the energy then. nan if the angle is not known.
+    pulse : str
+        Name of the pulse; empty if not known.
+    groups : mapping of str to array
+        The arguments slenderness, frequency_ratio [-], restitution [-] and alpha [rad] before broadcasting, for the
+        coordinates of `to_xarray`; empty if not known.
+    dims : tuple
+        Names of the dimensions if an argument was labelled (xarray).
+    """
+
+    peak_rotation: NDArray[np.float64]
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    chatter: NDArray[np.bool_]
+    exceeded_alpha: NDArray[np.bool_]
+    uplift_time: NDArray[np.float64]
+    first_impact_time: NDArray[np.float64]
+    first_impact_velocity: NDArray[np.float64]
+    peak_mode: NDArray[np.int32]
+    end_rotation: NDArray[np.float64]
+    end_velocity: NDArray[np.float64]
+    pulse: str = ""
+    groups: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    dims: tuple[Hashable, ...] = ()
+
+    @property
+    def overturned(self) -> NDArray[np.bool_]:
+        """Whether the block overturns in the end."""
+        return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The broadcast shape of the arguments."""
+        return self.peak_rotation.shape
+
+    def _derived(self, field: ResponseField) -> NDArray[Any]:
+        if field.derive is None:
+            raise AttributeError(field.name)
+        fields = {one.name: vars(self)[one.name] for one in SOLVED_FIELDS}
+        return np.asarray(field.derive(fields, self.groups), field.dtype)
+
+    def __repr__(self) -> str:
+        """What happened, in words."""
+        under = f" under {self.pulse}" if self.pulse else ""
+        if self.peak_rotation.ndim == 0:
+            outcome = Outcome(int(self.outcome))
+            rocked = outcome == Outcome.SAFE
+            count = int(self.impacts)
+            impacts = f", {count} impact{'' if count == 1 else 's'}" if outcome != Outcome.NO_UPLIFT else ""
+            peak = f": peak rotation {float(self.peak_rotation):.6g} alpha" if rocked else ""
+            return f"<rocking.Response{under}: {outcome.sentence}{peak}{impacts}>"
+        counts = np.bincount(self.outcome.ravel(), minlength=len(Outcome))
+        parts = [f"{count} {outcome.plural}" for outcome, count in zip(Outcome, counts.tolist(), strict=True) if count]
+        peaks = self.peak_rotation[~np.isnan(self.peak_rotation)]
+        largest = [f"largest peak rotation {float(peaks.max()):.6g} alpha"] if peaks.size else []
+        shape = " x ".join(str(size) for size in self.shape)
+        return f"<rocking.Response{under} of {shape} blocks: {', '.join([*parts, *largest])}>"
+
+    def to_xarray(self, dims: tuple[Hashable, ...] | None = None) -> xr.Dataset:
+        """The response as a labelled data set, with units, meanings and equation numbers as attributes.
+
+        Parameters
+        ----------
+        dims : tuple of names, optional
+            One for each axis. By default those of the labelled arguments, else the name of the argument that alone
+            varies along the axis (slenderness, frequency_ratio, restitution, alpha), else dim_0, dim_1, ...
+
+        Returns
+        -------
+        xarray.Dataset
+            The fields and `overturned`; the arguments are coordinates.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the number of names differs from that of the axes.
+        """
+        import xarray as xr  # takes longer to load than the solver, and most responses remain arrays
+
+        names = axis_names(len(self.shape), self.groups, self.dims) if dims is None else tuple(dims)
+        if len(names) != len(self.shape):
+            raise InvalidArgumentError("dims", dims, f"{len(self.shape)} names")
+        variables: dict[str, Any] = {
+            one.name: (names, getattr(self, one.name), {"units": one.unit} | one.attributes)
+            for one in (*RESPONSE_FIELDS, OVERTURNED)
+        }
+        coordinates: dict[str, Any] = {}
+        for group in (*GROUPS, FREQUENCY_PARAMETER):
+            value = self.groups.get(group.name)
+            if value is not None:
+                shape = (1,) * (len(self.shape) - value.ndim) + value.shape
+                axes = [axis for axis, size in enumerate(shape) if size != 1]
+                about = {"units": "1" if group.unit == "-" else group.unit, "long_name": group.label}
+                own = tuple(names[axis] for axis in axes)
+                coordinates[group.name] = (own, value.reshape([shape[axis] for axis in axes]), about)
+        attributes = {"pulse": self.pulse} if self.pulse else {}
+        return xr.Dataset(variables, coordinates, attributes)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The fields as columns, one row for each block; the index has the axes of `to_xarray`."""
+        labelled = self.to_xarray()
+        return (labelled if labelled.dims else labelled.expand_dims("block")).to_dataframe()
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>{self.to_xarray()._repr_html_()}"
+
+
+def axis_names(
+    count: int, arguments: Mapping[str, NDArray[np.float64]], dims: tuple[Hashable, ...]
+) -> tuple[Hashable, ...]:
+    """Names of `count` axes: of the labelled arguments, `dims`, or of the one argument that varies along each."""
+    if len(dims) == count:
+        return dims
+    varying: list[list[str]] = [[] for _ in range(count)]
+    for name, value in arguments.items():
+        axes = [axis for axis in range(value.ndim) if value.shape[axis] != 1]
+        for axis in axes:
+            # an argument that varies along several axes is no coordinate of either
+            varying[count - value.ndim + axis] += [name] if len(axes) == 1 else [name, name]
+    return tuple(names[0] if len(names) == 1 else f"dim_{axis}" for axis, names in enumerate(varying))
+
+
+def dimensions_of(*arguments: ArrayLike | Quantity | None) -> tuple[Hashable, ...]:
+    """Names of the dimensions of the labelled argument (xarray) with the most of them; empty if there is none."""
+    return max((tuple(getattr(argument, "dims", ())) for argument in arguments), key=len)

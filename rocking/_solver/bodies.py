@@ -1,0 +1,90 @@
+"""Responses of bodies with two edges under any motion, and how far they are from another outcome."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._excitation.records.record import Record
+from rocking._excitation.shapes import AbstractPulse
+from rocking._numba.cancellation import StopFlag
+from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, solver_state
+from rocking._solver.records.record_response import pulse_rows, solve_bodies
+from rocking._solver.records.samples import motion_samples
+from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
+
+Array = NDArray[np.float64]
+
+
+def solve_motion(
+    motion: AbstractPulse | Record, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None
+) -> tuple[NDArray[np.void], Array]:
+    """Response records (size,) of bodies, and what differs from edge to edge, float array (size, EDGE_COLUMNS).
+
+    Parameters
+    ----------
+    motion : AbstractPulse or Record
+        The ground motion.
+    cells : array (size,) of `BODY_CELL`
+        The bodies. `rate` is the frequency ratio under a pulse, and p times the time step under a record.
+    threads : int or None
+        Number of threads, None: all cores.
+    stop : StopFlag or None
+        Cancels the work.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    if isinstance(motion, Record):
+        return solve_bodies(motion_samples(motion), cells, threads, stop, each_side=True)
+    if motion.samples is not None:
+        rows = pulse_rows(motion, float(cells["rate"].min(initial=math.inf)))
+        sampled = cells.copy()
+        sampled["rate"] = 1.0 / cells["rate"]
+        return solve_bodies(rows, sampled, threads, stop, each_side=True)
+    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, EDGE_COLUMNS))
+    omega = cells["rate"].copy()  # kernels need contiguous arrays
+
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        unused = omega[part]
+        state = solver_state.of_steps(motion, FULL_PRECISION)
+        solve_batch(unused, omega[part], unused, unused, cells[part], *state, flag, records[part], edges[part])
+
+    cores = threads or AVAILABLE_CORES
+    fill_chunks(fill, cells.size, min(max(math.ceil(cells.size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
+    return records, edges
+
+
+def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np.void]) -> Array:
+    """Excess of the energy at the end of the motion, or after one of the next two impacts, over that of the barrier.
+
+    As `rocking._model.outcome_margin.outcome_margin`, for bodies with two edges: the largest of three margins, since a
+    body that does not escape about its present edge can do so about the other one after an impact, and about the
+    present one after two (`rocking._solver.rules.final_outcome`). Continuous, zero at the transition. Array (size,).
+    """
+    right = edges[:, 2] >= 0.0
+    ones = np.ones(cells.size)
+    ratio, stiffness = np.stack([ones, cells["ratio"]]), np.stack([ones, cells["stiffness"]])
+    order = np.where(right, [[0], [1]], [[1], [0]])  # the present edge, and the other
+    ratio, stiffness = np.take_along_axis(ratio, order, 0), np.take_along_axis(stiffness, order, 0)
+    eta = np.take_along_axis(cells["eta"].T, order, 0)
+    speed = ratio * np.sqrt(stiffness)
+    half = 0.5 * cells["alpha"] * ratio
+    slender = half == 0.0
+    safe_half = np.where(slender, 1.0, half)
+    barrier = np.where(slender, 1.0, np.sin(safe_half) / safe_half)
+    z, w = records["end_rotation"] / ratio[0], records["end_velocity"] / speed[0]
+    x = np.where(slender[0], 1.0 - z, np.sin(safe_half[0] * (1.0 - z)) / safe_half[0])
+    escape = (w - x) / barrier[0]  # (3.8)
+    squared = barrier[0] ** 2 - (x - w) * (x + w)  # of the velocity at the next impact
+    over = eta[0] * speed[0] / speed[1]
+    first = squared * over**2 / barrier[1] ** 2 - 1.0  # (3.16)
+    back = eta[1] * speed[1] / speed[0]
+    second = squared * (over * back) ** 2 / barrier[0] ** 2 - 1.0
+    return np.asarray(np.where(w < x, np.maximum(np.maximum(escape, first), second), escape))

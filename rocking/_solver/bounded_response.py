@@ -1,0 +1,168 @@
+"""Responses with an error bound, and the error bound of the solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.equality import EqualByValue
+from rocking._excitation.pulses import AbstractPulse
+from rocking._model.derived_fields import DerivedFields
+from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, ResponseField
+from rocking._model.outcome import Outcome
+from rocking._numba.cancellation import StopFlag
+from rocking._solver.peak_response import peak_response
+from rocking._solver.rules import IMPACT_LIMIT
+
+SOLVER_ERROR = 1e-12
+"""Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BoundedResponse(DerivedFields, EqualByValue):
+    """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
+
+    The fields are declared, with their equations, in `rocking._model.fields`.
+
+    Attributes
+    ----------
+    peak_rotation : float64 array [-]
+        Peak of |theta|/alpha over the whole response; nan where the block overturns, 0 without uplift.
+    outcome : int8 array
+        Final outcome, a code of `rocking.Outcome`.
+    impacts : int32 array
+        Number of impacts before the pulse ends, and the one after it that is followed by overturning; -1 where a cube
+        was interpolated whose nodes around the point differ in them.
+    exceeded_alpha : bool array
+        Whether |theta| passed alpha at some time.
+    error_bound : float64 array [-]
+        Bound of the absolute error of `peak_rotation`; nan where the block overturns, infinite where the outcome
+        changes within the rounding of the parameters.
+    from_cube : bool array
+        Whether it is interpolated in a data set; else it is solved.
+    derived : mapping of str to float64 array
+        The derived fields, such as `residual_energy`, which are attributes too; nan where it is interpolated.
+    """
+
+    peak_rotation: Array
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+    exceeded_alpha: Flags
+    error_bound: Array
+    from_cube: Flags
+    derived: Mapping[str, Array]
+
+    @property
+    def source(self) -> NDArray[np.str_]:
+        """Names of the sources: "cube" (interpolated data set) or "solver"."""
+        return np.where(self.from_cube, "cube", "solver")
+
+    @property
+    def overturned(self) -> Flags:
+        """Whether the block overturns in the end."""
+        return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
+
+    def __repr__(self) -> str:
+        """What happened, in words, with the error bound and the source."""
+        if self.outcome.ndim:
+            shape = " x ".join(str(size) for size in self.outcome.shape)
+            parts = (
+                f"{np.count_nonzero(~self.overturned)} survive",
+                f"{np.count_nonzero(self.overturned)} overturn",
+                f"{np.count_nonzero(self.from_cube)} from a cube",
+            )
+            return f"<rocking.BoundedResponse of {shape} blocks: {', '.join(parts)}>"
+        outcome = Outcome(int(self.outcome))
+        safe = outcome == Outcome.SAFE
+        peak = (
+            f": peak rotation {float(self.peak_rotation):.6g} alpha within {float(self.error_bound):.2g}"
+            if safe
+            else ""
+        )
+        return f"<rocking.BoundedResponse: {outcome.sentence}{peak}, from the {self.source.item()}>"
+
+    def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
+        """The same responses in another shape."""
+        return self._each(lambda values: values.reshape(shape))
+
+    def __getitem__(self, index: Flags | NDArray[np.intp] | slice) -> BoundedResponse:
+        """The responses of a part of the points."""
+        return self._each(lambda values: values[index])
+
+    def _each(self, change: Callable[[NDArray[Any]], NDArray[Any]]) -> BoundedResponse:
+        fields: dict[str, Any] = {field.name: change(getattr(self, field.name)) for field in BOUNDED_FIELDS}
+        return BoundedResponse(**fields, derived={name: change(values) for name, values in self.derived.items()})
+
+    def _derived(self, field: ResponseField) -> Array:
+        return self.derived[field.name]
+
+    def put(self, where: Flags | NDArray[np.intp], part: BoundedResponse) -> None:
+        """Set the responses of a part of the points."""
+        for field in BOUNDED_FIELDS:
+            getattr(self, field.name)[where] = getattr(part, field.name)
+        for name, values in self.derived.items():
+            values[where] = part.derived[name]
+
+
+def solve_with_bound(
+    pulse: str | AbstractPulse,
+    *,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike,
+    restitution: ArrayLike,
+    alpha: ArrayLike | None,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> BoundedResponse:
+    """Solve twice, with the groups as given and slightly smaller, and bound the error of the peak by the difference.
+
+    The bound is `SOLVER_ERROR` times the peak, plus three times the change of the peak when slenderness, frequency
+    ratio and restitution decrease together by the fraction `SOLVER_ERROR`. Rounding errors act like such a change and
+    are amplified near an outcome boundary. The bound is infinite where a block reached `IMPACT_LIMIT` impacts.
+
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        The pulse, or its name.
+    slenderness, frequency_ratio, restitution : array_like, broadcasting
+        1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
+    alpha : array_like or None
+        Slenderness angle [rad]; None or 0 for the slender limit.
+    threads : int, optional
+        Number of threads for large arrays, >= 1; by default all cores.
+    stop : StopFlag, optional
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    given = (slenderness, frequency_ratio, restitution, 0.0 if alpha is None else alpha)
+    s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))
+    shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
+    groups = {"slenderness": s * shift, "frequency_ratio": w * shift, "restitution": eta * shift}
+    found = peak_response(pulse, **groups, alpha=angle, threads=threads, stop=stop)
+    peak, outcome = found.peak_rotation[0], found.outcome[0]
+    with np.errstate(invalid="ignore"):
+        change = np.abs(found.peak_rotation[1] - peak)
+    bound = np.asarray(SOLVER_ERROR * peak + 3.0 * change)
+    bound[found.overturned.any(axis=0) | (found.impacts.max(axis=0) >= IMPACT_LIMIT)] = np.inf
+    bound[found.overturned[0]] = np.nan
+    bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
+    return BoundedResponse(
+        peak,
+        outcome,
+        found.impacts[0],
+        found.exceeded_alpha[0],
+        bound,
+        np.zeros(peak.shape, np.bool_),
+        {field.name: getattr(found, field.name)[0] for field in DERIVED_FIELDS},
+    )

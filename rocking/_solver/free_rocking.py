@@ -1,0 +1,71 @@
+"""Free rocking after the pulse: the outcome follows from the energy, without integration.
+
+With z = |theta|/alpha and w = dz/dtau let X(z) = (2/alpha) sin(alpha (1 - z)/2), which is 1 - z in the slender limit.
+(2.2) without ground motion conserves X^2 - w^2 between impacts, with the barrier at X = 0 (theta = alpha). The block
+escapes when w >= X, which is (3.8) in the slender limit; otherwise it returns. `rocking._solver.rules.final_outcome`
+says which impacts after the motion can matter. The functions are those of a block in its own time p t and angle alpha;
+edges that differ are scaled by the caller.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import kernel
+
+
+@kernel
+def barrier_of(alpha: float) -> float:
+    """X(0) [-]: the velocity at z = 0 from which the block passes alpha."""
+    return 1.0 if alpha == 0.0 else 2.0 * math.sin(0.5 * alpha) / alpha
+
+
+@kernel
+def release(z: float, w: float, alpha: float) -> tuple[bool, float, float]:
+    """What follows from the rotation z >= 0 and the velocity w at the end of the motion, up to the next impact.
+
+    Parameters
+    ----------
+    z, w : float
+        |theta|/alpha, below pi/(2 alpha), and its rate with respect to tau [-].
+    alpha : float
+        Slenderness angle [rad], [0, pi/2); 0 is the slender limit.
+
+    Returns
+    -------
+    escapes : bool
+        Whether the block overturns without another impact, (3.8).
+    top : float
+        Largest z up to the impact [-].
+    squared : float
+        Square of the velocity at the impact, (3.15).
+    """
+    barrier = barrier_of(alpha)
+    if alpha == 0.0:
+        x = 1.0 - z
+        climbed = z * (2.0 - z)  # X(0)^2 - X(z)^2
+    else:
+        x = 2.0 * math.sin(0.5 * alpha * (1.0 - z)) / alpha
+        climbed = 4.0 * math.sin(0.5 * alpha * z) * math.sin(0.5 * alpha * (2.0 - z)) / (alpha * alpha)
+    if w >= x:  # (3.8): B >= 0
+        return True, math.inf, math.inf
+    # the second form has no cancellation far beyond alpha
+    squared = w * w + climbed if x > 0.0 else barrier * barrier - (x - w) * (x + w)
+    if w > 0.0:  # z increases first
+        return False, highest_rotation(squared, math.sqrt((x - w) * (x + w)), barrier, alpha), squared
+    return False, z, squared
+
+
+@kernel
+def highest_rotation(squared: float, left: float, barrier: float, alpha: float) -> float:
+    """Largest z of a block with squared velocity `squared` at z = 0, where X(z) = `left`, (4.12), (4.13).
+
+    With X = (2/alpha) sin B and the barrier (2/alpha) sin A, alpha z/2 = A - B is taken from
+    sin(A - B) = (sin^2 A - sin^2 B)/(sin A cos B + cos A sin B), which has no cancellation for small z.
+    """
+    if alpha == 0.0:
+        return squared / (1.0 + left)
+    half = 0.5 * alpha
+    cos_a = math.cos(half)
+    cos_b = math.sqrt((1.0 - half * left) * (1.0 + half * left))
+    return math.asin(half * squared / (barrier * cos_b + left * cos_a)) / half

@@ -1,0 +1,159 @@
+"""Many blocks by Taylor steps, `LANES` at a time.
+
+A SIMD lane takes the next cell as soon as its cell is finished. Consecutive cells that differ in eta only share the
+first flight, which is computed once. Slender blocks are solved in `rocking._solver.stages` where they have exact arcs.
+"""
+
+from __future__ import annotations
+
+from rocking._base.errors import SearchError
+from rocking._numba.cancellation import is_stopped
+from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.simd import LANES
+from rocking._solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
+from rocking._solver.rules import set_block, set_body, write_edges, write_response
+from rocking._solver.state import IN_FLIGHT
+from rocking._solver.taylor.flight import MAX_STEPS, free_lanes, process_step, start_steps
+from rocking._solver.taylor.lane_events import locate_events
+from rocking._solver.taylor.step import take_step
+
+
+@kernel
+def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> bool:
+    """Whether two cells are equal except for eta."""
+    return bool(slenderness[i] == slenderness[j] and omega[i] == omega[j] and alpha[i] == alpha[j])
+
+
+@kernel
+def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record, edges: FloatArray) -> bool:
+    """Write the response of a finished cell and start the next flight of the next eta; False if there is none."""
+    while True:
+        write_response(flight, responses[flight.cell])
+        write_edges(flight, edges, flight.cell)
+        if flight.cell == flight.last_cell:
+            return False
+        flight.cell += 1
+        flight.eta[0] = flight.eta[1] = eta[flight.cell]
+        if flight.first_flight_known == 0:  # no uplift, whatever eta
+            continue
+        if repeat_first_flight(flight) and start_flight(flight):
+            return True
+
+
+@kernel
+def init_cell(
+    flight: Record,
+    first: int,
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    bodies: Record,
+) -> int:
+    """Initialise the state of the cell `first`; returns the first cell that differs in more than eta."""
+    flight.cell, flight.last_cell = first, first
+    if len(bodies) > 0:
+        set_body(flight, bodies[first], True)
+        init_state(flight, omega[first])
+        return first + 1
+    while flight.last_cell + 1 < len(slenderness) and same_cell(
+        flight.cell, flight.last_cell + 1, slenderness, omega, alpha
+    ):
+        flight.last_cell += 1
+    set_block(flight, slenderness[first], eta[first], alpha[first])
+    init_state(flight, omega[first])
+    return flight.last_cell + 1
+
+
+@kernel
+def next_cell(
+    flight: Record,
+    steps: Record,
+    lane: int,
+    following: int,
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    bodies: Record,
+    stop: FloatArray,
+    responses: Record,
+    edges: FloatArray,
+) -> int:
+    """Put the next cell with an uplift into a lane; returns the cell after it."""
+    while following < len(slenderness) and not is_stopped(stop):
+        following = init_cell(flight, following, slenderness, omega, eta, alpha, bodies)
+        if start_flight(flight):
+            steps.omega[lane] = flight.omega
+            start_steps(flight, steps, lane)
+            return following
+        continue_with_next_eta(flight, eta, responses, edges)
+    flight.cell = -1
+    return following
+
+
+@entry
+def solve_batch(
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    alpha: FloatArray,
+    bodies: Record,
+    flights: Record,
+    steps: Record,
+    stop: FloatArray,
+    responses: Record,
+    edges: FloatArray,
+) -> None:
+    """Follow blocks from rest to their final outcome, by Taylor steps.
+
+    Parameters
+    ----------
+    slenderness, omega, eta, alpha : float arrays (cells,)
+        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
+    bodies : array (cells,) of `BODY_CELL`, or (0,)
+        Bodies with two edges, instead of slenderness, eta and alpha.
+    flights, steps
+        Solver state: an array (LANES,) of records of `pulse_state`, and `step_state`.
+    stop : uint8 array (1,)
+        Once another thread sets it to 1, the function returns within a flight or a Taylor step; responses are missing.
+    responses : array (cells,) of `state.RESPONSE_RECORD`
+        Filled.
+    edges : float array (cells, EDGE_COLUMNS), or (0, EDGE_COLUMNS)
+        Of `bodies`, filled, see `rocking._solver.state.EDGE_COLUMNS`.
+    """
+    following, busy, taken = 0, 0, steps.taken
+    free_lanes(steps)
+    for lane in range(LANES):
+        taken[lane] = 0
+    for lane in range(LANES):
+        following = next_cell(
+            flights[lane], steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, edges
+        )
+        if flights[lane].cell >= 0:
+            busy += 1
+    while busy > 0 and not is_stopped(stop):
+        take_step(steps)
+        locate_events(steps)
+        for lane in range(LANES):
+            flight = flights[lane]
+            if flight.cell < 0:
+                continue
+            ended, w, z = process_step(flight, steps, lane)
+            taken[lane] += 1
+            if ended == IN_FLIGHT:
+                if taken[lane] >= MAX_STEPS:
+                    raise SearchError("a flight does not end")
+                continue
+            taken[lane] = 0
+            flight.length = flight.elapsed
+            going = end_flight(flight, ended, w, z, flight.largest_z) and start_flight(flight)
+            if going or continue_with_next_eta(flight, eta, responses, edges):
+                start_steps(flight, steps, lane)
+                continue
+            following = next_cell(
+                flight, steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, edges
+            )
+            if flight.cell < 0:
+                steps.in_use[lane] = 0.0
+                busy -= 1

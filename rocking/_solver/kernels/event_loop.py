@@ -1,0 +1,190 @@
+"""The event loop of one body under a pulse, from rest to the final outcome; `rocking._solver.rules` has the rules.
+
+Between events the motion is an exact arc for the slender block (3.1) under sinusoids (`rocking._solver.arcs`), and a
+sequence of Taylor steps otherwise (`rocking._solver.taylor`), with restitution (2.3) at each impact. The intervals of
+the pulse (`rocking._solver.kernels.intervals`) decide for each stretch whether it holds an impact. The first flight
+does not depend on the restitution: it is stored and reused for each eta.
+"""
+
+from __future__ import annotations
+
+from rocking._base.errors import SearchError
+from rocking._numba.compilation import Record, kernel
+from rocking._solver.arcs.events import long_flight, short_flight
+from rocking._solver.arcs.flight import set_angles, start_arc
+from rocking._solver.excitation import has_exact_arcs
+from rocking._solver.kernels.chatter import chatter_ends_in_rest
+from rocking._solver.kernels.intervals import split_into_intervals
+from rocking._solver.rules import (
+    IMPACT_LIMIT,
+    count_impact,
+    count_uplift,
+    final_outcome,
+    reset_response,
+    set_sign,
+    update_peak,
+)
+from rocking._solver.state import IMPACT, OVERTURNS
+from rocking._solver.taylor.flight import flight_by_steps
+
+ROUNDING = 1e-15
+"""Excess of |a f| over 1 at the start of the pulse that is within rounding [-]."""
+
+
+@kernel
+def init_state(flight: Record, omega: float) -> None:
+    """Initialise a cell, whose body is set: empty response, intervals, rest before the first of them."""
+    reset_response(flight)
+    flight.first_flight_known = 0
+    flight.by_arcs = int(has_exact_arcs(flight, flight.alpha))
+    flight.interval, flight.interval_count = 0, 0
+    if flight.slenderness[0] >= 1.0 and flight.slenderness[1] >= 1.0:
+        return
+    flight.omega = omega
+    flight.max_rate = 1.0
+    for k in range(flight.terms):
+        flight.rate[k] = omega * flight.multiple[k]
+        flight.max_rate = max(flight.max_rate, flight.rate[k])
+    flight.interval_count = split_into_intervals(flight)
+
+
+@kernel
+def next_uplift(flight: Record) -> bool:
+    """Advance from rest to the next uplift; False if there is none."""
+    while flight.interval < flight.interval_count and flight.interval_level[flight.interval] == 0.0:
+        flight.interval += 1
+    if flight.interval == flight.interval_count:
+        return False
+    flight.next_phase, flight.next_w = flight.interval_phase[flight.interval], 0.0
+    flight.next_sign = -flight.interval_level[flight.interval]  # positive ground acceleration: negative rotation
+    for k in range(flight.terms if flight.by_arcs == 1 else 0):
+        flight.cosine0[k] = flight.interval_cosine[flight.interval, k]
+        flight.sine0[k] = flight.interval_sine[flight.interval, k]
+    count_uplift(flight, (flight.next_phase - flight.end_phase[0]) / flight.omega)
+    return True
+
+
+@kernel
+def on_impact(flight: Record, w: float) -> None:
+    """Impact with velocity w < 0 at the end of the flight: set the start of the next flight, or rest.
+
+    Decided here: in which interval the next flight starts, and whether it is a flight, an uplift, or rest. Where the
+    ground acceleration holds the body down (level 0), impacts that accumulate end in rest. Where it destabilises the
+    body about one edge (level +-1), a flight about that edge does not end in the interval, since z'' >= 0; so that at
+    most three impacts take place there, and an impact of a flight about that edge means that it started within rounding
+    of an end of the interval.
+    """
+    phase = flight.phase + flight.omega * flight.length
+    flight.next_w = count_impact(flight, flight.length, w)
+    flight.next_phase, flight.next_sign = phase, -flight.sign
+    while flight.interval < flight.interval_count - 1 and phase >= flight.interval_phase[flight.interval + 1]:
+        flight.interval += 1
+    if (
+        flight.interval_level[flight.interval] * flight.sign < 0.0
+        and flight.phase >= flight.interval_phase[flight.interval]
+    ):
+        # at the start of the interval, where |f| grows: uplift from rest there; at its end: to the next interval
+        if flight.interval_level[flight.interval] * flight.interval_slope[flight.interval] > 0.0 and (
+            flight.starts_at_uplift == 0
+        ):
+            flight.at_rest = 1
+            return
+        flight.interval += 1
+        flight.next_phase = phase = flight.interval_phase[flight.interval]
+    if flight.interval == flight.interval_count:
+        flight.at_rest = 1
+        return
+    if flight.by_arcs == 1:
+        set_angles(flight, phase, flight.cosine0, flight.sine0)
+    flight.at_rest = 0
+    if flight.interval_level[flight.interval] == 0.0:
+        if flight.next_w <= 0.0:  # eta = 0
+            flight.at_rest = 1
+        elif flight.impacts >= IMPACT_LIMIT or chatter_ends_in_rest(
+            flight, flight.next_w, phase, flight.interval_phase[flight.interval + 1]
+        ):
+            flight.at_rest = flight.chatter = 1
+    else:
+        if flight.impacts > IMPACT_LIMIT + 3 * flight.interval_count:
+            raise SearchError("impacts do not end")
+        if flight.next_w <= 0.0:  # eta = 0 in a destabilising interval: immediate uplift
+            flight.next_sign, flight.next_w = -flight.interval_level[flight.interval], 0.0
+
+
+@kernel
+def start_flight(flight: Record) -> bool:
+    """Start the next flight; False if there is none."""
+    if flight.at_rest == 1 and not next_uplift(flight):
+        return False
+    flight.phase, flight.w0 = flight.next_phase, flight.next_w
+    set_sign(flight, flight.next_sign)
+    # through |a f| = 1, unless the pulse starts with a jump beyond it
+    through = flight.interval > 0 or (
+        flight.interval_slope[0] * flight.end_shape[0] > 0.0
+        and flight.a[flight.side] * abs(flight.end_shape[0]) <= 1.0 + ROUNDING
+    )
+    flight.starts_at_uplift = int(flight.at_rest == 1 and through)
+    if flight.by_arcs == 1:
+        start_arc(flight)
+    return True
+
+
+@kernel
+def end_flight(flight: Record, ended: int, w: float, z: float, top: float) -> bool:
+    """End a flight of duration `flight.length` with w and z and the peak `top`; False if it was the last."""
+    if flight.first_flight_known == 0:
+        (
+            flight.first_flight_known,
+            flight.first_flight_end,
+            flight.first_flight_w,
+            flight.first_flight_z,
+            flight.first_flight_peak,
+        ) = 1, ended, w, z, top
+        flight.first_flight_length, flight.first_flight_phase = flight.length, flight.phase
+        flight.first_flight_sign, flight.first_flight_interval = flight.sign, flight.interval
+    update_peak(flight, flight.side, top, flight.impacts, 0)
+    if ended != IMPACT:
+        final_outcome(flight, z, w, ended == OVERTURNS)
+        return False
+    on_impact(flight, w)
+    return True
+
+
+@kernel
+def repeat_first_flight(flight: Record) -> bool:
+    """Reuse the first flight of the cell for another restitution, which is set; False if it was the last."""
+    uplift_time = flight.uplift_time
+    reset_response(flight)
+    count_uplift(flight, uplift_time)
+    set_sign(flight, flight.first_flight_sign)
+    flight.length, flight.phase = flight.first_flight_length, flight.first_flight_phase
+    flight.interval = flight.first_flight_interval
+    return end_flight(
+        flight, flight.first_flight_end, flight.first_flight_w, flight.first_flight_z, flight.first_flight_peak
+    )
+
+
+@kernel
+def advance_by_arc(flight: Record) -> bool:
+    """Follow the next flight by an exact arc to its end; False if it is the last or there is none."""
+    if not start_flight(flight):
+        return False
+    time_to_interval_end = (flight.interval_phase[flight.interval + 1] - flight.phase) / flight.omega
+    ended, z = IMPACT, 0.0
+    h, w, top = short_flight(flight, time_to_interval_end, flight.peak_rotation)
+    if h < 0.0:
+        ended, h, w, z, top = long_flight(flight)
+    flight.length = h
+    return end_flight(flight, ended, w, z, top)
+
+
+@kernel
+def advance(flight: Record, steps: Record) -> bool:
+    """The same for any block and excitation."""
+    if flight.by_arcs == 1:
+        return advance_by_arc(flight)
+    if not start_flight(flight):
+        return False
+    ended, w, z = flight_by_steps(flight, steps)
+    flight.length, top = flight.elapsed, flight.largest_z
+    return end_flight(flight, ended, w, z, top)

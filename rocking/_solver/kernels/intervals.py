@@ -1,0 +1,119 @@
+"""Division of the pulse into intervals on which events can be located with certainty.
+
+The interval ends are the phases at which one of the edges is on the point of uplift (a_s f = 1 on the left edge, -1 on
+the right one) and at which f' = 0. Between two of them q = 1 + F keeps its sign on both edges, and so does q'. By the
+maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with z >= 0 at the left end:
+
+- q >= 0: z has no zero inside unless it is negative at the right end, and then exactly one;
+- q <= 0: z is convex where it is positive: no zero unless w < 0 at the left end, and then at most two with one minimum
+  between; no maximum of z inside;
+- q' >= 0 or q' <= 0 determine the zeros of w, which are the peaks, in the same way.
+
+Single sinusoids have closed forms for the interval ends and the cosine and sine there; for other excitations
+`rocking._solver.crossings` finds them.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import LANES
+from rocking._solver.crossings import find_crossings
+from rocking._solver.families.sinusoids import is_unit_sinusoid
+
+
+@kernel
+def set_interval(flight: Record, index: int, phase: float, level: float, rise: float) -> None:
+    """Set the left end of an interval, the level and the sign of f' in it."""
+    flight.interval_phase[index] = phase
+    flight.interval_level[index] = level
+    flight.interval_slope[index] = rise
+
+
+@kernel
+def cap(slenderness: float) -> tuple[float, float]:
+    """Sine and value of the half-width of |f| > 1/a about an extremum of a sinusoid, accurate also for 1/a near 1."""
+    root = math.sqrt(max((1.0 - slenderness) * (1.0 + slenderness), 0.0))
+    return root, math.atan2(root, slenderness)  # cos(half-width) = 1/a
+
+
+@kernel
+def set_end(flight: Record, index: int, end: int, angles: int, level: float, rise: float) -> None:
+    """Set an interval that begins at the end number `end` of a piece, with cosine and sine of the angles there."""
+    set_interval(flight, index, flight.end_phase[end], level, rise)
+    for k in range(angles):
+        flight.interval_cosine[index, k] = flight.end_cosine[end, k]
+        flight.interval_sine[index, k] = flight.end_sine[end, k]
+
+
+@kernel
+def set_crossing_of_sinusoid(
+    flight: Record, index: int, piece: int, target: float, half_width: float, root: float, level: float, rise: float
+) -> None:
+    """Set an interval that begins where a single sinusoid of amplitude 1 equals `target`, in closed form.
+
+    The sinusoid is cos(x), x from the start of the half period: there the cosine of the angle is +1 and decreases, or
+    -1 and increases. `half_width` and `root` are those of `cap`.
+    """
+    cosine = flight.half_period_cosine[piece]
+    value = target * flight.amplitude[0]
+    distance = half_width if value * cosine > 0.0 else math.pi - half_width
+    set_interval(flight, index, flight.half_period_phase[piece] + distance, level, rise)
+    flight.interval_cosine[index, 0], flight.interval_sine[index, 0] = value, cosine * root
+
+
+@kernel
+def set_crossing(flight: Record, index: int, phi: float, angles: int, level: float, rise: float) -> None:
+    """Set an interval that begins at the phase `phi`."""
+    set_interval(flight, index, phi, level, rise)
+    for k in range(angles):
+        angle = flight.multiple[k] * phi + flight.shift[k]
+        flight.interval_cosine[index, k], flight.interval_sine[index, k] = math.cos(angle), math.sin(angle)
+
+
+@kernel
+def split_into_intervals(flight: Record) -> int:
+    """Fill `flight.interval_*` (intervals + 1) for the body of the cell; returns the number of intervals.
+
+    Levels of f: above 1/a_1 the body is destabilised on the left edge (level 1), below -1/a_0 on the right one (level
+    -1), between them on neither (level 0). On a monotone piece each of them is crossed at most once, so that a crossing
+    exists if and only if the level lies between the values at the ends; the one with sgn(f) opposite to f' comes first.
+
+    Worked example: the sine, a = 2 on both edges. Its pieces end at 0, pi/2, 3 pi/2 and 2 pi. On the first f rises from
+    0 to 1 and crosses 1/2 at pi/6: intervals from 0 (level 0) and pi/6 (level 1). On the second it falls through 1/2 at
+    5 pi/6 and -1/2 at 7 pi/6: intervals from pi/2 (level 1), 5 pi/6 (level 0), 7 pi/6 (level -1). The last one, from
+    3 pi/2, is left at 11 pi/6: seven intervals.
+    """
+    angles = flight.terms if flight.by_arcs == 1 else 0  # of which Taylor steps need no cosines and sines
+    single = is_unit_sinusoid(flight)
+    below, above = flight.slenderness[0], flight.slenderness[1]
+    root_below, width_below, root_above, width_above = 0.0, 0.0, 0.0, 0.0
+    if single:
+        root_below, width_below = cap(below)
+        root_above, width_above = (root_below, width_below) if above == below else cap(above)
+    else:
+        find_crossings(below, above, flight)
+    count = 0
+    for piece in range(flight.pieces):
+        f_left, f_right = flight.end_shape[piece], flight.end_shape[piece + 1]
+        rise = -1.0 if f_left > f_right else 1.0
+        level = 1.0 if f_left > above else (-1.0 if f_left < -below else 0.0)
+        set_end(flight, count, piece, angles, level, rise)
+        count += 1
+        for turn in (-rise, rise):
+            target = above if turn > 0.0 else -below
+            entered = f_left == target and turn == rise  # where the pulse starts at |a f| = 1 and |f| grows
+            if not (entered or min(f_left, f_right) < target < max(f_left, f_right)):
+                continue
+            level += rise
+            if single:
+                root, half_width = (root_above, width_above) if turn > 0.0 else (root_below, width_below)
+                set_crossing_of_sinusoid(flight, count, piece, target, half_width, root, level, rise)
+            else:
+                crossing = 2 * piece + (0 if turn == -rise else 1)
+                found = flight.crossing_phase[crossing // LANES, crossing % LANES]
+                set_crossing(flight, count, flight.end_phase[piece] if entered else found, angles, level, rise)
+            count += 1
+    set_end(flight, count, flight.pieces, angles, 0.0, 0.0)
+    return count

@@ -1,0 +1,245 @@
+"""`peak_response`: checks and broadcasts the arguments, selects the kernel, and uses all cores."""
+
+from __future__ import annotations
+
+import math
+import threading
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.errors import broadcast, integer
+from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._model.checks import check_groups, check_number
+from rocking._model.fields import SOLVED_FIELDS
+from rocking._model.outcome_margin import outcome_margin
+from rocking._model.parameters import TOLERANCE
+from rocking._model.response import Response, dimensions_of
+from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import Record, contiguous_array
+from rocking._numba.simd import LANES
+from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.records.record_response import solve_pulse
+from rocking._solver.stages.batch import LEFT, solve_by_arcs
+from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.state import StageState, stage_state
+from rocking._solver.state import BODY_CELL, EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
+
+MIN_CHUNK, MAX_CHUNK = 2048, 4096
+"""Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
+
+MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768
+"""The same for cells that are solved by exact arcs, in a tenth of the time."""
+
+TRUNCATION_FRACTION = 1e-4
+"""Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
+
+NEAR_BOUNDARY_MARGIN = 1e-3
+"""Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
+
+
+NO_BODIES = np.empty(0, BODY_CELL)
+"""For blocks with equal edges."""
+
+
+class SolverState(threading.local):
+    """Records for the most recent pulses, separate in each thread. To make one costs more than to solve a block."""
+
+    def __init__(self) -> None:
+        self.of_steps = lru_cache(maxsize=16)(_new_step_state)
+        self.of_arcs = lru_cache(maxsize=16)(_new_arc_state)
+
+
+def _new_arc_state(pulse: AbstractPulse) -> tuple[Record, StageState]:
+    return pulse_state(pulse).copy(), stage_state()
+
+
+def _new_step_state(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void], Record]:
+    flight = pulse_state(pulse)
+    return np.repeat(flight, LANES), step_state(flight, precision)
+
+
+solver_state = SolverState()
+
+
+def peak_response(
+    pulse: str | AbstractPulse,
+    *,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike,
+    restitution: ArrayLike,
+    alpha: ArrayLike | None = None,
+    tolerance: float | None = None,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> Response:
+    """Peak rotation and final outcome of blocks under a pulse, exact to rounding. The arguments broadcast by position.
+
+    Consecutive cells that differ in restitution only, as along the last axis, share the first flight.
+
+    Parameters
+    ----------
+    pulse : str or AbstractPulse
+        A name of `PULSE_NAMES`, with a leading minus for the opposite sign, or a pulse object.
+    slenderness : array_like
+        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], [1e-12, inf); no uplift from 1 on.
+    frequency_ratio : array_like
+        omega = omega_g/p [-], [1e-9, 1e9].
+    restitution : array_like
+        Coefficient of restitution eta [-], [0, 1].
+    alpha : array_like, optional
+        Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
+    tolerance : float, optional
+        Relative error of the peak allowed for speed [-], [1e-13, 1e-3]; by default rounding error only. Slender blocks
+        are exact in any case, under Ricker wavelets from a frequency ratio of 0.8 or 0.98 on. No tolerance can be kept
+        where the rounding of the arguments decides on the outcome.
+    threads : int, optional
+        Number of threads for large arrays, >= 1; by default all cores.
+    stop : StopFlag, optional
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
+
+    Returns
+    -------
+    Response
+        Arrays of the broadcast shape.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an unknown pulse; an argument that is out of range, not finite, not a real number or masked; shapes that do
+        not broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
+    StoppedError
+        If `stop` was set.
+    """
+    if threads is not None:
+        threads = integer("threads", threads, 1, math.inf)
+    made = as_pulse(pulse)
+    given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
+    checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
+    slender = not checked[3].any()
+    groups = broadcast(given, checked[:3] if alpha is None else checked)
+    shape = groups[0].shape
+    cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
+    accepted = 0.0 if tolerance is None else check_number(TOLERANCE, tolerance)
+    exact = made.samples is not None or (made.series.has_exact_arcs and slender)  # no terms to truncate
+    precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
+    records = solve_cells(made, cells, precision, threads, stop)
+    if precision > FULL_PRECISION:
+        margin = outcome_margin(records["end_rotation"], records["end_velocity"], *_with_alpha(cells)[2:])
+        close = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
+        near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
+        records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
+    return Response(
+        **found,
+        pulse=made.name,
+        groups=dict(zip(given, checked, strict=True)),
+        dims=dimensions_of(*given.values()),
+    )
+
+
+def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:
+    """Return the cells (size,) that are solved by exact arcs, whatever the precision."""
+    mask: NDArray[np.bool_] = cells[1] >= pulse.series.least_arc_frequency
+    return mask if len(cells) == 3 else mask & (cells[3] == 0.0)
+
+
+def solve_cells(
+    pulse: AbstractPulse,
+    cells: list[NDArray[np.float64]],
+    precision: float,
+    threads: int | None,
+    stop: StopFlag | None,
+) -> NDArray[np.void]:
+    """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
+
+    Parameters
+    ----------
+    pulse : AbstractPulse
+    cells : list of three or four float arrays (size,)
+        1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each as
+        `contiguous_array` gives it.
+    precision : float
+        Relative truncation error of a Taylor step [-].
+    threads : int or None
+        Number of threads, None: all cores.
+    stop : StopFlag or None
+        Cancels the work.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    if pulse.samples is not None:
+        return solve_pulse(pulse, cells, threads, stop)
+    if len(cells) == 3 and cells[1].min(initial=math.inf) >= pulse.series.least_arc_frequency:
+        return _solve_alike(pulse, cells, True, precision, threads, stop)
+    exact = solved_by_arcs(pulse, cells)
+    if exact.all() or not exact.any():
+        return _solve_alike(pulse, cells, bool(exact.any()), precision, threads, stop)
+    records = np.empty(exact.size, RESPONSE_RECORD)
+    for by_arcs, kind in ((True, exact), (False, ~exact)):
+        records[kind] = _solve_alike(pulse, [cell[kind] for cell in cells], by_arcs, precision, threads, stop)
+    return records
+
+
+def _solve_alike(
+    pulse: AbstractPulse,
+    cells: list[NDArray[np.float64]],
+    by_arcs: bool,
+    precision: float,
+    threads: int | None,
+    stop: StopFlag | None,
+) -> NDArray[np.void]:
+    """Solve cells that are all solved by arcs, or all by Taylor steps."""
+    size = cells[0].size
+    records = np.empty(size, RESPONSE_RECORD)
+    cores = threads or AVAILABLE_CORES
+    fewest, most = (MIN_ARC_CHUNK, MAX_ARC_CHUNK) if by_arcs else (MIN_CHUNK, MAX_CHUNK)
+    chunk_size = min(max(math.ceil(size / cores), fewest), most)
+
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        chunk = [cell[part] for cell in cells]
+        if by_arcs:
+            _fill_by_arcs(pulse, chunk, flag, records[part])
+        else:
+            _solve_by_steps(pulse, chunk, precision, flag, records[part])
+
+    fill_chunks(fill, size, chunk_size, cores, stop)
+    return records
+
+
+def _fill_by_arcs(
+    pulse: AbstractPulse, cells: list[NDArray[np.float64]], flag: NDArray[np.uint8], records: NDArray[np.void]
+) -> None:
+    """Solve slender blocks in stages, and what these leave one by one, under a wavelet by Taylor steps."""
+    state, stages = solver_state.of_arcs(pulse)
+    if solve_by_arcs(*cells[:3], state, *stages, flag, records) == 0:
+        return
+    if pulse.series.has_exact_arcs:
+        solve_remainder(*cells[:3], state, flag, records)
+        return
+    left = np.flatnonzero(records["outcome"] == LEFT)
+    rest = np.empty(left.size, RESPONSE_RECORD)
+    _solve_by_steps(pulse, [cell[left] for cell in cells], FULL_PRECISION, flag, rest)
+    records[left] = rest
+
+
+def _solve_by_steps(
+    pulse: AbstractPulse,
+    cells: list[NDArray[np.float64]],
+    precision: float,
+    flag: NDArray[np.uint8],
+    records: NDArray[np.void],
+) -> None:
+    state = solver_state.of_steps(pulse, precision)
+    solve_batch(*_with_alpha(cells), NO_BODIES, *state, flag, records, np.empty((0, EDGE_COLUMNS)))
+
+
+def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """Return cells given by four arrays."""
+    return cells if len(cells) == 4 else [*cells, np.zeros(cells[0].size)]

@@ -1,0 +1,139 @@
+"""Events of a body under samples: where it uplifts, and what follows an impact; `rocking._solver.rules` has the rules.
+
+The motion is linear between its samples and zero after the last. The restoring acceleration q = V + F of an edge
+(`rocking._solver.rules`) is linear on a sample interval. Each interval is cut where q = 0; the cut is computed by one
+expression, so that it has one value wherever it is used.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking._solver.records.samples import (
+    SHAPE,
+    TIME,
+    extremes_in_window,
+    ground_at,
+    interval_length,
+    lifting_sign,
+    next_exceedance,
+    vertical_at,
+)
+from rocking._solver.rules import (
+    IMPACT_LIMIT,
+    count_impact,
+    count_uplift,
+    impacts_accumulate,
+    pulls_of,
+    reset_response,
+    set_body,
+    set_sign,
+)
+
+ROUNDING = 1e-15
+"""Share of a sample interval in which a flight is within rounding [-]."""
+
+
+@kernel
+def init_body_state(block: Record, cell: Record, each_side: bool) -> None:
+    """Set a body to rest at the first sample, with an empty response; `each_side`: peaks are wanted for each edge."""
+    set_body(block, cell, each_side)
+    reset_response(block)
+    block.h, block.vertical = cell.rate, cell.vertical
+    set_sign(block, 1.0)
+    block.interval, block.s, block.w0, block.largest_z, block.stepped = 0, 0.0, 0.0, 0.0, 0
+
+
+@kernel
+def restoring_at(block: Record, samples: FloatArray, k: int) -> float:
+    """q = V + F at the sample `k`, on the edge of the flight."""
+    return float(vertical_at(block, samples, k) + block.strength * samples[SHAPE, k])
+
+
+@kernel
+def cut_time(q0: float, q1: float, h: float) -> float:
+    """Time since the left end of an interval at which q, of opposite signs at its ends, is zero [tau]."""
+    return h * (q0 / (q0 - q1))
+
+
+@kernel
+def start_flight(block: Record, samples: FloatArray) -> bool:
+    """Start the next flight, from rest with the next uplift; False if there is none.
+
+    At rest q >= 0 on both edges. Since q is linear on an interval, the body uplifts in the first interval at whose
+    right end q < 0 on an edge: at the zero of q there, or at once where the motion starts with a jump to q < 0.
+    """
+    block.starts_at_uplift, block.largest_z = 0, 0.0
+    if block.at_rest == 0:
+        return True
+    k, s = block.interval, block.s
+    jump = False
+    if k == 0 and s == 0.0:
+        lifted = lifting_sign(block, samples[SHAPE, 0], vertical_at(block, samples, 0))
+        set_sign(block, lifted if lifted != 0.0 else 1.0)
+        jump = restoring_at(block, samples, 0) < 0.0
+    if not jump:
+        k = next_exceedance(block, samples, k)
+        if k == samples.shape[1] - 1:
+            return False
+        set_sign(block, lifting_sign(block, samples[SHAPE, k + 1], vertical_at(block, samples, k + 1)))
+    q0, q1 = restoring_at(block, samples, k), restoring_at(block, samples, k + 1)
+    if q0 < 0.0:
+        cut = 0.0
+    else:
+        cut = cut_time(q0, q1, interval_length(block, samples, k))
+        block.starts_at_uplift = 1
+    block.s = max(cut, s) if k == block.interval else cut
+    block.interval, block.w0, block.at_rest = k, 0.0, 0
+    count_uplift(block, block.h * samples[TIME, k] + block.s)
+    return True
+
+
+@kernel
+def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) -> None:
+    """Impact with velocity w < 0 at time `s` in the interval `k`: set the start of the next flight, or rest.
+
+    Where both edges are held down the body rests if it has no velocity, or if the impacts accumulate. Where one is
+    lifted, a body without velocity uplifts at once, unless the flight had no length: then q = 0 within rounding, and
+    the body rests until it changes.
+    """
+    h = interval_length(block, samples, k)
+    time = block.h * samples[TIME, k] + s - block.uplift_time
+    block.w0 = count_impact(block, time, w)
+    stuck = k == block.interval and s <= block.s + ROUNDING * h
+    block.interval, block.s, block.at_rest = k, s, 0
+    set_sign(block, -block.sign)
+    f, vertical = ground_at(block, samples, k, s)
+    lifted = lifting_sign(block, f, vertical)
+    if lifted == 0.0:
+        if block.w0 <= 0.0:
+            block.at_rest = 1
+        elif block.impacts >= IMPACT_LIMIT or chatter_ends_in_rest(block, samples):
+            block.at_rest, block.chatter = 1, 1
+    elif block.w0 <= 0.0 and stuck:
+        block.at_rest, block.s = 1, s + ROUNDING * h
+    elif block.w0 <= 0.0:  # eta = 0
+        set_sign(block, lifted)
+        block.w0 = 0.0
+
+
+@kernel
+def chatter_ends_in_rest(block: Record, samples: FloatArray) -> bool:
+    """Whether chatter from the start of the next flight certainly ends in rest: `impacts_accumulate`.
+
+    The window is four times the sum of the series for constant q, the extremes of q are those of the samples in it.
+    """
+    w, eta = block.w0, max(block.eta[0], block.eta[1])
+    if eta == 1.0:
+        return False
+    f, vertical = ground_at(block, samples, block.interval, block.s)
+    pulls = pulls_of(block)
+    first = min(pulls[0] * (vertical + block.a[0] * f), pulls[1] * (vertical - block.a[1] * f))
+    if w * w > block.peak_rotation * max(block.ratio[0], block.ratio[1]) * first:
+        return False
+    window = 8.0 * w / (first * (1.0 - eta))
+    spread = 1.0 / (eta * eta) if eta > 0.0 else math.inf  # where q varies more, the series diverges
+    least_right, most_right, least_left, most_left, highest = extremes_in_window(block, samples, window, spread)
+    right, left = (least_right, most_right), (least_left, most_left)
+    return bool(impacts_accumulate(block, w, pulls, window, right, left, highest))

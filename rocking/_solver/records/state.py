@@ -1,0 +1,115 @@
+"""State of the solver under samples: a record for each body, a record for the Taylor steps of `LANES`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._numba.compilation import Record
+from rocking._numba.simd import LANES, VECTOR_BYTES
+from rocking._solver.records.samples import TIME
+from rocking._solver.state import (
+    AT_REST,
+    BODY_FIELDS,
+    EDGE_LANES,
+    FULL_PRECISION,
+    MAX_ORDER,
+    PROGRESS_FIELDS,
+)
+
+MIN_ORDER = 6
+"""Smallest degree of the Taylor steps."""
+
+BLOCK_STATE = np.dtype(
+    [
+        *BODY_FIELDS,
+        *PROGRESS_FIELDS,
+        ("h", np.float64),  # unit of the times of the samples [tau]
+        ("vertical", np.float64),  # factor of the vertical component
+        ("equidistant", np.int64),  # whether that is the length of each sample interval
+        ("cell", np.int64),  # index of the cell, -1: none
+        # position in the motion, where the next flight starts
+        ("interval", np.int64),  # sample interval
+        ("s", np.float64),  # time since its left end [tau]
+        ("stepped", np.int64),  # sample intervals followed so far, for benchmarks
+        # pieces of a flight by Taylor steps, see `rocking._solver.records.taylor_flight`
+        ("length", np.float64),  # of the interval [tau]
+        ("piece_end", np.float64),  # time since the left end of the interval at which the piece ends [tau]
+        ("destabilised", np.int64),  # whether q <= 0 on the piece
+        ("from_ground", np.int64),  # whether the step starts at z = 0
+    ],
+    align=True,
+)
+"""Layout of the record of a body."""
+
+
+def body_states(samples: NDArray[np.float64], count: int) -> NDArray[np.void]:
+    """Records `BLOCK_STATE` (count,) for bodies under the motion `samples` of `sample_rows`."""
+    states = np.zeros(count, BLOCK_STATE)
+    states["equidistant"] = int((np.diff(samples[TIME]) == 1.0).all())
+    return states
+
+
+def _steps_layout() -> np.dtype[np.void]:
+    lanes, series = (LANES,), (MAX_ORDER + 1, LANES)
+    return np.dtype(
+        [
+            ("z", np.float64, series),  # coefficients of z,
+            ("rate", np.float64, series),  # of dz/dtau,
+            ("s", np.float64, series),  # of sin(alpha (1 - z))/sin(alpha)
+            ("c", np.float64, series),  # and of cos(alpha (1 - z))/cos(alpha)
+            # start of the step
+            ("z0", np.float64, lanes),
+            ("w0", np.float64, lanes),
+            ("force", np.float64, lanes),  # F there,
+            ("force_rate", np.float64, lanes),  # and its rate
+            ("vertical", np.float64, lanes),  # V there,
+            ("vertical_rate", np.float64, lanes),  # and its rate
+            ("limit", np.float64, lanes),  # largest step size [tau]
+            # the edges
+            ("omega", np.float64, lanes),
+            *EDGE_LANES,
+            # the step
+            ("h", np.float64, lanes),  # step size [tau]
+            ("z1", np.float64, lanes),  # z at its end
+            ("w1", np.float64, lanes),  # w there
+            ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
+            ("taken", np.int64, lanes),  # number of steps of the flight
+            ("has_vertical", np.int64),  # whether V is not 1 everywhere
+            # accuracy
+            ("order", np.int64),  # degree of the steps, `MIN_ORDER` to `MAX_ORDER`
+            ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
+        ]
+    )
+
+
+STEP_STATE = _steps_layout()
+"""Layout of the record of `LANES` Taylor steps."""
+
+
+def taylor_order(interval: float) -> int:
+    """Degree n of the Taylor steps for sample intervals of this length [tau]: (2 interval)^n/n! is below rounding.
+
+    The lowest degree that reaches the end of an interval in one step under a motion of moderate strength; where it does
+    not suffice, the step is shorter than the interval.
+    """
+    term, order = 1.0, 0
+    while order < MIN_ORDER or (term > FULL_PRECISION and order < MAX_ORDER):
+        order += 1
+        term *= 2.0 * interval / order
+    return order
+
+
+def step_state(samples: NDArray[np.float64], cells: NDArray[np.void]) -> Record:
+    """Taylor steps for the motion `samples` of `sample_rows` and cells `BODY_CELL`."""
+    memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
+    start = -memory.ctypes.data % VECTOR_BYTES
+    steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
+    steps["order"] = taylor_order(float(cells["rate"].max()) * float(np.diff(samples[TIME]).max()))
+    steps["log_precision"] = math.log2(FULL_PRECISION)
+    steps["has_vertical"] = int(cells["vertical"].any())
+    for name in AT_REST:
+        steps[name] = 1.0
+    return steps

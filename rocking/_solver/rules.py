@@ -1,0 +1,250 @@
+"""The rules of events, stated once for pulses and samples, slender and rigid, equal and different edges.
+
+A body rests until the ground acceleration exceeds what one of its edges resists (uplift). It rotates about that edge (a
+flight) until the rotation is zero again (impact), and continues about the other edge with the velocity times the
+restitution of the edge that it leaves. Impacts that accumulate end in rest (chatter). When the ground motion has ended,
+the energy alone decides the outcome.
+
+All functions work on a solver state with the fields `BODY_FIELDS` and `PROGRESS_FIELDS` of `rocking._solver.state`. The
+event loops (`rocking._solver.kernels.event_loop` of pulses, `rocking._solver.records.event_loop` of samples) know where
+the ground motion is: they find the next uplift, follow flights, and call these functions at each event.
+
+The equation of a flight about the edge s (0: right, sgn(theta) = 1; 1: left), with z = |theta|/alpha, w = dz/dtau and
+alpha, p of the right edge, V = 1 + (vertical ground acceleration)/g, F = sgn(theta) a_s f, a_s = a_g/(g tan(alpha_s)):
+
+    z'' = -pull_s (V S + F C),   pull_s = (p_s/p)^2 sin(alpha_s)/alpha,
+    S = sin(alpha_s - alpha z)/sin(alpha_s),   C = cos(alpha_s - alpha z)/cos(alpha_s)
+
+It is (2.2) for equal edges and V = 1, and (3.1) as alpha goes to 0. q = V + F is the restoring acceleration at z = 0.
+z has one scale on both edges, so that an impact changes the velocity by the restitution alone.
+
+Worked example, slender, eta = 0.9: at u = a f = 1 the block uplifts with theta < 0, about the left edge. It returns
+with w = -0.5: the first impact, after which it continues about the right edge with w = 0.45. The pulse ends at z = 0.4,
+w = 0.1. X = 1 - z = 0.6 exceeds w, so that the block does not escape; it rises to 1 - sqrt(0.36 - 0.01) = 0.408, and
+each further flight is lower: it survives.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking._numba.records import copy_fields
+from rocking._solver.free_rocking import barrier_of, highest_rotation, release
+from rocking._solver.state import set_empty_response
+
+IMPACT_LIMIT = 200_000
+"""Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
+
+MODES_PER_UPLIFT = 65536
+"""Number of peak modes reserved for the motion between two uplifts from rest."""
+
+MAX_UPLIFT_MODE = 32_767
+"""Largest number of uplifts that the mode of a peak counts: it is an int32."""
+
+NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
+"""Values of `rocking.Outcome`, as plain integers for the kernels."""
+
+
+@kernel
+def set_edge(state: Record, side: int, slenderness: float, eta: float, ratio: float, stiffness: float) -> None:
+    """Set one edge: g tan(alpha_s)/a_g, eta_s, alpha_s/alpha and (p_s/p)^2; the last two are 1 on the right edge."""
+    state.slenderness[side], state.a[side], state.eta[side] = slenderness, 1.0 / slenderness, eta
+    state.ratio[side], state.stiffness[side] = ratio, stiffness
+    state.speed[side] = ratio * math.sqrt(stiffness)
+
+
+@kernel
+def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> None:
+    """Set a body with equal edges; alpha = 0 is the slender limit."""
+    state.alpha, state.each_side = alpha, 0
+    set_edge(state, 0, slenderness, eta, 1.0, 1.0)
+    set_edge(state, 1, slenderness, eta, 1.0, 1.0)
+
+
+@kernel
+def set_body(state: Record, cell: Record, each_side: bool) -> None:
+    """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
+    differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]
+    state.alpha, state.each_side = cell.alpha, int(each_side or differ)
+    set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
+    set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
+
+
+@kernel
+def reset_response(state: Record) -> None:
+    """Set the body to rest before the first uplift, with an empty response."""
+    state.at_rest, state.uplifts, state.impacts_before_uplift = 1, 0, 0
+    set_empty_response(state)
+    state.side_peak[0], state.side_peak[1], state.end_sign, state.final_sign = 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def set_sign(state: Record, sign: float) -> None:
+    """Set sgn(theta) of the flight, the edge about which the body rotates, and sgn(theta) a_s."""
+    state.sign, state.side = sign, (0 if sign > 0.0 else 1)
+    state.strength = sign * state.a[state.side]
+
+
+@kernel
+def count_uplift(state: Record, time: float) -> None:
+    """Count an uplift from rest at `time` since the start of the motion [tau]."""
+    state.uplifts, state.impacts_before_uplift = state.uplifts + 1, state.impacts
+    if state.outcome == NO_UPLIFT:
+        state.outcome, state.uplift_time = SAFE, time
+
+
+@kernel
+def known_rotation(state: Record) -> float:
+    """Rotation z that a peak of the present flight has to exceed to change the response."""
+    return float(state.side_peak[state.side] if state.each_side == 1 else state.peak_rotation)
+
+
+@kernel
+def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> None:
+    """Update the largest peak. Of two peaks that differ by rounding the mode of the earlier one is kept.
+
+    The mode counts the impacts since the last uplift from rest.
+    """
+    peak = z / state.ratio[side]
+    if peak > state.peak_rotation * (1.0 + 1e-12):
+        uplifts = min(state.uplifts, MAX_UPLIFT_MODE)
+        state.peak_mode = MODES_PER_UPLIFT * (uplifts - 1) + 2 * (impacts - state.impacts_before_uplift) + free
+    state.peak_rotation = max(state.peak_rotation, peak)
+    state.side_peak[side] = max(state.side_peak[side], z)
+
+
+@kernel
+def count_impact(state: Record, time: float, w: float) -> float:
+    """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it."""
+    if state.impacts == 0:
+        state.first_impact_time, state.first_impact_velocity = time, state.sign * w
+    state.impacts += 1
+    return float(-state.eta[state.side] * w)  # (2.3)
+
+
+@kernel
+def overturn(state: Record, further_impacts: int) -> None:
+    """Set the outcome of a body that overturns after `further_impacts` more impacts."""
+    state.impacts += further_impacts
+    state.outcome = DIRECTLY if state.impacts == 0 else AFTER_IMPACT
+    state.peak_rotation, state.peak_mode = math.nan, -1
+    state.side_peak[0], state.side_peak[1] = math.nan, math.nan
+    state.final_sign = state.sign if further_impacts % 2 == 0 else -state.sign
+
+
+@kernel
+def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
+    """Set the outcome from z and w at the end of the motion, or where overturning is certain before it.
+
+    Free rocking loses energy at impacts only, by the factor eta_s^2 <= 1 at those that leave the edge s. A body that
+    does not escape about the present edge overturns after the next impact, about the other edge, or else after the one
+    after that, about the present edge: later flights about an edge start with less than the energy that did not suffice
+    there. Equal edges: the second impact decides nothing, and neither does the first if w > 0, since the energy was
+    below the barrier already.
+    """
+    side = state.side
+    state.end_rotation, state.end_velocity, state.end_sign = z, w, state.sign
+    if overturns:
+        overturn(state, 0)
+        return
+    escapes, top, squared = release(z / state.ratio[side], w / state.speed[side], state.alpha * state.ratio[side])
+    if escapes:
+        overturn(state, 0)
+        return
+    update_peak(state, side, top * state.ratio[side], state.impacts, 1)
+    further = 2 if state.each_side == 1 else (1 if w <= 0.0 else 0)
+    for impact in range(1, further + 1):
+        other = 1 - side
+        change = state.eta[side] * (state.speed[side] / state.speed[other])
+        squared *= change * change  # of the velocity after the impact, in the units of the other edge
+        edge_alpha = state.alpha * state.ratio[other]
+        barrier = barrier_of(edge_alpha)
+        left = barrier * barrier - squared
+        if left <= 0.0:  # (3.16), (3.17)
+            overturn(state, impact)
+            return
+        top = highest_rotation(squared, math.sqrt(left), barrier, edge_alpha)
+        update_peak(state, other, top * state.ratio[other], state.impacts + impact, 1)
+        side = other
+
+
+@kernel
+def pulls_of(state: Record) -> tuple[float, float]:
+    """-z'' at z = 0 over q on both edges, (p_s/p)^2 sin(alpha_s)/alpha [-]."""
+    if state.alpha == 0.0:
+        return 1.0, 1.0
+    right = math.sin(state.alpha) / state.alpha
+    if state.ratio[1] == 1.0 and state.stiffness[1] == 1.0:
+        return right, right
+    return right, state.stiffness[1] * (math.sin(state.alpha * state.ratio[1]) / state.alpha)
+
+
+@kernel
+def softening_of(state: Record) -> float:
+    """Bound of |dz''/dz| over V on both edges while |F| <= V: (p_s/p)^2 (1 + tan(alpha_s)) [-]."""
+    first = 1.0 + math.tan(state.alpha)
+    if state.ratio[1] == 1.0 and state.stiffness[1] == 1.0:
+        return float(first)
+    return float(max(first, state.stiffness[1] * (1.0 + math.tan(state.alpha * state.ratio[1]))))
+
+
+@kernel
+def impacts_accumulate(
+    state: Record,
+    w: float,
+    pulls: tuple[float, float],
+    window: float,
+    right: tuple[float, float],
+    left: tuple[float, float],
+    vertical: float,
+) -> bool:
+    """Whether impacts from velocity w > 0 just after an impact certainly accumulate to rest within a time `window`.
+
+    Near the ground -z'' lies within pull_s q +- k z, k = V (p_s/p)^2 (1 + tan(alpha_s)), with the restoring
+    acceleration q of the edge, which lies in [q1, q2] during the window. A flight from w rises to
+    z_m <= w^2/(2 (pull q1 - k z_m)), lasts at most 2 w/(pull q1 - k z_m), and its impact velocity is at most
+    w sqrt((pull q2 + k z_m)/(pull q1 - k z_m)). With the restitution this bounds a geometric series. True only if its
+    sum fits into the window and no flight can exceed the peak so far.
+
+    Parameters
+    ----------
+    pulls : (float, float)
+        Of `pulls_of`.
+    window : float
+        Time [tau].
+    right, left : (float, float)
+        Smallest and largest q of both edges during the window; all positive, else no series of impacts is bounded.
+    vertical : float
+        Largest V during the window.
+    """
+    right_pull, left_pull = pulls
+    weakest = min(right_pull * right[0], left_pull * left[0])
+    if weakest <= 0.0:
+        return False
+    height = w * w / weakest  # above z_m while k z_m stays below weakest/2
+    softening = vertical * softening_of(state) * height
+    known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
+    if softening > 0.5 * weakest or height > known:
+        return False
+    spread = max(
+        (right_pull * right[1] + softening) / (right_pull * right[0] - softening),
+        (left_pull * left[1] + softening) / (left_pull * left[0] - softening),
+    )
+    ratio = max(state.eta[0], state.eta[1]) * math.sqrt(spread)
+    return bool(ratio < 1.0 and 2.0 * w <= window * (weakest - softening) * (1.0 - ratio))
+
+
+@kernel
+def write_response(state: Record, response: Record) -> None:
+    """Write the response: all declared fields."""
+    state.exceeded_alpha = not (state.peak_rotation <= 1.0)  # also where it is nan
+    copy_fields(state, response)
+
+
+@kernel
+def write_edges(state: Record, edges: FloatArray, cell: int) -> None:
+    """Write what differs from edge to edge, `EDGE_COLUMNS`, if it is wanted."""
+    if state.each_side == 1:
+        edges[cell, 0], edges[cell, 1] = state.side_peak[0], state.side_peak[1]
+        edges[cell, 2], edges[cell, 3] = state.end_sign, state.final_sign

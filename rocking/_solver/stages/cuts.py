@@ -1,0 +1,90 @@
+"""Phases at which |a f| = 1, for `LANES` cells.
+
+On a monotone piece of the pulse a block with sgn(theta) = sign is destabilised where g = -sign f exceeds 1/a, restored
+where it is smaller. The cut between both is unique. If there is none it is put at an end of the piece, so that the
+destabilised or the restored part is empty and all cells have the same sequence of parts.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rocking._numba.compilation import Record, SimdVector, kernel
+from rocking._numba.simd import LANES, any_lane, load, maximum, minimum, select, splat, store
+from rocking._numba.simd_exponentials import arccosine
+from rocking._solver.crossings import refine_crossings
+from rocking._solver.excitation import shapes_and_slopes
+from rocking._solver.families.sinusoids import is_unit_sinusoid
+from rocking._solver.stages.hermite import hermite_roots
+from rocking._solver.stages.state import SLENDERNESS
+
+
+@kernel
+def init_cuts(pulse: Record, group: Record) -> None:
+    """Set the half-width of |f| > 1/a about an extremum, arccos(1/a), for a single sinusoid."""
+    if is_unit_sinusoid(pulse):
+        store(group.half_width, 0, arccosine(minimum(load(group.columns, SLENDERNESS), splat(1.0))))
+
+
+@kernel
+def cut_phases(pulse: Record, group: Record, piece: int, sign: float) -> Any:
+    """Phases of the cuts on a piece of the pulse [rad]."""
+    s = load(group.columns, SLENDERNESS)
+    left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
+    g_left, g_right = -sign * pulse.end_shape[piece], -sign * pulse.end_shape[piece + 1]
+    rising = g_right >= g_left
+    lowest, highest = min(g_left, g_right), max(g_left, g_right)
+    inside = (s > lowest) & (s < highest)
+    # g < 1/a on the whole piece, or above
+    ends = select(s >= highest, splat(right if rising else left), splat(left if rising else right))
+    if not any_lane(inside):
+        return ends
+    if is_unit_sinusoid(pulse):
+        half_width = load(group.half_width, 0)
+        peak_at_left = -sign * pulse.amplitude[0] * pulse.half_period_cosine[piece] > 0.0
+        distance = half_width if peak_at_left else math.pi - half_width
+        found = minimum(maximum(pulse.half_period_phase[piece] + distance, splat(left)), splat(right))
+    else:
+        found = cuts_by_newton(pulse, group, piece, s * -sign, rising == (sign < 0.0), inside)
+    return select(inside, found, ends)
+
+
+@kernel
+def init_nodes(pulse: Record, group: Record) -> None:
+    """Set f and its slope at `LANES` equidistant phases of each piece of the pulse, for `cuts_by_newton`."""
+    if is_unit_sinusoid(pulse):
+        return
+    for lane in range(LANES):
+        group.node_share[lane] = lane / (LANES - 1.0)
+    share = load(group.node_share, 0)
+    for piece in range(pulse.pieces):
+        left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
+        f, slope = shapes_and_slopes(pulse, left + (right - left) * share)
+        store(group.node_shape, piece, f)
+        store(group.node_slope, piece, slope)
+
+
+@kernel
+def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, rising: bool, wanted: Any) -> Any:
+    """The phases at which f, monotone on a piece of the pulse, equals `level`, where the mask `wanted` is true.
+
+    The two nodes beside the level give the bracket, and the cubic through both the first guess.
+    """
+    left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
+    spacing = (right - left) / (LANES - 1.0)
+    shapes, slopes = group.node_shape[piece], group.node_slope[piece]
+    low = splat(left)
+    f_low, slope_low = splat(shapes[0]), splat(slopes[0])
+    f_high, slope_high = splat(shapes[1]), splat(slopes[1])
+    for node in range(1, LANES - 1):
+        beyond = (level > shapes[node]) if rising else (level < shapes[node])
+        low = select(beyond, splat(left + node * spacing), low)
+        f_low, slope_low = select(beyond, splat(shapes[node]), f_low), select(beyond, splat(slopes[node]), slope_low)
+        f_high = select(beyond, splat(shapes[node + 1]), f_high)
+        slope_high = select(beyond, splat(slopes[node + 1]), slope_high)
+    high = minimum(low + spacing, splat(right))
+    phase = low + hermite_roots(f_low - level, slope_low, f_high - level, slope_high, high - low)
+    phase = select((phase > low) & (phase < high), phase, 0.5 * (low + high))
+    rise = splat(1.0 if rising else -1.0)
+    return refine_crossings(pulse, level, rise, (splat(left), splat(right)), low, high, phase, wanted)

@@ -1,0 +1,170 @@
+"""Ends of flights of `LANES` blocks: impacts, chatter, rest, and the outcome by energy after the pulse.
+
+The vector form of `rocking._solver.rules` for slender blocks.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rocking._numba.compilation import Record, SimdVector, kernel
+from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
+from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, SAFE
+from rocking._solver.stages.excitation import excitation_at_angles, set_angles
+from rocking._solver.stages.state import (
+    AT_UPLIFT,
+    CHATTER,
+    ETA,
+    FINISHED,
+    FIRST_IMPACT_TIME,
+    FIRST_IMPACT_VELOCITY,
+    IMPACTS,
+    IMPACTS_BEFORE,
+    LONG,
+    MODE,
+    OMEGA,
+    PEAK,
+    PHASE,
+    REPEATED,
+    REST,
+    SHORT,
+    UNDECIDED,
+    UPLIFTS,
+    W0,
+)
+from rocking._solver.state import IMPACT, PULSE_END
+
+MOST_IMPACTS = 400.0
+"""Impacts after which a cell is left to the general solver: few cells have as many, and vectors of few cells gain
+nothing."""
+
+
+@kernel
+def end_flights(pulse: Record, group: Record, sign: float) -> None:
+    """Process the ends of flights with sgn(theta) = `sign`; set `next` and the columns of the next flight."""
+    ended = load(group.ended, 0)
+    hits, over = ended == float(IMPACT), ended == float(PULSE_END)
+    store(group.next, 0, splat(float(UNDECIDED)))
+    store(group.outcome, 0, splat(float(SAFE)))
+    store(group.free_z, 0, splat(0.0))
+    store(group.free_w, 0, splat(0.0))
+    update_peaks(group, hits | over, load(group.top, 0), load(group.columns, IMPACTS), splat(0.0))
+    if any_lane(over):
+        final_outcomes(group, over)
+    if any_lane(hits):
+        on_impacts(pulse, group, sign, hits)
+
+
+@kernel
+def update_peaks(group: Record, where: Any, peak: SimdVector, impacts: SimdVector, free: SimdVector) -> None:
+    """Update the largest peak; see `rocking._solver.rules.update_peak`."""
+    before = load(group.columns, PEAK)
+    uplifts, impacts_before = load(group.columns, UPLIFTS), load(group.columns, IMPACTS_BEFORE)
+    mode = float(MODES_PER_UPLIFT) * (uplifts - 1.0) + 2.0 * (impacts - impacts_before) + free
+    store(group.columns, MODE, select(where & (peak > before * (1.0 + 1e-12)), mode, load(group.columns, MODE)))
+    store(group.columns, PEAK, select(where, maximum(peak, before), before))
+
+
+@kernel
+def final_outcomes(group: Record, over: Any) -> None:
+    """Outcome of the cells `over` from the energy at the end of the pulse: `rocking._solver.rules.final_outcome`."""
+    z, w, eta = load(group.end_z, 0), load(group.end_w, 0), load(group.columns, ETA)
+    impacts = load(group.columns, IMPACTS)
+    x = 1.0 - z
+    squared = select(x > 0.0, w * w + z * (2.0 - z), 1.0 - (x - w) * (x + w))
+    escapes = w >= x  # (3.8)
+    increases = w > 0.0
+    rebound = eta * eta * squared  # (3.16), (3.17)
+    escapes_later = ~escapes & ~increases & (rebound >= 1.0)
+    overturns = escapes | escapes_later
+    # highest rotation (4.12), before or after the next impact
+    energy = select(increases, squared, rebound)
+    gap = select(increases, (x - w) * (x + w), 1.0 - rebound)
+    peak = energy / (1.0 + square_root(maximum(gap, splat(0.0))))
+    later = ~increases & (peak > z)
+    peak = select(increases | later, peak, z)
+    safe = over & ~overturns
+    update_peaks(group, safe, peak, select(later, impacts + 1.0, impacts), splat(1.0))
+    overturned = over & overturns
+    store(group.columns, PEAK, select(overturned, splat(math.nan), load(group.columns, PEAK)))
+    store(group.columns, MODE, select(overturned, splat(-1.0), load(group.columns, MODE)))
+    directly = escapes & (impacts == 0.0)
+    outcome = select(
+        overturns, select(directly, splat(float(DIRECTLY)), splat(float(AFTER_IMPACT))), splat(float(SAFE))
+    )
+    store(group.outcome, 0, select(over, outcome, load(group.outcome, 0)))
+    store(group.columns, IMPACTS, select(over & escapes_later, impacts + 1.0, impacts))
+    store(group.free_z, 0, select(over, z, splat(0.0)))
+    store(group.free_w, 0, select(over, w, splat(0.0)))
+    store(group.next, 0, select(over, splat(float(FINISHED)), load(group.next, 0)))
+
+
+@kernel
+def on_impacts(pulse: Record, group: Record, sign: float, hits: Any) -> None:
+    """Impacts of the cells `hits`: the next flight or rest; see `rocking._solver.kernels.event_loop.on_impact`."""
+    length, w, eta, omega = (
+        load(group.length, 0),
+        load(group.end_w, 0),
+        load(group.columns, ETA),
+        load(group.columns, OMEGA),
+    )
+    impacts = load(group.columns, IMPACTS)
+    first = hits & (impacts == 0.0)
+    store(group.columns, FIRST_IMPACT_TIME, select(first, length, load(group.columns, FIRST_IMPACT_TIME)))
+    store(group.columns, FIRST_IMPACT_VELOCITY, select(first, sign * w, load(group.columns, FIRST_IMPACT_VELOCITY)))
+    store(group.columns, IMPACTS, select(hits, impacts + 1.0, impacts))
+    phase = load(group.columns, PHASE) + omega * length
+    w0 = eta * w * -1.0  # (2.3)
+    a = load(group.a, 0)
+    set_angles(pulse, group, phase)
+    u = a * excitation_at_angles(pulse, group)
+    quiet = absolute(u) < 1.0
+    still = w0 <= 0.0
+    chatters = quiet & ~still & chatter_ends_in_rest(pulse, group, u, w0, phase)
+    # next flight
+    q0 = 1.0 - sign * u
+    short = (q0 > 0.0) & (2.5 * w0 <= load(group.reach, 0) * q0)
+    following = select(short, splat(float(SHORT)), splat(float(LONG)))
+    # eta = 0 where the ground acceleration exceeds the level: immediate uplift
+    same = sign * u < 0.0
+    following = select(still & ~quiet, select(same, splat(float(REPEATED)), splat(float(LONG))), following)
+    following = select(impacts >= MOST_IMPACTS, splat(float(UNDECIDED)), following)
+    following = select((still & quiet) | chatters, splat(float(REST)), following)
+    store(group.next, 0, select(hits, following, load(group.next, 0)))
+    store(group.columns, PHASE, select(hits, phase, load(group.columns, PHASE)))
+    store(group.columns, W0, select(hits, maximum(w0, splat(0.0)), load(group.columns, W0)))
+    store(group.columns, AT_UPLIFT, select(hits, splat(0.0), load(group.columns, AT_UPLIFT)))
+    store(group.columns, CHATTER, select(hits & chatters, splat(1.0), load(group.columns, CHATTER)))
+
+
+@kernel
+def piece_ends(pulse: Record, phase: SimdVector) -> Any:
+    """Right ends of the monotone pieces that hold the phases [rad]."""
+    ends = splat(pulse.end_phase[1])
+    for piece in range(1, pulse.pieces):
+        ends = select(phase >= pulse.end_phase[piece], splat(pulse.end_phase[piece + 1]), ends)
+    return ends
+
+
+@kernel
+def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVector, phase: SimdVector) -> Any:
+    """Whether chatter certainly ends in rest; `rocking._solver.kernels.chatter` gives the inequality.
+
+    |a f| < 1 up to the end of the window since f is monotone on the piece and |a f| < 1 at both ends.
+    """
+    eta, omega = load(group.columns, ETA), load(group.columns, OMEGA)
+    window = 8.0 * w / ((1.0 - absolute(u0)) * (1.0 - eta))
+    end = phase + omega * window
+    possible = end <= piece_ends(pulse, phase)
+    if not any_lane(possible):
+        return possible
+    set_angles(pulse, group, end)
+    u1 = load(group.a, 0) * excitation_at_angles(pulse, group)
+    least, most = minimum(u0, u1), maximum(u0, u1)
+    weakest = 1.0 - maximum(absolute(u0), absolute(u1))
+    height = w * w / weakest
+    spread = maximum((1.0 + most + height) / (1.0 + least - height), (1.0 - least + height) / (1.0 - most - height))
+    ratio = eta * square_root(spread)
+    possible = possible & (weakest > 0.0) & (height <= 0.5 * weakest) & (height <= load(group.columns, PEAK))
+    return possible & (ratio < 1.0) & (2.0 * w <= window * (weakest - height) * (1.0 - ratio))

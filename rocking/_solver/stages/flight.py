@@ -1,0 +1,335 @@
+"""One flight of `LANES` blocks with the same sign of rotation, from its start to its impact or the end of the pulse.
+
+On each monotone piece of the pulse q keeps its sign up to the cut and changes it there (`rocking._solver.stages.cuts`).
+The parts of the pulse are visited in their order, all cells at once; a cell ignores the parts before its flight.
+
+- Restored, q >= 0: z <= 0 at the right end is necessary and sufficient for an impact, since negative z stays negative.
+  f' keeps its sign, so that a peak exists if w > 0 at the left end and w < 0 at the right. Two more zeros of w are
+  possible only if w'' - w = -q' lets w turn inside: w is then convex (or concave) where it is positive (negative),
+  and its tangents at both ends exclude a zero, else the cell is left to the general solver.
+- Destabilised, q <= 0: z is convex where it is positive. Where w >= 0 at the left end nothing happens, and the state at
+  the right end is not computed before it is needed. Otherwise z <= 0 at the right end means an impact; if z turns
+  inside, its tangents exclude a zero, else the cell is left to the general solver.
+- z + w > 1 + a at the right end of a restored part: overturning is certain, see `rocking._solver.arcs.events`.
+
+Worked example: the sine, 1/a = 0.6, omega = 2. The first flight starts at the uplift, phi = 0.644 (f = 0.6), about the
+left edge. On the parts to pi/2 and to the cut at phi = 2.498 (f = 0.6 again) q <= 0 and w >= 0 at the left end: no
+event, and neither state is computed. The part to 3 pi/2 is restored: z = 0.226 and w = -0.933 at its right end, and
+w = 0.460 at its left end, which is computed now: one peak, which is kept for later, and no impact. On the last part, to
+2 pi, z < 0 at the right end: one impact, which is located at phi = 5.099 with w = -1.416, and the peak with it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rocking._numba.compilation import Record, SimdVector, kernel, specialised_kernel
+from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
+from rocking._solver.stages.arcs import start_arcs, states_at
+from rocking._solver.stages.cuts import cut_phases, init_cuts
+from rocking._solver.stages.excitation import restoring_acceleration, set_angles, set_end_angles
+from rocking._solver.stages.hermite import hermite_roots
+from rocking._solver.stages.roots import locate_impacts, locate_peaks
+from rocking._solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
+from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
+
+MAX_DIP_ARCS = 8
+"""States at which the tangents decide on a minimum of z; nearly all need one or two."""
+
+UPLIFT_SLACK = 1e-13
+"""A flight from an uplift starts at a cut; parts that end closer to it than this [rad] lie before it. The part that
+follows is wider than 1e-8."""
+
+
+@kernel
+def follow_flights(pulse: Record, group: Record, sign: float) -> None:
+    """Follow the flights given by the columns of `flight` to their ends.
+
+    Sets `ended` (`IMPACT`, `PULSE_END`, the latter also where overturning is certain earlier, or -1: left to the
+    general solver), `length`, `end_w`, `end_z` and `top`, the largest z, the latter only if the block can still return.
+    """
+    init_cuts(pulse, group)
+    start_arcs(pulse, group, sign)
+    zero, one = splat(0.0), splat(1.0)
+    store(group.followed, 0, one)
+    store(group.known, 0, one)
+    store(group.left_h, 0, zero)
+    store(group.left_z, 0, zero)
+    store(group.left_w, 0, load(group.columns, W0))
+    store(group.left_q, 0, load(group.q0, 0))
+    store(group.peak_pending, 0, zero)
+    store(group.top, 0, zero)
+    store(group.undecided, 0, zero)
+    starts = load(group.columns, PHASE) + load(group.columns, AT_UPLIFT) * UPLIFT_SLACK
+    for piece in range(pulse.pieces):
+        right = pulse.end_phase[piece + 1]
+        if not any_lane((load(group.followed, 0) > 0.0) & (starts < right)):
+            continue
+        rising = -sign * pulse.end_shape[piece + 1] >= -sign * pulse.end_shape[piece]
+        never_cut = max(-sign * pulse.end_shape[piece + 1], -sign * pulse.end_shape[piece]) <= 0.0
+        if not never_cut:
+            cuts = cut_phases(pulse, group, piece, sign)
+            follow_part(pulse, group, cuts, 0, rising, rising, cuts < right, False)
+        last = piece + 1 == pulse.pieces
+        follow_part(pulse, group, splat(right), piece + 1, never_cut or not rising, rising, fill_mask(False), last)
+    hits = load(group.ended, 0) == float(IMPACT)
+    escaped = ~hits & (load(group.end_z, 0) + load(group.end_w, 0) >= 1.0)
+    store(group.peak_pending, 0, select(escaped, zero, load(group.peak_pending, 0)))
+    if any_lane(load(group.peak_pending, 0) > 0.0):
+        locate_peaks(pulse, group)
+    if any_lane(hits):
+        locate_impacts(pulse, group, hits)
+    undecided = load(group.undecided, 0) > 0.0
+    store(group.ended, 0, select(undecided, splat(float(IN_FLIGHT)), load(group.ended, 0)))
+
+
+@specialised_kernel
+def follow_part(
+    pulse: Record, group: Record, right: SimdVector, end: int, restored: bool, rising: bool, before_cut: Any, last: bool
+) -> None:
+    """Continue the flights to the phase `right` on a part of the pulse with one sign of q.
+
+    Parameters
+    ----------
+    pulse, group
+        Pulse and cells.
+    right : vector
+        Phases of the right ends [rad].
+    end : int
+        Number of the end of a piece of the pulse if all flights are continued to it, else 0.
+    restored : bool
+        Whether q >= 0 on the part, else q <= 0.
+    rising : bool
+        Whether q decreases on it.
+    before_cut : mask
+        Where a destabilised part follows.
+    last : bool
+        Whether the part ends with the pulse.
+    """
+    zero, one = splat(0.0), splat(1.0)
+    # 1. Cells whose flight has a length on this part, and those for which an event is possible on it
+    phase = load(group.columns, PHASE)
+    followed, known = load(group.followed, 0) > 0.0, load(group.known, 0) > 0.0
+    left_h, left_z, left_w = load(group.left_h, 0), load(group.left_z, 0), load(group.left_w, 0)
+    ahead = followed & (right > phase + load(group.columns, AT_UPLIFT) * UPLIFT_SLACK)
+    h = (right - phase) * load(group.reciprocal_omega, 0)
+    inside = ahead & (h > left_h)
+    h = select(inside, h, left_h)
+    falling_back = inside & known & (left_w < 0.0)
+    if not last and not any_lane(inside if restored else falling_back):
+        # destabilised and rising, all of them: no event, and the state at the right end is not needed yet
+        store(group.known, 0, select(inside, zero, load(group.known, 0)))
+        store(group.left_h, 0, h)
+        return
+    # 2. Their state at the right end; at the end of the pulse that of the others too, which was left open
+    if end > 0:
+        set_end_angles(pulse, group, end)
+    else:
+        set_angles(pulse, group, right)
+    computed = inside | (ahead & ~known) if last else inside
+    z, w = states_at(pulse, group, select(computed, h, splat(FAR)))
+    q = restoring_acceleration(pulse, group)
+    # a cell that starts later, or for which the part is empty, keeps its state
+    z, w = select(computed, z, left_z), select(computed, w, left_w)
+    # 3. Events on the part
+    if restored:
+        escapes = inside & (z > 0.0) & (z + w >= (one if last else 1.0 + load(group.a, 0)))
+        if not last:
+            escapes = escapes & before_cut
+        hits, undecided, left_z, left_w = restored_events(
+            pulse, group, rising, inside & ~escapes, known, left_h, left_z, left_w, h, z, w, q
+        )
+    else:
+        escapes = fill_mask(False)
+        hits, undecided = destabilised_events(pulse, group, falling_back, left_h, left_z, left_w, h, z, w)
+    if any_lane(hits):
+        bracket_impacts(group, hits, left_h, left_z, left_w, h, z, w)
+    # 4. How each flight goes on
+    ended = select(escapes, splat(float(PULSE_END)), load(group.ended, 0))
+    ended = select(hits, splat(float(IMPACT)), ended)
+    store(group.undecided, 0, select(undecided, one, load(group.undecided, 0)))
+    stays = followed & ~hits & ~undecided & ~escapes
+    if last:
+        ended = select(stays, splat(float(PULSE_END)), ended)
+    finished = (escapes | stays) if last else escapes
+    store(group.length, 0, select(finished, h, load(group.length, 0)))
+    store(group.end_z, 0, select(finished, z, load(group.end_z, 0)))
+    store(group.end_w, 0, select(finished, w, load(group.end_w, 0)))
+    store(group.ended, 0, ended)
+    store(group.followed, 0, zero if last else select(stays, one, zero))
+    # where a block on a destabilised part does not fall back, its state at the right end is left open
+    now_known = one if restored else select(falling_back, one, zero)
+    store(group.known, 0, select(inside, now_known, load(group.known, 0)))
+    store(group.left_h, 0, h)
+    store(group.left_z, 0, z)
+    store(group.left_w, 0, w)
+    store(group.left_q, 0, select(inside, q, load(group.left_q, 0)))
+
+
+@specialised_kernel
+def restored_events(
+    pulse: Record,
+    group: Record,
+    rising: bool,
+    inside: Any,
+    known: Any,
+    left_h: SimdVector,
+    left_z: SimdVector,
+    left_w: SimdVector,
+    h: SimdVector,
+    z: SimdVector,
+    w: SimdVector,
+    q: SimdVector,
+) -> Any:
+    """Impacts and peaks on a part with q >= 0, from the states at its ends; `left_*` where it is `known`.
+
+    Returns the masks of the cells with an impact, which is where z <= 0 at the right end, and of those left undecided;
+    then z and w at the left end, computed where it was left open and w < 0 at the right end: without a fall there is
+    neither a peak nor an impact, whatever the state at the left end was. The peak of a cell is kept as pending, with
+    its bracket and first guess.
+    """
+    one, zero = splat(1.0), splat(0.0)
+    left_q = load(group.left_q, 0)
+    unknown = inside & ~known & (w < 0.0)
+    if any_lane(unknown):
+        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * left_h)
+        at_left_z, at_left_w = states_at(pulse, group, select(unknown, left_h, splat(FAR)))
+        left_z, left_w = select(unknown, at_left_z, left_z), select(unknown, at_left_w, left_w)
+        left_q = select(unknown, restoring_acceleration(pulse, group), left_q)
+        known = known | unknown
+    left_slope, slope = left_z - left_q, z - q  # of w
+    duration = h - left_h
+    # two more zeros of w are possible where it has one sign at both ends and turns inside
+    if rising:
+        turns = (left_w > 0.0) & (w >= 0.0) & (left_slope < 0.0) & (slope > 0.0)
+    else:
+        turns = (left_w <= 0.0) & (w < 0.0) & (left_slope > 0.0) & (slope < 0.0)
+    undecided = inside & known & turns & ~are_apart(left_w, left_slope, w, slope, duration)
+    if any_lane(undecided):
+        up = 1.0 if rising else -1.0
+        undecided, dips = find_dips(
+            pulse, group, up, undecided, left_h, left_w * up, left_slope * up, h, w * up, slope * up
+        )
+        undecided = undecided | dips
+    peaks = inside & known & (left_w > 0.0) & (w < 0.0)
+    hits = inside & (z <= 0.0)
+    undecided = undecided | (hits & (w >= 0.0))  # rounding: z rises through zero
+    if any_lane(peaks):
+        if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
+            flush_peaks(pulse, group, peaks)
+        guess = left_h + hermite_roots(left_w, left_slope, w, slope, duration)
+        store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
+        store(group.peak_low, 0, select(peaks, left_h, load(group.peak_low, 0)))
+        store(group.peak_high, 0, select(peaks, h, load(group.peak_high, 0)))
+        store(group.peak_guess, 0, select(peaks, guess, load(group.peak_guess, 0)))
+    store(group.impact_after_peak, 0, select(hits, select(peaks, one, zero), load(group.impact_after_peak, 0)))
+    return hits, undecided, left_z, left_w
+
+
+@kernel
+def destabilised_events(
+    pulse: Record,
+    group: Record,
+    falling_back: Any,
+    left_h: SimdVector,
+    left_z: SimdVector,
+    left_w: SimdVector,
+    h: SimdVector,
+    z: SimdVector,
+    w: SimdVector,
+) -> Any:
+    """Impacts on a part with q <= 0 of the cells with w < 0 at its left end; there is no peak inside.
+
+    z is convex while it is positive: z <= 0 at the right end is an impact, and so is z <= 0 at a minimum inside, where
+    w changes its sign. Returns the masks of the cells with an impact and of those left undecided.
+    """
+    hits = falling_back & (z <= 0.0)
+    turns = falling_back & (z > 0.0) & (w > 0.0)
+    undecided = turns & ~are_apart(left_z, left_w, z, w, h - left_h)
+    if any_lane(undecided):
+        undecided, dips = find_dips(pulse, group, 0.0, undecided, left_h, left_z, left_w, h, z, w)
+        hits = hits | dips
+    store(group.impact_after_peak, 0, select(hits, splat(0.0), load(group.impact_after_peak, 0)))
+    return hits, undecided
+
+
+@kernel
+def bracket_impacts(
+    group: Record,
+    hits: Any,
+    left_h: SimdVector,
+    left_z: SimdVector,
+    left_w: SimdVector,
+    h: SimdVector,
+    z: SimdVector,
+    w: SimdVector,
+) -> None:
+    """Set the bracket of the impact: the part, or its left end and the dip that `find_dips` has set."""
+    store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
+    store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
+    store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
+    at_end = hits & (z <= 0.0)  # otherwise at the dip
+    store(group.impact_high, 0, select(at_end, h, load(group.impact_high, 0)))
+    store(group.impact_high_z, 0, select(at_end, z, load(group.impact_high_z, 0)))
+    store(group.impact_high_w, 0, select(at_end, w, load(group.impact_high_w, 0)))
+
+
+@kernel
+def find_dips(
+    pulse: Record,
+    group: Record,
+    of_w: float,
+    wanted: Any,
+    low: SimdVector,
+    v_low: SimdVector,
+    slope_low: SimdVector,
+    high: SimdVector,
+    v_high: SimdVector,
+    slope_high: SimdVector,
+) -> Any:
+    """Whether v has a zero between the times `low` and `high`, with v > 0 at both and slopes < 0 and > 0.
+
+    v is z if `of_w` is 0, otherwise `of_w` w, which are convex where they keep their sign. The state is computed where
+    the tangents at both ends meet, which becomes the next end, until the tangents exclude a zero or v <= 0. Returns the
+    masks of the cells that remain undecided, and of those with a zero, whose `impact_high` is set to the time with
+    v <= 0.
+    """
+    todo, dips = wanted, fill_mask(False)
+    for _ in range(MAX_DIP_ARCS):
+        h = (v_high - v_low + slope_low * low - slope_high * high) / (slope_low - slope_high)
+        h = select(todo, h, splat(FAR))
+        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        z, w = states_at(pulse, group, h)
+        v, slope = z, w
+        if of_w != 0.0:
+            v, slope = w * of_w, (z - restoring_acceleration(pulse, group)) * of_w
+        found = todo & (v <= 0.0)
+        dips = dips | found
+        store(group.impact_high, 0, select(found, h, load(group.impact_high, 0)))
+        store(group.impact_high_z, 0, select(found, z, load(group.impact_high_z, 0)))
+        store(group.impact_high_w, 0, select(found, w, load(group.impact_high_w, 0)))
+        falls = slope < 0.0
+        low, high = select(falls, h, low), select(falls, high, h)
+        v_low, v_high = select(falls, v, v_low), select(falls, v_high, v)
+        slope_low, slope_high = select(falls, slope, slope_low), select(falls, slope_high, slope)
+        todo = todo & ~found & ~are_apart(v_low, slope_low, v_high, slope_high, high - low)
+        if not any_lane(todo):
+            break
+    return todo, dips
+
+
+@kernel
+def are_apart(
+    left: SimdVector, left_slope: SimdVector, right: SimdVector, right_slope: SimdVector, duration: SimdVector
+) -> Any:
+    """Whether the tangents at both ends of a part, with slopes of opposite sign, meet before they cross zero."""
+    return absolute(left * right_slope) + absolute(right * left_slope) > duration * absolute(left_slope * right_slope)
+
+
+@kernel
+def flush_peaks(pulse: Record, group: Record, where: Any) -> None:
+    """Locate the pending peaks of the cells in which another one follows."""
+    pending, zero = load(group.peak_pending, 0), splat(0.0)
+    store(group.peak_pending, 0, select(where, pending, zero))
+    locate_peaks(pulse, group)
+    store(group.peak_pending, 0, select(where, zero, pending))

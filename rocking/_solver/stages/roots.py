@@ -1,0 +1,112 @@
+"""Peaks and impacts of `LANES` flights inside their brackets.
+
+Each iteration evaluates the exact arc, and continues by reversion of the Taylor series of fourth order there. With
+y = -v/v', b_n = v^(n)/(n! v') the zero of v is y - b_2 y^2 + (2 b_2^2 - b_3) y^3 + (5 b_2 b_3 - 5 b_2^3 - b_4) y^4,
+with an error of about 14 r^4 y where r is the largest of |b_2 y| and the rate times |y|. The bracket shrinks in every
+iteration; a step out of it is replaced by its middle.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import absolute, any_lane, load, maximum, select, splat, store
+from rocking._solver.stages.arcs import motions_at
+from rocking._solver.stages.excitation import set_angles
+from rocking._solver.stages.hermite import hermite_roots
+from rocking._solver.stages.state import FAR, OMEGA, PHASE
+
+MAX_ARCS = 24
+"""Evaluations of the arc after which a search gives up and leaves the cell to the general solver. Nearly all need two
+or three."""
+
+
+@kernel
+def locate_peaks(pulse: Record, group: Record) -> None:
+    """Locate the pending peaks: zeros of w, decreasing; set `found_peak_h`, `found_peak_z` and raise `top`.
+
+    The error of z is proportional to the square of the error of the time, which is required to 1e-9.
+    """
+    pending = load(group.peak_pending, 0) > 0.0
+    low, high, h = load(group.peak_low, 0), load(group.peak_high, 0), load(group.peak_guess, 0)
+    max_rate = load(group.max_rate, 0)
+    found_h, found_z = load(group.found_peak_h, 0), load(group.found_peak_z, 0)
+    todo = pending
+    h = select(todo, h, splat(FAR))
+    for _ in range(MAX_ARCS):
+        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        z, w, second, third, fourth = motions_at(pulse, group, h)
+        low, high = select(w > 0.0, h, low), select(w > 0.0, high, h)
+        inverse = 1.0 / second
+        y, b2, b3 = w * inverse * -1.0, 0.5 * third * inverse, fourth * inverse * (1.0 / 6.0)
+        step = y * (1.0 - y * (b2 - y * (2.0 * b2 * b2 - b3)))
+        ratio = maximum(absolute(b2 * y), absolute(y) * max_rate)
+        root = h + step
+        inside = (root >= low) & (root <= high)
+        done = todo & inside & (ratio < 2e-3) & (ratio * ratio * ratio * absolute(y) <= 2e-10 * h)
+        tight = todo & (high - low <= 4e-16 * high)  # no double remains between
+        step = select(tight, splat(0.0), step)
+        root = h + step
+        done = done | tight
+        peak = z + step * (w + step * (0.5 * second + step * (third * (1.0 / 6.0) + step * fourth * (1.0 / 24.0))))
+        found_h, found_z = select(done, root, found_h), select(done, peak, found_z)
+        todo = todo & ~done
+        if not any_lane(todo):
+            break
+        h = select(todo, select(inside & (ratio < 1.0), root, 0.5 * (low + high)), splat(FAR))
+    store(group.found_peak_h, 0, found_h)
+    store(group.found_peak_z, 0, found_z)
+    store(group.top, 0, select(pending, maximum(load(group.top, 0), found_z), load(group.top, 0)))
+    store(group.undecided, 0, select(todo, splat(1.0), load(group.undecided, 0)))
+    store(group.peak_pending, 0, splat(0.0))
+
+
+@kernel
+def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
+    """Locate the impacts where the mask `wanted` is true: zeros of z, decreasing; set `length` and `end_w`."""
+    low, high = load(group.impact_low, 0), load(group.impact_high, 0)
+    z_low, w_low = load(group.impact_low_z, 0), load(group.impact_low_w, 0)
+    after_peak = load(group.impact_after_peak, 0) > 0.0
+    low = select(after_peak, load(group.found_peak_h, 0), low)
+    z_low, w_low = select(after_peak, load(group.found_peak_z, 0), z_low), select(after_peak, splat(0.0), w_low)
+    h = low + hermite_roots(z_low, w_low, load(group.impact_high_z, 0), load(group.impact_high_w, 0), high - low)
+    max_rate = load(group.max_rate, 0)
+    length, end_w = load(group.length, 0), load(group.end_w, 0)
+    todo = wanted
+    h = select(todo, h, splat(FAR))
+    for _ in range(MAX_ARCS):
+        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        z, w, second, third, fourth = motions_at(pulse, group, h)
+        low, high = select(z > 0.0, h, low), select(z > 0.0, high, h)
+        inverse = 1.0 / w
+        y, b2, b3, b4 = (
+            z * inverse * -1.0,
+            0.5 * second * inverse,
+            third * inverse * (1.0 / 6.0),
+            fourth * inverse * (1.0 / 24.0),
+        )
+        square = b2 * b2
+        step = y * (1.0 - y * (b2 - y * ((2.0 * square - b3) + y * (5.0 * b2 * (b3 - square) - b4))))
+        ratio = maximum(absolute(b2 * y), absolute(y) * max_rate)
+        root = h + step
+        slack = 4e-16 * high
+        inside = (root >= low - slack) & (root <= high + slack)
+        fourth_power = ratio * ratio * (ratio * ratio)
+        done = todo & inside & (fourth_power * absolute(y) <= 4e-18 * h) & (ratio < 1e-3)
+        # an expansion far from the start loses the first part of a flight by cancellation
+        reach = load(group.reach, 0)
+        done = done & ((h <= reach) | (root > reach))
+        tight = todo & (high - low <= slack)  # no double remains between
+        step = select(tight, splat(0.0), step)
+        root = h + step
+        done = done | tight
+        length = select(done, root, length)
+        end_w = select(done, w + step * (second + step * (0.5 * third + step * fourth * (1.0 / 6.0))), end_w)
+        todo = todo & ~done
+        if not any_lane(todo):
+            break
+        h = select(todo, select(inside & (ratio < 1.0), root, 0.5 * (low + high)), splat(FAR))
+    store(group.length, 0, length)
+    store(group.end_w, 0, end_w)
+    store(group.undecided, 0, select(todo, splat(1.0), load(group.undecided, 0)))

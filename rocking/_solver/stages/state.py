@@ -1,0 +1,172 @@
+"""State of the stages: a record of `LANES` cells, and one row of numbers for each cell that waits for a stage."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking._excitation.shapes import MAX_PIECES
+from rocking._excitation.sinusoids import MAX_SINUSOIDS
+from rocking._excitation.wavelets import MAX_POLYNOMIAL
+from rocking._numba.compilation import Record
+from rocking._numba.simd import LANES, VECTOR_BYTES
+from rocking._solver.families.wavelets import WAVELET_SERIES_LENGTH
+from rocking._solver.state import RESPONSE_RECORD
+
+BLOCK_SIZE = 1536
+"""Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
+
+BUCKETS = 256
+"""Classes of slenderness, in whose order the cells of a block are followed."""
+
+LIST_COUNT = 7
+"""Lists of cells, see `rocking._solver.stages.lists`."""
+
+# columns of the row of a cell, of which there are LANES: the cell and its next flight,
+SLENDERNESS, OMEGA, ETA = 0, 1, 2  # 1/a, omega, eta
+PHASE, W0 = 3, 4  # phase and velocity w at the start of the flight
+AT_UPLIFT = 5  # 1 if it starts with an uplift through |a f| = 1, else 0
+PEAK, MODE = 6, 7  # largest z so far, its mode
+
+# and the response so far
+IMPACTS, UPLIFTS, IMPACTS_BEFORE = 8, 9, 10  # impacts, uplifts from rest, impacts before the last of them
+UPLIFT_TIME, FIRST_IMPACT_TIME, FIRST_IMPACT_VELOCITY = 11, 12, 13
+PIECE = 14  # piece of the pulse that holds the uplift at which the flight starts, or -1 if `PHASE` is set
+CHATTER = 15  # whether impacts have accumulated to rest
+
+FAR = 1.0
+"""Time [tau] given to cells that are not concerned: it is outside the series at the start of every flight."""
+
+FINISHED, LONG, SHORT, REPEATED, REST, UNDECIDED = 0, 1, 2, 3, 4, 5
+"""What follows for a cell: nothing, a long or a short flight with the opposite sign of rotation, a long one with the
+same sign, rest, or the general solver."""
+
+_LANE_FIELDS = (
+    # the cell
+    "a",
+    "reciprocal_omega",
+    "max_rate",  # largest of 1 and the rates Omega
+    "reach",  # time [tau] up to which the series at the start of the flight is exact to rounding
+    "half_width",  # arccos(1/a) [rad]
+    "node_share",  # of the nodes of a piece, 0 to 1
+    # the arc of the flight, as in `rocking._solver.state.FLIGHT_STATE`
+    "q0",
+    "x0",
+    "y0",
+    "offset_z",
+    "offset_w",
+    # of a wavelet: sgn(theta) a; phase and exp(-phase^2/spread) at the phase of the last `set_angles`, and at the start
+    "strength",
+    "phase",
+    "gaussian",
+    "gaussian0",
+    "decay",  # sqrt(spread)/(2 omega), see `rocking._solver.stages.wavelets`
+    # progress of the flight
+    "followed",  # 1 where it is still followed, else 0
+    "undecided",  # 1 where it is left to the general solver, else 0
+    "known",  # 1 where the state below is known; 0 where it is not and w > 0
+    "left_h",  # time, z, w and q at the left end of the next part of the pulse
+    "left_z",
+    "left_w",
+    "left_q",
+    # a peak to be located: 1 where there is one; the bracket, and a first guess
+    "peak_pending",
+    "peak_low",
+    "peak_high",
+    "peak_guess",
+    "found_peak_h",  # the last located one
+    "found_peak_z",
+    # the impact to be located: the bracket with the states at its ends
+    "impact_low",
+    "impact_low_z",
+    "impact_low_w",
+    "impact_high",
+    "impact_high_z",
+    "impact_high_w",
+    "impact_after_peak",  # 1 where the bracket starts with the last peak
+    # end of the flight
+    "ended",  # `IMPACT`, `PULSE_END`, or `IN_FLIGHT` where it is undecided
+    "length",  # its duration [tau]
+    "end_z",
+    "end_w",
+    "top",  # largest z
+    # the response
+    "outcome",
+    "next",  # what follows: `FINISHED` to `UNDECIDED`
+    "free_z",  # state at the end of the pulse, or where overturning is certain
+    "free_w",
+)
+
+
+def _group_layout() -> np.dtype[np.void]:
+    lanes, rows, terms, pieces = (LANES,), (LANES, LANES), (MAX_SINUSOIDS, LANES), (MAX_PIECES, LANES)
+    return np.dtype(
+        [
+            ("columns", np.float64, rows),  # of the rows of the cells
+            ("shared", np.float64, rows),  # the same at the end of a first flight that several cells share
+            *((name, np.float64, lanes) for name in _LANE_FIELDS),
+            *((name, np.float64, terms) for name in ("force", "rate", "particular")),
+            *((name, np.float64, terms) for name in ("cosine0", "sine0", "cosine", "sine")),
+            (
+                "series",
+                np.float64,
+                (WAVELET_SERIES_LENGTH, LANES),
+            ),  # Taylor coefficients of z about the start of the flight
+            ("excitation", np.float64, (WAVELET_SERIES_LENGTH, LANES)),  # of F for a wavelet
+            ("gauss", np.float64, (WAVELET_SERIES_LENGTH, LANES)),  # of its Gaussian, in powers of phi
+            ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
+            ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
+            ("node_slope", np.float64, pieces),
+            ("response", [(name, np.float64, lanes) for name in RESPONSE_RECORD.names or ()]),  # to be written
+            ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
+            ("written", np.int64, lanes),  # number of the response to be written, or -1
+            ("used", np.int64),  # bits of the lanes that hold a cell
+            ("source", np.int64, lanes),  # the same, with a cell in every lane
+            ("leader", np.int64, lanes),  # row of the first cell that shares its flight
+        ]
+    )
+
+
+GROUP_STATE = _group_layout()
+"""Layout of the record of `LANES` cells. All fields before `place` are rows of a SIMD vector."""
+
+
+CELLS_STATE = np.dtype(
+    [
+        ("rows", np.float64, (BLOCK_SIZE + 1, LANES)),  # of cells that have flown; the last is for unused lanes
+        ("lists", np.int64, (LIST_COUNT, BLOCK_SIZE + LANES)),  # places in the block
+        ("counts", np.int64, (LIST_COUNT,)),  # lengths of the lists
+        ("members", np.int64, (BLOCK_SIZE + 1,)),  # number of cells that share the first flight of a cell
+        ("ends", np.int64, (BUCKETS,)),  # places so far in the sorted list of each class of slenderness
+        ("ordered", np.int64, (BLOCK_SIZE,)),  # the sorted list
+    ]
+)
+"""Layout of the record of the cells of a block, which wait in lists."""
+
+
+class StageState(NamedTuple):
+    """State of the stages of one thread.
+
+    Attributes
+    ----------
+    group : record `GROUP_STATE`
+        The cells in work.
+    cells : record `CELLS_STATE`
+        All cells of a block.
+    """
+
+    group: Record
+    cells: Record
+
+
+def stage_state() -> StageState:
+    """A new state."""
+    return StageState(_aligned_record(GROUP_STATE), _aligned_record(CELLS_STATE))
+
+
+def _aligned_record(layout: np.dtype[np.void]) -> Record:
+    """A record of zeros that starts at a multiple of the size of a vector."""
+    memory = np.zeros(layout.itemsize + VECTOR_BYTES, np.uint8)
+    start = -memory.ctypes.data % VECTOR_BYTES
+    return memory[start : start + layout.itemsize].view(layout)[0]

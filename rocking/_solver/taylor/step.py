@@ -1,0 +1,130 @@
+"""One Taylor step of `LANES` rocking blocks, slender or rigid, under any excitation.
+
+With z = |theta|/alpha and w = dz/dtau, (2.2) reads for the edge s (`rocking._solver.rules`)
+
+    z'' = -(p_s/p)^2 (sin(alpha_s)/alpha) (S + F C),
+    S = sin(alpha_s - alpha z)/sin(alpha_s),  C = cos(alpha_s - alpha z)/cos(alpha_s)
+
+with F = sgn(theta) a_s f. S and C follow from S' = -(alpha/tan(alpha_s)) C z' and C' = alpha tan(alpha_s) S z'; at
+z = 0 both are 1, so that the acceleration is exactly zero at uplift through F = -1. As alpha goes to 0 this tends to
+(3.1), with S = 1 - z and C = 1, without a separate form. alpha_s enters as alpha (alpha_s/alpha), in lanes `alpha` and
+`ratio`; z is exact near the unstable equilibrium, where S vanishes.
+"""
+
+from __future__ import annotations
+
+from rocking._numba.compilation import Record, kernel
+from rocking._numba.simd import absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
+from rocking._numba.simd_sines import sine_and_cosine
+from rocking._solver.excitation import expand_excitation
+
+
+@kernel
+def set_edge_lane(steps: Record, lane: int, state: Record, side: int) -> None:
+    """Set a lane to an edge of the body of a solver state (`alpha` 0: slender)."""
+    slender, alpha = (1.0, 1.0) if state.alpha == 0.0 else (0.0, state.alpha)
+    ratio, stiffness = state.ratio[side], state.stiffness[side]
+    if (
+        steps.alpha[lane] == alpha
+        and steps.ratio[lane] == ratio
+        and steps.stiffness[lane] == stiffness
+        and steps.slender[lane] == slender
+        and steps.s_rate[lane] != 0.0
+    ):
+        return  # the edge of the flight before
+    steps.slender[lane], steps.alpha[lane], steps.ratio[lane], steps.stiffness[lane] = slender, alpha, ratio, stiffness
+    # by the same function as S and C, so that these are exactly 1 at z = 0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * load(steps.ratio, 0))
+    store(steps.sine_alpha, 0, sines)
+    store(steps.cosine_alpha, 0, cosines)
+    if slender == 1.0:
+        steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
+        return
+    sine, cosine = steps.sine_alpha[lane], steps.cosine_alpha[lane]
+    steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = (
+        stiffness * (sine / alpha),
+        -alpha * cosine / sine,
+        alpha * sine / cosine,
+    )
+
+
+@kernel
+def start_series(steps: Record) -> None:
+    """Set the first coefficients of z, w, S and C from z0 and w0."""
+    slender, z0, w0 = load(steps.slender, 0), load(steps.z0, 0), load(steps.w0, 0)
+    store(steps.z, 0, z0)
+    store(steps.z, 1, w0)
+    store(steps.rate, 0, w0)
+    rest = load(steps.ratio, 0) - z0
+    sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
+    store(steps.s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
+    store(steps.c, 0, slender + (1.0 - slender) * (cosines / load(steps.cosine_alpha, 0)))
+
+
+@kernel
+def expand_motion(steps: Record) -> None:
+    """Fill `z` and `rate` from z0, w0 and `f`."""
+    z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
+    at_uplift = load(steps.starts_at_uplift, 0)
+    store(f, 0, (1.0 - at_uplift) * load(f, 0) - at_uplift)  # |a f| = 1 exactly at uplift
+    start_series(steps)
+    factor, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    for n in range(steps.order - 1):
+        restoring, sine, cosine = load(s, n), splat(0.0), splat(0.0)
+        for j in range(n + 1):
+            at_j, back = load(rate, j), load(c, n - j)
+            restoring += load(f, j) * back
+            sine += at_j * back
+            cosine += at_j * load(s, n - j)
+        reciprocal = 1.0 / (n + 1.0)
+        acceleration = factor * restoring * -reciprocal  # (2.2)
+        store(rate, n + 1, acceleration)
+        store(z, n + 2, acceleration * (1.0 / (n + 2.0)))
+        store(s, n + 1, s_rate * sine * reciprocal)
+        store(c, n + 1, c_rate * cosine * reciprocal)
+
+
+@kernel
+def choose_step_size(steps: Record) -> None:
+    """Set `h`, the largest step on which the last two terms meet the precision, at most `limit`.
+
+    The terms are compared with the largest of the first four at the end of the step, by approximate binary logarithms.
+    """
+    z, order = steps.z, steps.order
+    shortest = splat(900.0)
+    for k in range(order - 1, order + 1):
+        last = approx_log2(absolute(load(z, k)))
+        longest = splat(-900.0)
+        for j in range(4):
+            gap = approx_log2(absolute(load(z, j))) - last + steps.log_precision
+            longest = maximum(longest, gap * (1.0 / (k - j)))
+        shortest = minimum(shortest, longest)
+    store(steps.h, 0, minimum(approx_exp2(shortest), load(steps.limit, 0)))
+
+
+@kernel
+def evaluate_step(steps: Record) -> None:
+    """Set z and w at the end of the step of size `h`, and the bound of |w''| on the step."""
+    z, rate, order = steps.z, steps.rate, steps.order
+    h = load(steps.h, 0)
+    rotation, velocity = load(z, order), load(rate, order - 1)
+    bound = absolute(velocity) * ((order - 1.0) * (order - 2.0))
+    for i in range(1, order):
+        n = order - 1 - i
+        rotation = rotation * h + load(z, n + 1)
+        velocity = velocity * h + load(rate, n)
+        if n > 1:
+            bound = bound * h + absolute(load(rate, n)) * (n * (n - 1.0))
+    store(steps.z1, 0, rotation * h + load(z, 0))
+    store(steps.w1, 0, velocity)
+    store(steps.second_derivative_bound, 0, bound)
+
+
+@kernel
+def take_step(steps: Record) -> None:
+    """Expand about z0, w0 at `phase`; set the step size, z and w at the end, and the bound of |w''| on the step."""
+    expand_excitation(steps)
+    expand_motion(steps)
+    choose_step_size(steps)
+    store(steps.h, 0, minimum(load(steps.h, 0), load(steps.reach, 0)))
+    evaluate_step(steps)

@@ -1,0 +1,342 @@
+"""Fills spectrum cubes: solves all nodes, then measures the errors of interpolation between them against the solver.
+
+Several coefficients of restitution are solved together, as the motion before the first impact does not depend on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.errors import one_of
+from rocking._datasets.cube import OPTIONAL_VARIABLES, build_spectrum_dataset
+from rocking._excitation.sampled import SampledPulse
+from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
+from rocking._model.checks import check, check_alpha
+from rocking._model.fields import CUBE_FIELDS
+from rocking._model.outcome_code import SURVIVES, outcome_codes
+from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking._model.response import Response
+from rocking._numba.cancellation import StopFlag
+from rocking._solver.peak_response import peak_response
+from rocking._spectra.layer import (
+    CELL_CENTRE,
+    DIRECT,
+    UNKNOWN,
+    Cells,
+    GridLayer,
+    largest_in_neighbourhood,
+)
+from rocking._spectra.level_interval import LevelInterval
+
+Array = NDArray[np.float64]
+
+PROBES = (CELL_CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
+"""Fractions of a cell along rows and columns at which interpolation is compared with the solver [-]. No two share a row
+or a column: no crease along one passes between them, and errors of rows and columns cannot cancel at all of them."""
+
+FIRST_PROBES = 2
+"""Probe points used in every cell: the error of a smooth function has one shape along rows and one along columns."""
+
+REFINE_TOL = 1e-6
+"""Error at the first probes, in a cell or one next to it, above which the other probes are used as well [-]."""
+
+MAX_ERROR = 5e-5
+"""Largest measured error of a cell that is interpolated [-]."""
+
+PROBE_TOLERANCE = 1e-8
+"""Relative error of the peaks with which interpolation is compared [-]: small compared with errors that matter."""
+
+MIDDLE, BESIDE = 0.5, (0.25, 0.75)
+"""Shares of an interval between two slices at which interpolation is compared with the solver [-].
+
+All cells are probed in the middle. The error of a crease at one eighth of the interval vanishes there, so cells in
+which the peak has a crease are probed beside it too.
+"""
+
+MAX_SPACING = {"restitution": 0.1, "alpha": np.radians(25.0)}
+"""Largest interval between slices that is interpolated [-, rad]: the probes do not suffice for more."""
+
+BATCH_SIZE = 12
+"""Restitutions solved together: most of the saving of a shared first flight, for four times the memory of one."""
+
+
+def spectrum(pulse: str | SampledPulse, *, restitution: float, **grid: Any) -> xr.Dataset:
+    """The spectrum cube of one pulse and one coefficient of restitution; other arguments as for `spectra`."""
+    return next(spectra(pulse, restitution=[restitution], **grid))
+
+
+def spectra(
+    pulse: str | SampledPulse,
+    *,
+    restitution: ArrayLike,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike,
+    alpha: ArrayLike = (0.0,),
+    barred: NDArray[np.bool_] | None = None,
+    derived: Sequence[str] = (),
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> Iterator[xr.Dataset]:
+    """The spectrum cubes of one pulse, one for each coefficient of restitution in turn (`rocking._datasets.cube`).
+
+    Parameters
+    ----------
+    pulse : str or SampledPulse
+        Name of the pulse, or a pulse given by samples.
+    restitution : array_like, shape (l,)
+        eta [-], [0, 1], ascending.
+    slenderness : array_like, shape (n,), n >= 4
+        1/a [-], > 0, ascending.
+    frequency_ratio : array_like, shape (m,), m >= 4
+        omega [-], > 0, ascending.
+    alpha : array_like, shape (k,)
+        Slenderness angles [rad], ascending; 0 for the slender limit.
+    barred : bool array, shape (l, k, n - 1, m - 1), optional
+        Cells that are not interpolated because overturning boundaries cross them (`rocking._boundary.cells`).
+    derived : sequence of str
+        Names of `rocking._model.fields.DERIVED_FIELDS` that the cubes store too.
+    threads : int, optional
+        Threads of the solver; by default all cores.
+    stop : StopFlag, optional
+        The computation ends with `StoppedError` soon after another thread sets it.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    rows = check(SLENDERNESS, slenderness)
+    columns = check(FREQUENCY_RATIO, frequency_ratio)
+    angles = check_alpha(alpha)
+    etas = check(RESTITUTION, restitution)
+    for name in derived:
+        one_of("derived", name, OPTIONAL_VARIABLES)
+    grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
+    layers, errors = _layers(grid, etas, angles, barred, derived)
+    errors |= _errors_between_slices(grid, layers, etas, angles)
+    axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
+    for k, eta in enumerate(etas):
+        cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
+        layers[k].clear()  # the caller may keep the cube
+        yield cube.assign_attrs(restitution_slices=etas)
+
+
+def _layers(
+    grid: _Grid, etas: Array, angles: Array, barred: NDArray[np.bool_] | None, derived: Sequence[str]
+) -> tuple[list[list[GridLayer]], dict[str, Array]]:
+    """The layers by restitution and angle, and the errors (l, k, n - 1, m - 1) of interpolation in their cells."""
+    layers: list[list[GridLayer]] = [[] for _ in etas]
+    errors = grid.no_errors(etas, angles)
+    for a, angle in enumerate(angles):
+        for first in range(0, etas.size, BATCH_SIZE):
+            some = etas[first : first + BATCH_SIZE]
+            nodes = grid.nodes(some, angle)
+            further = {name: getattr(nodes, name) for name in derived}
+            for k in range(some.size):
+                bars = None if barred is None else barred[first + k, a]
+                layers[first + k].append(GridLayer.of(grid.mesh, nodes, k, bars, further))
+            made = [layers[first + k][a] for k in range(some.size)]
+            errors[first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
+    return layers, {"interpolation_error": errors}
+
+
+def _errors_between_slices(
+    grid: _Grid, layers: Sequence[Sequence[GridLayer]], etas: Array, angles: Array
+) -> dict[str, Array]:
+    """The errors (l, k, n - 1, m - 1) of interpolation between a restitution or an angle and the next one."""
+    by_eta, by_angle = grid.no_errors(etas, angles), grid.no_errors(etas, angles)
+    kinds = [[layer.kinds() for layer in row] for row in layers]
+    for a, angle in enumerate(angles):
+        along = [row[a] for row in layers], [row[a] for row in kinds]
+        intervals = [LevelInterval.of(*along, etas, 1, k) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
+        for interval, error in zip(intervals, grid.errors_between_restitutions(intervals, angle), strict=True):
+            by_eta[interval.lower, a] = error
+    for a in _interval_starts(angles, MAX_SPACING["alpha"]):
+        # the equation of motion depends on alpha through its square only
+        intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
+        by_angle[:, a] = grid.errors_between_angles(intervals, etas)
+    return {"restitution_error": by_eta, "alpha_error": by_angle}
+
+
+def _interval_starts(slices: Array, spacing: float) -> list[int]:
+    """The slices whose distance from the next one is at most `spacing`."""
+    return [int(k) for k in np.flatnonzero(np.diff(slices) <= spacing * (1.0 + 1e-9))]
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """The pulse, and the plane of slenderness and frequency ratio on which it is solved."""
+
+    pulse: str | SampledPulse
+    mesh: Mesh
+    columns: Array
+    threads: int | None
+    stop: StopFlag | None
+
+    def no_errors(self, etas: Array, angles: Array) -> Array:
+        """An array (etas, angles, n - 1, m - 1) of nan, for errors of the cells."""
+        return np.full((etas.size, angles.size, self.mesh.rows.values.size - 1, self.columns.size - 1), np.nan)
+
+    def nodes(self, etas: Array, angle: float) -> Response:
+        """All nodes, for each restitution: shape (n, m, restitutions)."""
+        return self._solve(self.mesh.rows.values[:, None], self.columns, etas, angle)
+
+    def errors_in_cells(self, layers: Sequence[GridLayer], etas: Array, angle: float) -> Array:
+        """Largest error [-] at the probes of each cell: shape (restitutions, n - 1, m - 1).
+
+        0 where all blocks overturn in the same way, infinite where one overturns at a probe, nan where there is no
+        stencil. Cells with more than `MAX_ERROR` lose their stencil.
+        """
+        errors = np.array([np.where(layer.stencil == OVERTURNS, 0.0, np.nan) for layer in layers])
+        smooth = np.array([layer.smooth for layer in layers])
+        cells = np.nonzero(smooth.any(axis=0))
+        peaks = self._probe(PROBES[:FIRST_PROBES], cells, etas, angle)
+        for k, layer in enumerate(layers):
+            mine = smooth[k][cells]
+            own = cells[0][mine], cells[1][mine]
+            errors[k][own] = _largest_error(layer, own, PROBES[:FIRST_PROBES], peaks[:, mine, k])
+        refined = smooth & ~(largest_in_neighbourhood(errors) <= REFINE_TOL) & (errors <= MAX_ERROR)
+        for k, layer in enumerate(layers):
+            # one restitution at a time: hardly two layers have such blocks, which impact often, in the same cells
+            rough = np.nonzero(refined[k])
+            more = self._probe(PROBES[FIRST_PROBES:], rough, etas[k : k + 1], angle)[..., 0]
+            errors[k][rough] = np.maximum(errors[k][rough], _largest_error(layer, rough, PROBES[FIRST_PROBES:], more))
+            layer.stencil[smooth[k] & (errors[k] > MAX_ERROR)] = NO_STENCIL
+        return errors
+
+    def errors_between_restitutions(self, intervals: Sequence[LevelInterval], angle: float) -> list[Array]:
+        """Errors in intervals between restitutions, see `_errors_between`."""
+        return self._largest_between(
+            intervals, lambda share: (np.array([interval.level(share) for interval in intervals]), angle), DIRECT
+        )
+
+    def errors_between_angles(self, intervals: Sequence[LevelInterval], etas: Array) -> list[Array]:
+        """Errors in one interval between angles, at each restitution, see `_errors_between`."""
+        return self._largest_between(intervals, lambda share: (etas, intervals[0].level(share)))
+
+    def _largest_between(
+        self,
+        intervals: Sequence[LevelInterval],
+        levels: Callable[[float], tuple[Array, float]],
+        known: int | None = None,
+    ) -> list[Array]:
+        """The largest of the errors at the probes of each interval; nan where one of them is nan."""
+        wanted = [interval.kind != UNKNOWN for interval in intervals]
+        largest = self._errors_between(intervals, MIDDLE, wanted, *levels(MIDDLE), known)
+        for share in BESIDE:
+            beside = [
+                interval.creased & np.isfinite(error) & (interval.kind != known)
+                for interval, error in zip(intervals, largest, strict=True)
+            ]
+            more = self._errors_between(intervals, share, beside, *levels(share), known)
+            largest = [
+                np.where(mine, np.maximum(error, other), error)
+                for mine, error, other in zip(beside, largest, more, strict=True)
+            ]
+        return largest
+
+    def _errors_between(
+        self,
+        intervals: Sequence[LevelInterval],
+        share: float,
+        wanted: Sequence[NDArray[np.bool_]],
+        etas: Array,
+        angle: float,
+        known: int | None,
+    ) -> list[Array]:
+        """Error [-] at a share of each interval, at the centre of each cell.
+
+        Parameters
+        ----------
+        intervals : sequence of LevelInterval
+            Intervals over the same plane.
+        share : float
+            Where in them [-].
+        wanted : sequence of bool arrays (n - 1, m - 1)
+            Cells of each interval that are probed.
+        etas : float array (intervals,)
+            Restitution [-] there.
+        angle : float
+            Slenderness angle [rad] there.
+        known : int or None
+            Kind of cells in which all blocks between overturn in the same way, without asking the solver.
+
+        Returns
+        -------
+        list of float arrays (n - 1, m - 1)
+            0 where all blocks overturn in the same way, nan where the layers or the block between differ in kind.
+        """
+        asked = [cells & (interval.kind != known) for interval, cells in zip(intervals, wanted, strict=True)]
+        errors = [np.where(interval.kind == known, 0.0, np.nan) for interval in intervals]
+        cells = np.nonzero(np.any(asked, axis=0)) if intervals else ()
+        if not intervals or not cells[0].size:
+            return errors
+        x, y = self.mesh.within(cells, CELL_CENTRE)
+        found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
+        codes = outcome_codes(found.outcome, found.impacts)
+        for k, interval in enumerate(intervals):
+            same = asked[k][cells] & (interval.kind[cells] == codes[:, k])
+            errors[k][cells[0][same], cells[1][same]] = 0.0
+            survive = same & (codes[:, k] == SURVIVES)
+            own = cells[0][survive], cells[1][survive]
+            errors[k][own] = interval.errors(share, own, CELL_CENTRE, found.peak_rotation[survive, k])
+        return errors
+
+    def _probe(self, places: Sequence[tuple[float, float]], cells: Cells, etas: Array, angle: float) -> Array:
+        """Peaks of the solver [-] at points of cells, for each restitution: shape (places, cells, restitutions)."""
+        peaks = np.empty((len(places), cells[0].size, etas.size))
+        for k, place in enumerate(places):
+            x, y = self.mesh.within(cells, place)
+            peaks[k] = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE).peak_rotation
+        return peaks
+
+    def _solve(
+        self, slenderness: Array, frequency_ratio: Array, etas: Array, angle: float, tolerance: float | None = None
+    ) -> Response:
+        return peak_response(
+            self.pulse,
+            slenderness=slenderness[..., None],
+            frequency_ratio=frequency_ratio[..., None],
+            restitution=etas,
+            alpha=float(angle) or None,
+            tolerance=tolerance,
+            threads=self.threads,
+            stop=self.stop,
+        )
+
+
+def _largest_error(layer: GridLayer, cells: Cells, places: Sequence[tuple[float, float]], peaks: Array) -> Array:
+    """Largest error [-] of interpolation at points of cells against peaks (places, cells); infinite if one is nan."""
+    errors = np.abs([layer.peak_at(cells, place) - peak for place, peak in zip(places, peaks, strict=True)])
+    return np.asarray(np.nan_to_num(errors.max(axis=0), nan=np.inf))
+
+
+def _cube(
+    pulse: str | SampledPulse,
+    eta: float,
+    axes: Mapping[str, Array],
+    layers: Sequence[GridLayer],
+    errors: Mapping[str, Array],
+) -> xr.Dataset:
+    """Assemble the layers of one restitution; the values of a cell are stored at its lower node."""
+    variables = {field.name: np.stack([getattr(layer, field.name) for layer in layers]) for field in CUBE_FIELDS}
+    variables |= {name: np.stack([layer.derived[name] for layer in layers]) for name in layers[0].derived}
+
+    def at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
+        return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
+
+    variables["stencil"] = at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
+    for name, error in errors.items():
+        largest = largest_in_neighbourhood(error)
+        largest[~((error <= MAX_ERROR) & np.isfinite(largest))] = np.nan
+        single = largest.astype(np.float32)
+        # rounded up to single precision: what is stored is still a bound
+        above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
+        variables[name] = at_corner(above, np.nan)
+    return build_spectrum_dataset(variables, pulse=pulse, restitution=eta, axes=axes)
