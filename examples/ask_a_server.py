@@ -20,10 +20,10 @@ server = os.environ.get("ROCKING_SERVER", "http://127.0.0.1:8000")
 
 question = {
     "pulse": "sine",
-    "half_width": 0.2,  # m
-    "half_height": 0.8,  # m
+    "width": 0.4,  # m
+    "height": 1.6,  # m
     "peak_acceleration": 0.45 * 9.80665,  # m/s2
-    "pulse_period": 0.5,  # s
+    "period": 0.5,  # s
 }
 with urlopen(f"{server}/v1/blocks/response?{urlencode(question)}") as reply:
     answer = json.load(reply)

@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 
 import rocking
 
-block = rocking.Block(half_width=0.20, half_height=0.80)  # m
+block = rocking.Block(width=0.4, height=1.6)  # m
 response = block.response("sine", peak_acceleration=0.45 * 9.80665, period=0.5)  # m/s2, s
 print(response)
 

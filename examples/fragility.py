@@ -16,7 +16,7 @@ import rocking
 
 motions = Path(os.environ.get("ROCKING_MOTIONS", "workflow/motions"))
 records = [rocking.read_record(path) for path in sorted(motions.glob("*.csv"))]
-block = rocking.Block(half_width=0.4, half_height=2.0)  # m
+block = rocking.Block(width=0.8, height=4.0)  # m
 found = rocking.fragility(records, block, intensity=np.geomspace(1.0, 30.0, 36), measure="pga")  # m/s2
 
 curve = found.sel(model="lognormal")

@@ -28,7 +28,7 @@ plt.show()
 # overturning: at 1.1 times the upper end of that range the block of 20 degrees passes alpha, and the second
 # half of the pulse brings it back.
 
-edges = rocking.critical_amplitude("sine", alpha=np.radians(20), **groups)
+edges = rocking.thresholds("sine", alpha=np.radians(20), **groups)
 print(edges)
 back = rocking.time_history("sine", slenderness=1 / (edges.amplitude[1] * 1.1), alpha=np.radians(20), **groups)
 rocking.plot.history(back)

@@ -27,13 +27,13 @@ class DecayingChirp(SmoothPulse):
 
 register(DecayingChirp("chirp", 0.0, 8.0 * math.pi, decay=0.1, growth=0.03))
 
-chirp = rocking.get_pulse("chirp")
+chirp = rocking.pulse("chirp")
 phi = np.linspace(chirp.start, chirp.end, 400)
 figure, axes = plt.subplots(2, 1, layout="constrained")
 axes[0].plot(phi, chirp.acceleration(phi), color="black")
 axes[0].set_xlabel(r"phase $\varphi$ [rad]")
 axes[0].set_ylabel("f [-]")
-print(rocking.critical_amplitude("chirp", frequency_ratio=3.0, restitution=0.85).amplitude)
-block = rocking.Block(half_width=0.2, half_height=0.8)
+print(rocking.thresholds("chirp", frequency_ratio=3.0, restitution=0.85).amplitude)
+block = rocking.Block(width=0.4, height=1.6)
 rocking.plot.boundary(block.boundary("chirp", period=(0.3, 1.5)), axes[1])
 plt.show()

@@ -16,7 +16,7 @@ import rocking
 
 motions = Path(os.environ.get("ROCKING_MOTIONS", "workflow/motions"))
 motion = rocking.read_record(motions / "napa_HNE.csv")
-block = rocking.Block(half_width=0.25, half_height=1.0)  # m
+block = rocking.Block(width=0.5, height=2.0)  # m
 response = block.response(motion, scale=1.2)
 print(response)
 for warning in response.warnings:
@@ -44,8 +44,8 @@ plt.show()
 # Many blocks under one record: arguments broadcast as those of numpy.
 
 heights = np.linspace(1.0, 6.0, 200)  # m
-blocks = [rocking.Block(half_width=0.15 * height, half_height=0.5 * height) for height in heights]
-many = rocking.record_response(
+blocks = [rocking.Block(width=2 * (0.15 * height), height=height) for height in heights]
+many = rocking.peak_response(
     motion,
     frequency_parameter=[one.frequency_parameter for one in blocks],
     slenderness=[one.uplift_acceleration / response.peak_acceleration for one in blocks],

@@ -11,7 +11,7 @@ import numpy as np
 
 import rocking
 
-block = rocking.Block(half_width=0.35, half_height=1.4)  # m
+block = rocking.Block(width=0.7, height=2.8)  # m
 periods = np.geomspace(0.1, 2.0, 400)  # s
 
 figure, axes = plt.subplots(1, 2, sharey=True, figsize=(8, 3.4), layout="constrained")

@@ -66,7 +66,7 @@ def errors(table: Table, found: rocking.Response) -> Errors:
 
 
 def _window(name: str) -> float:
-    pulse = rocking.get_pulse(name)
+    pulse = rocking.pulse(name)
     return float(pulse.end - pulse.start)
 
 

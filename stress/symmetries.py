@@ -54,7 +54,9 @@ def in_units(table: Table, *, length: float, time: float, size: float) -> Table:
     gravity = STANDARD_GRAVITY * length / time**2
     for k, angle in enumerate(np.where(rigid, table["alpha"], SLENDER_ANGLE)):
         metres = rocking.Block.from_slenderness_angle(float(angle), 1.0)
-        block = rocking.Block(metres.half_width * size * length, metres.half_height * size * length, gravity)
+        block = rocking.Block(
+            2 * (metres.half_width * size * length), 2 * (metres.half_height * size * length), gravity
+        )
         group_set = GroupSet.RIGID_SMALL_ROTATION if rigid[k] else GroupSet.SLENDER_BY_BLOCK
         wanted = rocking.groups.Groups(table["frequency_ratio"][k], table["slenderness"][k])
         problem = problem_of_block(

@@ -1,6 +1,7 @@
 """Solver states for tests that call single kernels."""
 
-from rocking._excitation.pulses import AbstractPulse, get_pulse
+import rocking
+from rocking._excitation.pulses import AbstractPulse
 from rocking._numba.compilation import Record
 from rocking._solver.arcs.flight import set_angles
 from rocking._solver.kernels.event_loop import init_state, start_flight
@@ -10,7 +11,7 @@ from rocking._solver.state import pulse_state
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:
     """Return the record of a block at rest before the pulse."""
-    flight = pulse_state(get_pulse(pulse) if isinstance(pulse, str) else pulse).copy()
+    flight = pulse_state(rocking.pulse(pulse) if isinstance(pulse, str) else pulse).copy()
     set_block(flight, slenderness, eta, alpha)
     init_state(flight, omega)
     return flight

@@ -170,7 +170,7 @@ def suite_values(text: str) -> None:
     good: dict[str, Any] = {
         "name": "a", "measure": "pga", "intensity": [1.0, 2.0], "records": {"folder": "a", "pattern": "*.csv"},
         "blocks": [{"width": "1 m", "height": "4 m"}], "hazard": {"intensity": [1.0, 2.0], "rate": [0.1, 0.01]},
-        "demand": ["overturning"], "restitution": "housner",
+        "demand": ["overturning"], "restitution": "momentum",
     }  # fmt: skip
     nested: list[tuple[str, dict[str, Any]]] = [
         ("records", {"folder": text, "pattern": text, "unit": text}),
@@ -230,7 +230,7 @@ READERS = {
     "suite in TOML": Reader(partial(suite_file, suffix="toml"), ["@", "name = @\n", "@ = 1\n", "[@]\n"], SUITE, LINES),
     "suite in JSON": Reader(partial(suite_file, suffix="json"), ["@", '{"name": @}'], SUITE, LINES),
     "query string": Reader(partial(request, path="/v1/response"), ["@", "pulse=@", "@&a=1&a=2"], QUERY, LINES),
-    "query of a block": Reader(partial(request, path="/v1/blocks/response"), ["@", "half_width=@"], QUERY, LINES),
+    "query of a block": Reader(partial(request, path="/v1/blocks/response"), ["@", "width=@"], QUERY, LINES),
     **{
         f"header {name}": Reader(partial(request, path=path, header=name), ["@", f"{prefix}@"], HEADER, LINES)
         for name, path, prefix in (

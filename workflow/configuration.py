@@ -195,11 +195,11 @@ FIGURES = section(
         "figure-01": section(
             ours=section(
                 pulse=PULSE,
-                half_width=METRES,
-                half_height=METRES,
+                width=METRES,
+                height=METRES,
                 rotation=number(1e-3, 1),
                 peak_acceleration=POSITIVE,
-                pulse_period=SECONDS,
+                period=SECONDS,
             )
         ),
         "figure-02": section(
@@ -222,7 +222,7 @@ FIGURES = section(
         ),
         "figure-09": section(
             paper=section(alpha_deg=ANGLE, half_diagonal=several(METRES, 2, 2), restitution=ETA),
-            ours=section(pulse_period=several(SECONDS)),
+            ours=section(period=several(SECONDS)),
         ),
         "figure-10": section(paper=section(restitution=ETA), ours=section(alpha_deg=ANGLES)),
         "figure-11": section(ours=section(slenderness=SLENDERNESS, duration=DURATION, **_HISTORIES)),

@@ -29,7 +29,6 @@ from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
     blocks,
     control_map,
-    critical_amplitude,
     datasets,
     guide,
     health,
@@ -44,6 +43,7 @@ from rocking_api.routers import (
     spectrum,
     subset,
     suites,
+    thresholds,
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
@@ -51,7 +51,7 @@ from rocking_api.settings import Settings
 LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
-    *(response, blocks, records, critical_amplitude, spectrum, control_map, overturning, history),
+    *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
     *(pulses, metadata, suites),
     *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )

@@ -34,7 +34,7 @@ T = TypeVar("T")
 
 _FOLDER, _FILE = "suites/", "/fragility"
 
-_BLOCK = ("half_width", "half_height", "half_diagonal", "frequency_parameter", "uplift_acceleration", "restitution")
+_BLOCK = ("width", "height", "half_diagonal", "frequency_parameter", "uplift_acceleration", "restitution")
 _RECORD = ("peak_acceleration", "peak_velocity", "mean_period", "time_step")
 _COUNTS = ("exceedances", "fraction", "fraction_lower", "fraction_upper", "first_exceedances")
 _CURVE = (

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.ablations.ablation import Ablation, measure_both
-from rocking._excitation.pulses import get_pulse
+from rocking._excitation.pulses import as_pulse
 from rocking._history.body_motion import MAX_FREE_IMPACTS, MAX_ROTATION
 from rocking._history.sampling import REST_VELOCITY, sample_free_rocking
 from rocking._numba.cancellation import NEVER_STOPPED
@@ -156,7 +156,7 @@ def control_plane(side: int, *, lowest: float = 0.02, highest: float = 0.98) -> 
 
 def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return counts and peaks of the blocks with the additional motion `what`."""
-    flight = pulse_state(get_pulse(PULSE)).copy()
+    flight = pulse_state(as_pulse(PULSE)).copy()
     cells, counts = control_plane(side), np.zeros(4)
     peaks = np.empty(side * side)
     follow_blocks(

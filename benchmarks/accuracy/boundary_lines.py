@@ -1,7 +1,7 @@
 """Boundary curves against thresholds on random lines omega = const: `python -m benchmarks.accuracy.boundary_lines`.
 
-Every threshold of `critical_amplitude` should lie on a curve of `overturning_boundary`, within its chord error, and at
-every crossing of a line with a curve the outcome should change. `critical_amplitude` does not use the curves. A
+Every threshold of `thresholds` should lie on a curve of `overturning_boundary`, within its chord error, and at
+every crossing of a line with a curve the outcome should change. `thresholds` does not use the curves. A
 threshold without a curve belongs to a region that the nodes did not show, or to one below the stated resolution;
 `few` counts those of overturning after at most twelve impacts, and `widest` is the largest distance from such a
 threshold to the next one, of the lines that have another one.
@@ -63,7 +63,7 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
     groups = {"restitution": restitution, "alpha": alpha}
     for y in np.random.default_rng(1).uniform(np.log(0.2), np.log(15.0), lines):
         omega = float(np.exp(y))
-        on_line = rocking.critical_amplitude(pulse, frequency_ratio=omega, **groups, highest_amplitude=50.0)
+        on_line = rocking.thresholds(pulse, frequency_ratio=omega, **groups, highest_amplitude=50.0)
         found = 1.0 / on_line.amplitude
         thresholds += found.size
         for k, (x, impacts) in enumerate(zip(found, on_line.impacts, strict=True)):

@@ -82,9 +82,7 @@ def _relative(value: float, reference: float) -> float:
 
 
 def _uplift(data: xr.Dataset) -> Iterator[Reading]:
-    b, h, a, T = (
-        float(data.attrs[name]) for name in ("half_width", "half_height", "peak_acceleration", "pulse_period")
-    )
+    b, h, a, T = (float(data.attrs[name]) for name in ("width", "height", "peak_acceleration", "period"))
     crossing = np.flatnonzero(data.ground_acceleration.values >= b / h)[0]
     x, y = data.time.values, data.ground_acceleration.values
     found = float(np.interp(b / h, y[crossing - 1 : crossing + 1], x[crossing - 1 : crossing + 1]))

@@ -43,7 +43,7 @@ def calls(count: int) -> dict[str, dict[str, Callable[[], Any]]]:
             uplift = STANDARD_GRAVITY * np.tan(alpha)
             scale = np.minimum(strength * uplift / plain.peak_acceleration, 0.9 * STANDARD_GRAVITY / -upwards.min())
             found["record"] = {
-                "block": lambda p=p, scale=scale, uplift=uplift, alpha=alpha, plain=plain: rocking.record_response(
+                "block": lambda p=p, scale=scale, uplift=uplift, alpha=alpha, plain=plain: rocking.peak_response(
                     plain,
                     frequency_parameter=p,
                     slenderness=uplift / (scale * plain.peak_acceleration),

@@ -24,7 +24,11 @@ from rocking._base.units import EXAMPLES, UNITS, USUAL, Quantity, split_quantity
 _MAX_FLOAT = sys.float_info.max
 
 
-class InvalidArgumentError(ValueError):
+class RockingError(Exception):
+    """Any error that this package raises on purpose."""
+
+
+class InvalidArgumentError(RockingError, ValueError):
     """An invalid argument: its name, its value and what is allowed.
 
     Parameters
@@ -80,15 +84,15 @@ class SeveralArgumentsError(InvalidArgumentError):
         return type(self), (self.errors,)
 
 
-class DatasetError(RuntimeError):
+class DatasetError(RockingError, RuntimeError):
     """A data set file is missing, damaged or of another schema; the message names the file and the remedy."""
 
 
-class SearchError(RuntimeError):
+class SearchError(RockingError, RuntimeError):
     """A search of the solver exceeded the number of steps that is proved to suffice: a defect of this package."""
 
 
-class StoppedError(RuntimeError):
+class StoppedError(RockingError, RuntimeError):
     """The work was cancelled through its flag (`rocking._numba.cancellation.StopFlag`)."""
 
 
@@ -344,6 +348,33 @@ def _same_labels(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable
         dim == other and (index is None or one is None or index.equals(one))
         for (dim, index), (other, one) in zip(labels, others, strict=True)
     )
+
+
+def needed(kind: str, **argument: Any) -> Any:
+    """Return an argument that a kind of motion, "a pulse" or "a record", needs.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is None.
+    """
+    ((name, value),) = argument.items()
+    if value is None:
+        raise InvalidArgumentError(name, None, f"a number, for {kind}")
+    return value
+
+
+def reject_given(kind: str, **arguments: Any) -> None:
+    """Reject arguments that have no meaning for a kind of motion.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For the first that is not None.
+    """
+    for name, value in arguments.items():
+        if value is not None:
+            raise InvalidArgumentError(name, value, f"nothing for {kind}")
 
 
 def one_of(parameter: str, value: str, choices: Iterable[str]) -> str:

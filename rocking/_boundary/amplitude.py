@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
-from rocking._base.errors import number
+from rocking._base.errors import needed, number, reject_given
 from rocking._base.units import Scalar
+from rocking._boundary.scan import outcome_changes, scanned
 from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.vertical import check_one_vertical_scale, highest_vertical_scale
 from rocking._model.checks import check_number
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION
+from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
+from rocking._solver.records.record_response import record_response
+
+LOWEST_WITH_VERTICAL = 0.1
+"""Lowest amplitude tried under a record with a vertical component [-], which can lift the block below 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,48 +49,83 @@ class Thresholds(EqualByValue):
     impacts: NDArray[np.int32]
 
 
-def critical_amplitude(
-    pulse: str | AbstractPulse,
+def thresholds(
+    motion: str | AbstractPulse | Record,
     *,
-    frequency_ratio: Scalar,
+    frequency_ratio: Scalar | None = None,
+    frequency_parameter: Scalar | None = None,
     restitution: Scalar,
     alpha: Scalar | None = None,
-    highest_amplitude: Scalar = 100.0,
+    vertical_scale: Scalar | None = None,
+    highest_amplitude: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> Thresholds:
-    """Every amplitude between 1 and `highest_amplitude` at which the outcome changes.
+    """Every amplitude from that of uplift to `highest_amplitude` at which the outcome changes.
 
     Parameters
     ----------
-    pulse, frequency_ratio, restitution, alpha
+    motion, frequency_ratio, frequency_parameter, restitution, alpha
         As for `peak_response`; scalars.
-    highest_amplitude : float
-        Largest a = a_g/(g tan alpha) considered [-], (1, 1e6].
+    vertical_scale : float, optional
+        Factor of the vertical component of a record at the amplitude 1 [-], [0, 1e6]; 1 by default. Both components are
+        scaled, and the search ends where the vertical acceleration reaches -g.
+    highest_amplitude : float, optional
+        Largest a = a_g/(g tan alpha) considered [-], (1, 1e6]; by default 100 under a pulse and 10 under a record.
     stop : StopFlag, optional
         Once another thread sets it, this ends soon with `StoppedError`.
 
     Returns
     -------
     Thresholds
-        Each good to `RESOLUTION` in 1/a, or to `ELASTIC_RESOLUTION` where an elastic block overturns after more than
-        `MOST_COUNTED` impacts. A region of one way of overturning narrower than 1/2000 of the range and surrounded by a
-        single other outcome can be missed; a safe band between two ways of overturning, of which all with more than
-        `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`.
+        Under a pulse each is good to `RESOLUTION` in 1/a, or to `ELASTIC_RESOLUTION` where an elastic block overturns
+        after more than `MOST_COUNTED` impacts. A region of one way of overturning narrower than 1/2000 of the range and
+        surrounded by a single other outcome can be missed; a safe band between two ways of overturning, of which all
+        with more than `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`. Under a record
+        amplitudes that differ by 0.2 % are tried, and changes between them bisected to 1e-6.
 
     Raises
     ------
     InvalidArgumentError
-        For an argument out of range.
+        For an argument out of range, missing, or without meaning for the kind of motion.
     StoppedError
         If `stop` was set.
     """
-    highest = number("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
-    omega, eta = check_number(FREQUENCY_RATIO, frequency_ratio), check_number(RESTITUTION, restitution)
-    return amplitude_changes(block_solver(as_pulse(pulse), alpha, stop), omega, eta, highest)
+    highest = 10.0 if isinstance(motion, Record) else 100.0
+    if highest_amplitude is not None:
+        highest = number("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
+    eta = check_number(RESTITUTION, restitution)
+    if isinstance(motion, Record):
+        reject_given("a record", frequency_ratio=frequency_ratio)
+        p = needed("a record", frequency_parameter=frequency_parameter)
+        return _record_changes(
+            motion, {"frequency_parameter": p, "restitution": eta, "alpha": alpha}, vertical_scale, highest, stop
+        )
+    reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
+    omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
+    return amplitude_changes(block_solver(as_pulse(motion), alpha, stop), omega, eta, highest)
+
+
+def _record_changes(
+    record: Record, groups: dict[str, Any], vertical_scale: Scalar | None, highest: float, stop: StopFlag | None
+) -> Thresholds:
+    factor = check_one_vertical_scale(record, vertical_scale) if vertical_scale is not None else 1.0
+    lowest = 1.0
+    if record.vertical is not None and factor > 0.0:
+        highest = min(highest, highest_vertical_scale(record) / factor)
+        lowest = min(LOWEST_WITH_VERTICAL, highest)
+
+    def solve(amplitudes: Floats) -> Response:
+        scaled = None if record.vertical is None else factor * amplitudes
+        return record_response(record, slenderness=1.0 / amplitudes, vertical_scale=scaled, **groups, stop=stop)
+
+    found, above = outcome_changes(lambda one: solve(one).overturned, scanned(lowest, max(highest, lowest)))
+    there = solve(found) if found.size else None
+    outcome = np.empty(0, np.int8) if there is None else there.outcome
+    return Thresholds(found, above, outcome, np.empty(0, np.int32) if there is None else there.impacts)
 
 
 def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float) -> Thresholds:
-    """`critical_amplitude` by any solver, whose amplitude is 1 at uplift."""
+    """`thresholds` under a pulse by any solver, whose amplitude is 1 at uplift."""
     lowest, log_omega = 1.0 / highest, float(np.log(omega))
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
     grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classifier(solve, counted_code))

@@ -14,7 +14,7 @@ import typer
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
 from rocking._cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
-from rocking._excitation.pulses import AbstractPulse, get_pulse, pulse_names
+from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
 from rocking._model.block import Block
 from rocking._model.checks import check_window
 from rocking._model.parameters import FREQUENCY_RATIO
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
 _SI_UNITS = {
     "width": "m",
     "height": "m",
-    "half_width": "m",
-    "half_height": "m",
     "peak_acceleration": "m/s2",
-    "pulse_period": "s",
+    "period": "s",
     "period_min": "s",
     "period_max": "s",
 }
@@ -38,7 +36,7 @@ _SI_UNITS = {
 MAX_ERRORS = 20
 """Lines of a file that an error names at most."""
 
-_SIZES = ("width", "height", "half_width", "half_height")
+_SIZES = ("width", "height")
 
 
 @dataclass(frozen=True)
@@ -99,7 +97,7 @@ def read_pulse(text: str) -> AbstractPulse:
     """
     name = text.removeprefix("-")
     if name in pulse_names():
-        return get_pulse(text)
+        return as_pulse(text)
     from rocking._excitation.sampled import SampledPulse
 
     try:
@@ -129,7 +127,7 @@ def read_params(options: ProblemOptions) -> Params:
         return Params(read_pulse(options.pulse), slenderness, ratio, _eta(options.restitution), angle or None)
     _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
     block = read_block(options)
-    return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "pulse_period"))
+    return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "period"))
 
 
 def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
@@ -185,7 +183,7 @@ def read_block(options: SizeOptions) -> Block:
         if half is not None and whole is not None:
             raise InvalidArgumentError(name, whole, f"one of --{name} and --half-{name}")
         sizes[name] = 0.5 * _positive(options, name) if half is None else _positive(options, f"half_{name}")
-    return Block(sizes["width"], sizes["height"])
+    return Block(2 * sizes["width"], 2 * sizes["height"])
 
 
 def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
@@ -198,7 +196,7 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
     """
     from rocking._dimensional.table import read_table
 
-    for name in (*_SIZES, "peak_acceleration", "pulse_period", "slenderness", "frequency_ratio", "alpha"):
+    for name in (*_SIZES, "peak_acceleration", "period", "slenderness", "frequency_ratio", "alpha"):
         if getattr(options, name) is not None:
             raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the file --blocks")
     try:
@@ -206,8 +204,8 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
         text = data.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidArgumentError("blocks", path, f"a CSV file that can be read: {error}") from None
-    given = options.restitution or "housner"
-    return read_table(text, read_pulse(options.pulse), given if given == "housner" else _eta(given))
+    given = options.restitution or "momentum"
+    return read_table(text, read_pulse(options.pulse), given if given == "momentum" else _eta(given))
 
 
 def read_duration(text: str | None, params: Params) -> float | None:
@@ -241,8 +239,8 @@ def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
 def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | str, period: float) -> Params:
     from rocking._dimensional.problem import BlockProblem
 
-    given = options.restitution or "housner"
-    eta = "housner" if given == "housner" else _eta(given)
+    given = options.restitution or "momentum"
+    eta = "momentum" if given == "momentum" else _eta(given)
     pulse = read_pulse(options.pulse)
     problem = BlockProblem(block, pulse, peak_acceleration, period, eta)
     groups: Mapping[str, float] = problem.groups  # type: ignore[assignment]
@@ -279,7 +277,7 @@ def _positive(options: SizeOptions, name: str) -> float:
 
 
 def _eta(text: str | None) -> float:
-    allowed = "a number, or housner for a block with units"
+    allowed = "a number, or momentum for a block with units"
     if text is None:
         raise InvalidArgumentError("restitution", None, allowed)
     try:

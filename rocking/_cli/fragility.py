@@ -197,7 +197,7 @@ def _yaml(text: str) -> Any:
 
 def _with_intervals(curves: dict[str, list[Any]]) -> dict[str, list[Any]]:
     """The columns of the table of curves that fit a screen, intervals beside their values; JSON has all of them."""
-    shown = ("demand", "half_width", "half_height", "model", "fit_status", "median_intensity", "dispersion")
+    shown = ("demand", "width", "height", "model", "fit_status", "median_intensity", "dispersion")
 
     def column(name: str) -> list[Any]:
         if name not in ("median_intensity", "dispersion"):
@@ -216,7 +216,7 @@ def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[
     def count(fraction: float) -> str:
         return f"{round(fraction * records)} of {records}"
 
-    shown = {name: rows[name] for name in ("half_width", "half_height", "intensity")}
+    shown = {name: rows[name] for name in ("width", "height", "intensity")}
     shown["overturn"] = [count(value) for value in rows["fraction"]]
     for end in ("low", "high"):
         pairs = zip(rows[f"fraction_{end}_restitution"], rows[f"restitution_{end}"], strict=True)

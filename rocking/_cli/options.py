@@ -36,8 +36,6 @@ class SizeOptions:
 
     width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.")] = None
     height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.")] = None
-    half_width: Annotated[str | None, _with_units("b, such as 0.2m.")] = None
-    half_height: Annotated[str | None, _with_units("h, such as '80 cm'.")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +52,7 @@ class ShapeOptions(SizeOptions):
     restitution: Annotated[
         str | None,
         typer.Option(
-            help=f"{RESTITUTION.help}, {RESTITUTION.interval}; housner for a block with units (its default): (2.4), 0 "
+            help=f"{RESTITUTION.help}, {RESTITUTION.interval}; momentum for a block with units (its default): (2.4), 0 "
             "where negative."
         ),
     ] = None
@@ -68,7 +66,7 @@ class ProblemOptions(ShapeOptions):
     slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
     frequency_ratio: Annotated[float | None, _in_groups(f"{FREQUENCY_RATIO.help}.")] = None
     peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
-    pulse_period: Annotated[
+    period: Annotated[
         str | None,
         _with_units("T_p = 2 pi/omega_g, such as 0.5s; a half sine or rectangular pulse lasts half of it."),
     ] = None
@@ -95,8 +93,8 @@ class RecordOptions(SizeOptions):
     """A block, and what the file of a record does not state."""
 
     restitution: Annotated[
-        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or housner: (2.4).")
-    ] = "housner"
+        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).")
+    ] = "momentum"
     scale: Annotated[float, typer.Option(help="Factor of the record.")] = 1.0
     unit: Annotated[
         str | None, typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.")

@@ -125,12 +125,12 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
         "peak_rotation_deg": None if rotation is None else math.degrees(rotation),
         "top_displacement": None if rotation is None else block.top_displacement(rotation),
         "alpha_deg": math.degrees(block.alpha),
-        "half_width": block.half_width,
-        "half_height": block.half_height,
+        "width": block.width,
+        "height": block.height,
         "half_diagonal": block.half_diagonal,
         "frequency_parameter": block.frequency_parameter,
         "peak_acceleration": problem.peak_acceleration,
-        "pulse_period": problem.period,
+        "period": problem.period,
         "pulse_duration": problem.duration,
         "uplift_acceleration": block.uplift_acceleration,
         "largest_safe_acceleration": assessment.largest_safe_acceleration,
@@ -147,7 +147,7 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
 
 _FIRST_LINES = (
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
-    *("nearest_acceleration", "nearest_period", "pulse_period", "pulse_duration"),
+    *("nearest_acceleration", "nearest_period", "period", "pulse_duration"),
 )
 """What the values of the text output of a block with units begin with."""
 
@@ -161,9 +161,9 @@ _UNITS = {
     "annual_rate": "1/year",
     "gravity": "m/s2",
     **dict.fromkeys(("peak_rotation_deg", "rotation_deg", "alpha_deg"), "deg"),
-    **dict.fromkeys(("pulse_period", "pulse_duration", "nearest_period", "period", "time", "impact_time_s"), "s"),
+    **dict.fromkeys(("period", "pulse_duration", "nearest_period", "period", "time", "impact_time_s"), "s"),
     **dict.fromkeys(("time_step", "significant_duration", "mean_period"), "s"),
-    **dict.fromkeys(("top_displacement", "half_width", "half_height", "half_diagonal", "peak_displacement"), "m"),
+    **dict.fromkeys(("top_displacement", "width", "height", "half_diagonal", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
     **dict.fromkeys(("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "acceleration"), "m/s2"),
     **dict.fromkeys(
@@ -173,7 +173,7 @@ _UNITS = {
 """Units that the text output names beside a value or a column; others are dimensionless."""
 
 
-_NEAREST = {"nearest_acceleration": "peak_acceleration", "nearest_period": "pulse_period"}
+_NEAREST = {"nearest_acceleration": "peak_acceleration", "nearest_period": "period"}
 """Values at which the outcome changes, and those that were asked for."""
 
 

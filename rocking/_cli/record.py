@@ -64,7 +64,7 @@ def _with_options_named(message: str) -> str:
     return re.sub(r"(?:the )?argument `(\w+)`", lambda found: "--" + found[1].replace("_", "-"), message)
 
 
-def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | Literal["housner"]]:
+def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | Literal["momentum"]]:
     """The record in a file, the block, and its restitution.
 
     Raises
@@ -78,7 +78,9 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
     from rocking._excitation.records.readers.read_record import read_record
 
     block = read_block(options)
-    eta: float | Literal["housner"] = "housner" if options.restitution == "housner" else _number_of(options.restitution)
+    eta: float | Literal["momentum"] = (
+        "momentum" if options.restitution == "momentum" else _number_of(options.restitution)
+    )
     motion = read_record(
         file,
         unit=options.unit,
@@ -97,13 +99,13 @@ def _number_of(text: str) -> float:
     try:
         return plain_number("restitution", text)
     except InvalidArgumentError:
-        raise InvalidArgumentError("restitution", text, "a number, or housner") from None
+        raise InvalidArgumentError("restitution", text, "a number, or momentum") from None
 
 
 def _solved(
     motion: Record,
     block: Block,
-    restitution: float | Literal["housner"],
+    restitution: float | Literal["momentum"],
     scale: float,
     thresholds: bool,
     fit: bool,
@@ -129,8 +131,8 @@ def _solved(
         "mean_period": number(motion.mean_period),
         "final_velocity": motion.final_velocity,
         "scale": scale,
-        "half_width": block.half_width,
-        "half_height": block.half_height,
+        "width": block.width,
+        "height": block.height,
         "frequency_parameter": block.frequency_parameter,
         "alpha": block.alpha,
         "uplift_acceleration": block.uplift_acceleration,
@@ -159,7 +161,7 @@ def _solved(
         fitted = fit_pulse(motion, blocks=block)
         about |= {
             "pulse": fitted.velocity.family,
-            "pulse_period": fitted.period,
+            "period": fitted.period,
             "pulse_peak_acceleration": fitted.peak_acceleration,
             "pulse_cycles": number(fitted.velocity.cycles),
             "pulse_phase": number(fitted.velocity.phase),

@@ -25,7 +25,7 @@ from rocking._model import block as geometry
 if TYPE_CHECKING:
     import xarray as xr
 
-Restitution = Scalar  # or "housner"
+Restitution = Scalar  # or "momentum"
 
 
 class RespondingBlock(geometry.AbstractBlock):
@@ -38,12 +38,12 @@ class RespondingBlock(geometry.AbstractBlock):
         *,
         peak_acceleration: Scalar,
         period: Scalar,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
     ) -> BlockResponse: ...
 
     @overload
     def response(
-        self, excitation: Record, *, scale: Scalar = 1.0, restitution: Restitution = "housner", thresholds: bool = True
+        self, excitation: Record, *, scale: Scalar = 1.0, restitution: Restitution = "momentum", thresholds: bool = True
     ) -> BlockRecordResponse: ...
 
     def response(
@@ -53,7 +53,7 @@ class RespondingBlock(geometry.AbstractBlock):
         peak_acceleration: Scalar | None = None,
         period: Scalar | None = None,
         scale: Scalar | None = None,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
         thresholds: bool = True,
     ) -> BlockResponse | BlockRecordResponse:
         """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
@@ -68,7 +68,7 @@ class RespondingBlock(geometry.AbstractBlock):
             T_p = 2 pi/omega_g [s], > 0; of a pulse.
         scale : float
             Factor of a record [-], (0, 1e6]; 1 by default.
-        restitution : float or "housner"
+        restitution : float or "momentum"
             eta [-], [0, 1]; or (2.4) for this geometry, 0 where that is negative.
         thresholds : bool
             Whether the scales of a record at which the outcome changes are searched, when they, the warnings or the
@@ -81,9 +81,9 @@ class RespondingBlock(geometry.AbstractBlock):
 
         Examples
         --------
-        >>> Block(half_width=0.2, half_height=0.8).response("sine", peak_acceleration=4.0, period=0.5).overturned
+        >>> Block(width=0.4, height=1.6).response("sine", peak_acceleration=4.0, period=0.5).overturned
         False
-        >>> Block("20 cm", "80 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
+        >>> Block("40 cm", "160 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
         False
         """
         motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
@@ -99,7 +99,7 @@ class RespondingBlock(geometry.AbstractBlock):
         *,
         peak_acceleration: Scalar,
         period: Scalar,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
         duration: Scalar | None = None,
         samples: int | None = None,
         contact: bool = False,
@@ -111,7 +111,7 @@ class RespondingBlock(geometry.AbstractBlock):
         excitation: Record,
         *,
         scale: Scalar = 1.0,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
         duration: Scalar | None = None,
         samples: int | None = None,
         contact: bool = False,
@@ -124,7 +124,7 @@ class RespondingBlock(geometry.AbstractBlock):
         peak_acceleration: Scalar | None = None,
         period: Scalar | None = None,
         scale: Scalar | None = None,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
         duration: Scalar | None = None,
         samples: int | None = None,
         contact: bool = False,
@@ -162,7 +162,7 @@ class RespondingBlock(geometry.AbstractBlock):
         *,
         peak_acceleration: Scalar,
         period: ArrayLike,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
     ) -> xr.Dataset:
         """Peak rotation and displacement against the period, `rocking._dimensional.curves.block_spectrum`.
 
@@ -186,7 +186,7 @@ class RespondingBlock(geometry.AbstractBlock):
         self,
         pulse: str | AbstractPulse,
         *,
-        restitution: Restitution = "housner",
+        restitution: Restitution = "momentum",
         period: tuple[float, float] | None = None,
     ) -> xr.Dataset:
         """Peak accelerations and periods at which the outcome changes, `rocking._dimensional.curves.block_boundary`.
@@ -195,7 +195,7 @@ class RespondingBlock(geometry.AbstractBlock):
         ----------
         pulse : str or AbstractPulse
             The pulse.
-        restitution : float or "housner"
+        restitution : float or "momentum"
             As for `response`.
         period : (float, float), optional
             Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
@@ -236,11 +236,11 @@ class Block(RespondingBlock, geometry.Block):
 
     Parameters
     ----------
-    half_width : float
-        b [m], > 0; the base is 2b wide. Here and wherever a quantity is expected, a number is in the SI unit, and
-        quantities of pint and texts such as "20 cm" are converted to it.
-    half_height : float
-        h [m], > 0; the block is 2h high.
+    width : float
+        Width 2b of the base [m], > 0. Here and wherever a quantity is expected, a number is in the SI unit, and
+        quantities of pint and texts such as "40 cm" are converted to it.
+    height : float
+        Height 2h [m], > 0.
     gravity : float
         g [m/s2], > 0.
 

@@ -17,9 +17,9 @@ NOT_FOUND = "the {} at which the outcome changes were not found in time: such a 
 def warnings_of_block(block: AbstractBlock, restitution: float | str, outcome: Outcome) -> list[str]:
     """Where restitution or shape of a block make its rocking doubtful."""
     texts = []
-    if restitution == "housner" and block.housner_restitution < 0.0 and outcome != Outcome.NO_UPLIFT:
+    if restitution == "momentum" and block.momentum_restitution < 0.0 and outcome != Outcome.NO_UPLIFT:
         texts.append(
-            f"the restitution (2.4) of this shape is negative ({block.housner_restitution:.3g}): the block stops "
+            f"the restitution (2.4) of this shape is negative ({block.momentum_restitution:.3g}): the block stops "
             "at an impact, eta = 0; give a number for another restitution"
         )
     if not block.contact_is_known:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._boundary.amplitude import amplitude_changes
+from rocking._boundary.scan import outcome_changes, scanned
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.record_groups import HIGHEST_SCALE
-from rocking._dimensional.record_scales import outcome_changes, scanned
 from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
@@ -87,7 +87,7 @@ class BodyThresholds(EqualByValue):
 def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: StopFlag | None = None) -> BodyThresholds:
     """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
 
-    Under a pulse as `rocking.critical_amplitude`; under a record as `rocking._dimensional.record_scales`: scales that
+    Under a pulse as `rocking.thresholds`; under a record as `rocking._dimensional.record_scales`: scales that
     differ by 0.2 % are solved, and changes between them are bisected. A narrower range of one outcome can be missed.
 
     Parameters

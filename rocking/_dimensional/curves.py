@@ -92,7 +92,7 @@ def block_record_history(
     record: Record,
     *,
     scale: Scalar = 1.0,
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     duration: Scalar | None = None,
     samples: int | None = None,
     contact: bool = False,
@@ -108,10 +108,10 @@ def block_record_history(
         Ground motion.
     scale : float
         Factor of the record [-], (0, 1e6].
-    restitution : "housner" or float
+    restitution : "momentum" or float
         (2.4), 0 where that is negative; or eta [-], [0, 1].
     duration : float, optional
-        Length [s], > 0; by default that of `rocking.record_history`.
+        Length [s], > 0; by default that of `rocking.time_history`.
     samples : int, optional
         Uniform samples; by default those of the record. The events are added.
     contact : bool
@@ -168,7 +168,7 @@ def block_spectrum(
     *,
     peak_acceleration: Scalar,
     period: ArrayLike,
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
 ) -> xr.Dataset:
     """Peak rotation of a block against the period of the pulse, in SI units.
 
@@ -182,7 +182,7 @@ def block_spectrum(
         a_g [m/s2], > 0.
     period : array_like (periods,)
         T_p [s], > 0.
-    restitution : float or "housner"
+    restitution : float or "momentum"
         eta [-], [0, 1]; or that of the geometry.
 
     Returns
@@ -231,7 +231,7 @@ def block_boundary(
     block: AbstractBlock,
     pulse: str | AbstractPulse,
     *,
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     period: tuple[float, float] | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
@@ -243,7 +243,7 @@ def block_boundary(
         The block.
     pulse : str or AbstractPulse
         The pulse.
-    restitution : float or "housner"
+    restitution : float or "momentum"
         eta [-], [0, 1]; or that of the geometry.
     period : (float, float), optional
         Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
@@ -309,8 +309,8 @@ def with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: fl
 def _description(block: AbstractBlock, peak_acceleration: float, restitution: float) -> dict[str, float]:
     """Attributes that name the problem, in SI units."""
     return {
-        "half_width": block.half_width,
-        "half_height": block.half_height,
+        "width": block.width,
+        "height": block.height,
         "alpha": block.alpha,
         "gravity": block.gravity,
         "peak_acceleration": peak_acceleration,

@@ -30,7 +30,7 @@ from rocking._model.parameters import FREQUENCY_PARAMETER, RESTITUTION
 class EquivalentBlock(RespondingBlock):
     """The block that rocks like a structure; it is accepted wherever a `Block` is.
 
-    `half_width` and `half_height` are those of the rectangular block of this alpha and p. Contact forces and friction
+    `width` and `height` are those of the rectangular block of this alpha and p. Contact forces and friction
     demand are not known. The structure has to rock to both sides alike.
 
     Parameters
@@ -84,7 +84,7 @@ class EquivalentBlock(RespondingBlock):
         )
         eta = check_number(RESTITUTION, restitution)
         size = 0.75 * g / p**2  # p = sqrt(3 g/(4 R)), below (2.2)
-        super().__init__(size * math.sin(angle), size * math.cos(angle), g)
+        super().__init__(2.0 * size * math.sin(angle), 2.0 * size * math.cos(angle), g)
         own = {
             "_alpha": angle,
             "_frequency_parameter": p,
@@ -118,7 +118,7 @@ class EquivalentBlock(RespondingBlock):
         return self._alpha if self._uplift_acceleration is None else 0.0
 
     @property
-    def housner_restitution(self) -> float:
+    def momentum_restitution(self) -> float:
         """Coefficient of restitution of the structure [-]."""
         return self._restitution
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.threshold import Threshold
@@ -67,7 +67,7 @@ def acceleration_thresholds(problem: BlockProblem, stop: StopFlag | None = None)
     """
     groups = problem.groups
     highest = min(max(HIGHEST_AMPLITUDE, 10.0 / groups["slenderness"]), 1e6)
-    changes = critical_amplitude(
+    changes = thresholds(
         problem.pulse,
         frequency_ratio=groups["frequency_ratio"],
         restitution=groups["restitution"],

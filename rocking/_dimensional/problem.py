@@ -39,7 +39,7 @@ class BlockProblem:
         a_g [m/s2], > 0. A number without unit that is small enough to be one in g gives a warning.
     period : float
         T_p = 2 pi/omega_g [s], > 0; `duration` is how long the pulse lasts.
-    restitution : float or "housner"
+    restitution : float or "momentum"
         eta [-], [0, 1]; or that of (2.4), 0 where it is negative.
 
     Raises
@@ -52,7 +52,7 @@ class BlockProblem:
     pulse: str | AbstractPulse
     peak_acceleration: float
     period: float
-    restitution: float | Literal["housner"]
+    restitution: float | Literal["momentum"]
     unit_is_stated: bool = field(compare=False, repr=False)
 
     def __init__(
@@ -61,7 +61,7 @@ class BlockProblem:
         pulse: str | AbstractPulse,
         peak_acceleration: Scalar,
         period: Scalar,
-        restitution: Scalar = "housner",
+        restitution: Scalar = "momentum",
     ) -> None:
         as_pulse(pulse)
         checked = {
@@ -69,7 +69,7 @@ class BlockProblem:
             "pulse": pulse,
             "peak_acceleration": positive("peak_acceleration", peak_acceleration, "m/s2"),
             "period": positive("period", period, "s"),
-            "restitution": "housner" if is_housner(restitution) else restitution_of(block, restitution),
+            "restitution": "momentum" if is_momentum(restitution) else restitution_of(block, restitution),
             "unit_is_stated": not isinstance(peak_acceleration, Real),
         }
         for name, value in checked.items():
@@ -103,24 +103,24 @@ class BlockProblem:
 
 
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
-    """The coefficient of restitution [-]: the number, or that of the geometry for "housner".
+    """The coefficient of restitution [-]: the number, or that of the geometry for "momentum".
 
     Raises
     ------
     InvalidArgumentError
         For any other text, several numbers, and numbers outside [0, 1].
     """
-    if is_housner(restitution):
+    if is_momentum(restitution):
         return block.inelastic_restitution
     try:
         return check_number(RESTITUTION, restitution)
     except InvalidArgumentError as error:
-        raise InvalidArgumentError("restitution", error.value, f"housner, or {error.allowed}") from None
+        raise InvalidArgumentError("restitution", error.value, f"momentum, or {error.allowed}") from None
 
 
-def is_housner(restitution: Scalar) -> bool:
+def is_momentum(restitution: Scalar) -> bool:
     """Whether the coefficient of restitution is that of the geometry, (2.4)."""
-    return isinstance(restitution, str) and restitution == "housner"
+    return isinstance(restitution, str) and restitution == "momentum"
 
 
 def frequency_ratio_of(block: AbstractBlock, period: float) -> float:

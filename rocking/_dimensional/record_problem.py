@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rocking._base.units import Scalar
-from rocking._dimensional.problem import is_housner, restitution_of
+from rocking._dimensional.problem import is_momentum, restitution_of
 from rocking._dimensional.record_groups import RecordGroups, checked_scale, record_groups
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
@@ -26,7 +26,7 @@ class RecordProblem:
         Ground motion, without the factor.
     scale : float
         Factor of the record [-], (0, 1e6].
-    restitution : float or "housner"
+    restitution : float or "momentum"
         eta [-], [0, 1]; or that of (2.4), 0 where it is negative.
 
     Raises
@@ -41,14 +41,14 @@ class RecordProblem:
     restitution: float | str
 
     def __init__(
-        self, block: AbstractBlock, record: Record, scale: Scalar = 1.0, restitution: Scalar = "housner"
+        self, block: AbstractBlock, record: Record, scale: Scalar = 1.0, restitution: Scalar = "momentum"
     ) -> None:
         eta = restitution_of(block, restitution)
         checked = {
             "block": block,
             "record": record,
             "scale": checked_scale(scale, record, block),
-            "restitution": "housner" if is_housner(restitution) else eta,
+            "restitution": "momentum" if is_momentum(restitution) else eta,
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)  # a frozen dataclass

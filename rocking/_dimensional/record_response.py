@@ -162,7 +162,7 @@ def respond_to_record(
     record: Record,
     *,
     scale: Scalar = 1.0,
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     thresholds: bool = True,
     stop: StopFlag | None = None,
 ) -> BlockRecordResponse:
@@ -176,7 +176,7 @@ def respond_to_record(
         Ground motion.
     scale : float
         Factor of the record [-], (0, 1e6].
-    restitution : "housner" or float
+    restitution : "momentum" or float
         (2.4), 0 where that is negative; or eta [-], [0, 1].
     thresholds : bool
         Whether the assessment searches the scales at which the outcome changes, which takes most of its time.

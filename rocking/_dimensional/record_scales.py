@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -12,27 +11,16 @@ from numpy.typing import NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import number
 from rocking._base.units import Scalar
+from rocking._boundary.scan import lowest_overturning, outcome_changes, scanned
 from rocking._dimensional.problem import restitution_of
 from rocking._dimensional.record_groups import HIGHEST_SCALE, record_groups, search_range
-from rocking._dimensional.threshold import RELATIVE_ERROR, Threshold, threshold_text
+from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 
 Array = NDArray[np.float64]
-
-SCAN_RATIO = 1.002
-"""Ratio of the scales that are tried in turn [-]: ranges of one outcome that are narrower can be missed."""
-
-SCALE_TOLERANCE = RELATIVE_ERROR
-"""Relative width to which a change of outcome is bisected [-]."""
-
-_PARTS = 16
-"""Scales between the two ends of an interval that is bisected, solved by one call."""
-
-_SCANNED = 200
-"""Scales of one call when only the lowest change is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +30,7 @@ class ScaleThresholds(EqualByValue):
     Attributes
     ----------
     scale : float array [-]
-        Factor of the record; the block overturns at it, and survives within a relative `SCALE_TOLERANCE` of it.
+        Factor of the record; the block overturns at it, and survives within a relative 1e-6 of it.
     overturns_above : bool array
         True where the block overturns just above and survives just below.
     searched : (float, float)
@@ -77,7 +65,7 @@ def scale_thresholds(
     record: Record,
     block: AbstractBlock,
     *,
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     highest: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> ScaleThresholds:
@@ -93,7 +81,7 @@ def scale_thresholds(
         Ground motion.
     block : Block
         Block.
-    restitution : "housner" or float
+    restitution : "momentum" or float
         (2.4), or eta [-], [0, 1].
     highest : float, optional
         Highest scale searched [-], (0, 1e6]; by default ten times that of uplift.
@@ -112,21 +100,11 @@ def scale_thresholds(
     return ScaleThresholds(*outcome_changes(overturns, scanned(uplift, top)), (uplift, top), flies)
 
 
-def outcome_changes(overturns: Callable[[Array], NDArray[np.bool_]], values: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Every change of outcome between ascending values, bisected, and whether it overturns above; arrays (changes,)."""
-    overturned = overturns(values)
-    edges = np.flatnonzero(overturned[1:] != overturned[:-1])
-    found = [
-        _bisected(overturns, float(values[k]), float(values[k + 1]), bool(overturned[k + 1])) for k in edges.tolist()
-    ]
-    return np.array(found, dtype=np.float64), overturned[edges + 1]
-
-
 def overturning_scale(
     record: Record,
     block: AbstractBlock,
     *,
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     highest: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> float:
@@ -142,22 +120,6 @@ def _checked_highest(highest: Scalar | None) -> float | None:
     return None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
 
 
-def lowest_overturning(overturns: Callable[[Array], NDArray[np.bool_]], values: Array) -> float:
-    """Lowest value at which a block overturns, of ascending ones and between them; nan if it survives all."""
-    for first in range(0, values.size, _SCANNED):
-        overturned = overturns(values[first : first + _SCANNED])
-        if overturned.any():
-            k = first + int(overturned.argmax())
-            return _bisected(overturns, float(values[k - 1]), float(values[k]), True) if k else float(values[0])
-    return math.nan
-
-
-def scanned(lowest: float, highest: float) -> Array:
-    """The values that a search tries, from the lowest on; only the last one depends on the highest."""
-    count = max(math.ceil(math.log(highest / lowest) / math.log(SCAN_RATIO)), 0)
-    return np.minimum(lowest * SCAN_RATIO ** np.arange(count + 1.0), highest)
-
-
 def _solver(
     record: Record, block: AbstractBlock, eta: float, stop: StopFlag | None
 ) -> Callable[[Array], NDArray[np.bool_]]:
@@ -167,13 +129,3 @@ def _solver(
         return record_response(record, **record_groups(record, block, scales, eta), stop=stop).overturned
 
     return overturns
-
-
-def _bisected(solve: Callable[[Array], NDArray[np.bool_]], low: float, high: float, above: bool) -> float:
-    """The end of the interval of a change that overturns, once the interval is narrow; `above` is the upper end."""
-    while high / low - 1.0 > SCALE_TOLERANCE:
-        edges: Array = np.geomspace(low, high, _PARTS + 2).astype(np.float64)
-        changed = solve(edges[1:-1]) == above
-        first = int(changed.argmax()) if changed.any() else _PARTS
-        low, high = float(edges[first]), float(edges[first + 1])
-    return high if above else low

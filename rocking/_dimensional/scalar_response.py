@@ -26,8 +26,8 @@ DISPLACEMENT = ResponseField(
 )
 
 BLOCK_FIELDS = (
-    ResponseField("half_width", "f8", "m", "2.1", "half width b of the block"),
-    ResponseField("half_height", "f8", "m", "2.1", "half height h of the block"),
+    ResponseField("width", "f8", "m", "2.1", "width 2b of the block"),
+    ResponseField("height", "f8", "m", "2.1", "height 2h of the block"),
     ResponseField("half_diagonal", "f8", "m", "2.2", "half-diagonal R of the block"),
     ResponseField("alpha", "f8", "rad", "2.1", "slenderness angle"),
     ResponseField("frequency_parameter", "f8", "rad s-1", "2.2", "frequency parameter p"),

@@ -26,18 +26,13 @@ from rocking._solver.bounded_response import solve_with_bound
 UNITS = {
     "width": "m",
     "height": "m",
-    "half_width": "m",
-    "half_height": "m",
     "peak_acceleration": "m/s2",
     "period": "s",
 }
 """Columns with units, and the SI units of their values."""
 
-OTHER_NAMES = {"pulse_period": "period"}
-"""Names of columns that the command line and the service use for the same quantity."""
-
 OTHER_COLUMNS = ("name", "restitution")
-"""Columns without units: a label, and a number or housner."""
+"""Columns without units: a label, and a number or momentum."""
 
 _EXAMPLES = {"m": ("m", "cm"), "m/s2": ("g", "m/s2", "gal"), "s": ("s", "ms")}
 
@@ -65,18 +60,18 @@ class BlockTable:
     names: list[str]
 
 
-def read_table(text: str, pulse: str | AbstractPulse, restitution: float | str = "housner") -> BlockTable:
+def read_table(text: str, pulse: str | AbstractPulse, restitution: float | str = "momentum") -> BlockTable:
     """Parse a table of blocks.
 
     Parameters
     ----------
     text : str
         CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
-        may be `half_width` and `half_height`, the period `pulse_period`. Columns may be separated by semicolons;
+        may be `width` and `height`, the period `period`. Columns may be separated by semicolons;
         numbers have decimal points. Names are kept with their blanks.
     pulse : str or AbstractPulse
         The pulse.
-    restitution : float or "housner"
+    restitution : float or "momentum"
         For rows that state none.
 
     Raises
@@ -137,7 +132,7 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, str]]:
                 "blocks, header", f"{text[:MAX_NAME]}...", f"{_ALLOWED}, of at most {MAX_NAME} characters"
             )
         found = _HEADER.fullmatch(text.strip())
-        name, unit = (OTHER_NAMES.get(found[1], found[1]), found[2] or found[3]) if found else (text, None)
+        name, unit = (found[1], found[2] or found[3]) if found else (text, None)
         if name in names or (name not in UNITS and name not in OTHER_COLUMNS):
             raise InvalidArgumentError("blocks, header", text, f"{_ALLOWED}, each at most once")
         if name in UNITS:
@@ -151,9 +146,9 @@ def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, str]]:
                 raise InvalidArgumentError("blocks, header", text, f"a unit such as {', '.join(examples)}")
             units[name] = known
         names.append(name)
-    for pair in (("width", "half_width"), ("height", "half_height"), ("peak_acceleration",), ("period",)):
-        if sum(name in names for name in pair) != 1:
-            raise InvalidArgumentError("blocks, header", ",".join(header), f"one column {' or '.join(pair)}")
+    for name in UNITS:
+        if names.count(name) != 1:
+            raise InvalidArgumentError("blocks, header", ",".join(header), f"one column {name}")
     return names, units
 
 
@@ -161,12 +156,12 @@ def _problem(
     given: Mapping[str, str], units: Mapping[str, str], pulse: str | AbstractPulse, restitution: float | str
 ) -> BlockProblem:
     values = {name: _positive(name, given[name], unit) for name, unit in units.items()}
-    b = values["half_width"] if "half_width" in values else 0.5 * values["width"]
-    h = values["half_height"] if "half_height" in values else 0.5 * values["height"]
     eta = given.get("restitution") or restitution
-    if isinstance(eta, str) and eta != "housner":
+    if isinstance(eta, str) and eta != "momentum":
         eta = plain_number("restitution", eta)
-    return BlockProblem(Block(b, h), pulse, values["peak_acceleration"], values["period"], eta)
+    return BlockProblem(
+        Block(values["width"], values["height"]), pulse, values["peak_acceleration"], values["period"], eta
+    )
 
 
 def _positive(name: str, text: str, unit: str) -> float:
@@ -190,8 +185,8 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
     groups = [problem.groups for problem in problems]
     columns: dict[str, list[Any]] = {"name": table.names} if table.names else {}
     columns |= {
-        "half_width": [problem.block.half_width for problem in problems],
-        "half_height": [problem.block.half_height for problem in problems],
+        "width": [problem.block.width for problem in problems],
+        "height": [problem.block.height for problem in problems],
         "peak_acceleration": [problem.peak_acceleration for problem in problems],
         "period": [problem.period for problem in problems],
         "uplift_acceleration": [problem.block.uplift_acceleration for problem in problems],

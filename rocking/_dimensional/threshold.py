@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
-RELATIVE_ERROR = 1e-6
-"""Largest relative error of a threshold [-]: that under records, and that of elastic blocks under pulses."""
+from rocking._boundary.scan import RELATIVE_ERROR  # that of elastic blocks under pulses, too
 
 
 @dataclass(frozen=True)

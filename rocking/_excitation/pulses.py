@@ -26,7 +26,7 @@ __all__ = [
     "SmoothPulse",
     "WaveletPulse",
     "as_pulse",
-    "get_pulse",
+    "pulse",
     "pulse_names",
     "pulse_number",
     "register",
@@ -178,7 +178,7 @@ def pulse_number(name: str) -> int:
     return PULSE_NAMES.index(name) if name in PULSE_NAMES else -1
 
 
-def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
+def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
     """The pulse itself, or the one of that name.
 
     Raises
@@ -186,10 +186,10 @@ def as_pulse(pulse: str | AbstractPulse) -> AbstractPulse:
     InvalidArgumentError
         For anything else.
     """
-    return pulse if isinstance(pulse, AbstractPulse) else get_pulse(pulse)
+    return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 
 
-def get_pulse(name: str, **parameters: float) -> AbstractPulse:
+def pulse(name: str, **parameters: float) -> AbstractPulse:
     """The pulse of that name; `"-sine"` is the mirrored sine.
 
     Parameters

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._excitation.pulses import get_pulse
+from rocking._excitation.pulses import as_pulse
 from rocking._history.sampling import sample_free_rocking
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking._model.response import Outcome
@@ -159,7 +159,7 @@ class BodyMotion(ABC):
         written = sample_free_rocking(
             *(float(state[name]) for name in ("end_rotation", "end_velocity", "end_sign")),
             body,
-            step_state(pulse_state(get_pulse("sine"))),  # without ground motion any pulse serves
+            step_state(pulse_state(as_pulse("sine"))),  # without ground motion any pulse serves
             self.pulse_end,
             self.horizon * (1 + 1e-12),  # a step fills the samples before its end, so the last must lie inside
             self.max_rotation,

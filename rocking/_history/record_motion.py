@@ -88,7 +88,7 @@ def build_record_motion(
     duration: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> SamplesMotion:
-    """The motion for given parameters; arguments and errors as for `rocking.record_history`."""
+    """The motion for given parameters; arguments and errors as for `rocking.time_history`."""
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
     s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
     angle = check_one_alpha(alpha)

@@ -21,10 +21,10 @@ class AbstractBlock(ABC):
 
     Parameters
     ----------
-    half_width : float
-        b of the rectangular block of this alpha and p [m], > 0.
-    half_height : float
-        h of the same [m], > 0.
+    width : float
+        2b of the rectangular block of this alpha and p [m], > 0.
+    height : float
+        2h of the same [m], > 0.
     gravity : float
         g [m/s2], > 0.
 
@@ -34,14 +34,24 @@ class AbstractBlock(ABC):
         If a length or gravity is not finite and positive.
     """
 
-    half_width: float
-    half_height: float
+    width: float
+    height: float
     gravity: float
 
-    def __init__(self, half_width: Scalar, half_height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
-        object.__setattr__(self, "half_width", positive("half_width", half_width, "m"))  # a frozen dataclass
-        object.__setattr__(self, "half_height", positive("half_height", half_height, "m"))
+    def __init__(self, width: Scalar, height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
+        object.__setattr__(self, "width", positive("width", width, "m"))  # a frozen dataclass
+        object.__setattr__(self, "height", positive("height", height, "m"))
         object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
+
+    @property
+    def half_width(self) -> float:
+        """b [m] (figure 1)."""
+        return 0.5 * self.width
+
+    @property
+    def half_height(self) -> float:
+        """h [m] (figure 1)."""
+        return 0.5 * self.height
 
     @property
     def half_diagonal(self) -> float:
@@ -80,7 +90,7 @@ class AbstractBlock(ABC):
 
     @property
     @abstractmethod
-    def housner_restitution(self) -> float:
+    def momentum_restitution(self) -> float:
         """Coefficient of restitution by conservation of angular momentum [-]."""
 
     @property
@@ -104,10 +114,10 @@ class Block(AbstractBlock):
 
     Parameters
     ----------
-    half_width : float
-        b [m], > 0; the base is 2b wide.
-    half_height : float
-        h [m], > 0; the block is 2h high.
+    width : float
+        Width 2b of the base [m], > 0.
+    height : float
+        Height 2h [m], > 0.
     gravity : float
         g [m/s2], > 0.
 
@@ -122,7 +132,7 @@ class Block(AbstractBlock):
         """Build a block from alpha [rad], (0, pi/2), and R [m], > 0."""
         angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
         radius = positive("half_diagonal", half_diagonal, "m")
-        return cls(radius * math.sin(angle), radius * math.cos(angle), gravity)
+        return cls(2.0 * radius * math.sin(angle), 2.0 * radius * math.cos(angle), gravity)
 
     @property
     def alpha(self) -> float:
@@ -136,7 +146,7 @@ class Block(AbstractBlock):
 
     @property
     def description(self) -> str:
-        return f"block of {2 * self.half_width:.4g} m x {2 * self.half_height:.4g} m"
+        return f"block of {self.width:.4g} m x {self.height:.4g} m"
 
     @property
     def contact_is_known(self) -> bool:
@@ -153,7 +163,7 @@ class Block(AbstractBlock):
         return self.gravity * self.half_width / self.half_height
 
     @property
-    def housner_restitution(self) -> float:
+    def momentum_restitution(self) -> float:
         """Coefficient of restitution eta = 1 - (3/2) sin^2(alpha) [-], (2.4) (Housner 1963).
 
         Negative for alpha above 54.7 degrees, where `inelastic_restitution` applies.
@@ -169,4 +179,4 @@ class Block(AbstractBlock):
         alpha = 54.7 degrees it is negative: the old pivot would move into the ground. The ground then exerts an impulse
         there too, and with impulses at both corners the block stops.
         """
-        return max(self.housner_restitution, 0.0)  # departs from (2.4) where that is negative
+        return max(self.momentum_restitution, 0.0)  # departs from (2.4) where that is negative

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import broadcast, integer
+from rocking._base.errors import broadcast, integer, needed, reject_given
 from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._excitation.records.record import Record as Recording
 from rocking._model.checks import check_groups, check_number
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.outcome_margin import outcome_margin
@@ -22,7 +23,7 @@ from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.records.record_response import solve_pulse
+from rocking._solver.records.record_response import record_response, solve_pulse
 from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.remainder import solve_remainder
 from rocking._solver.stages.state import StageState, stage_state
@@ -66,36 +67,45 @@ solver_state = SolverState()
 
 
 def peak_response(
-    pulse: str | AbstractPulse,
+    motion: str | AbstractPulse | Recording,
     *,
     slenderness: ArrayLike,
-    frequency_ratio: ArrayLike,
+    frequency_ratio: ArrayLike | None = None,
+    frequency_parameter: ArrayLike | None = None,
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
+    vertical_scale: ArrayLike | None = None,
     tolerance: float | None = None,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response:
-    """Peak rotation and final outcome of blocks under a pulse, exact to rounding. The arguments broadcast by position.
+    """Peak rotation and final outcome of blocks under a ground motion, exact to rounding. The arguments broadcast.
 
     Consecutive cells that differ in restitution only, as along the last axis, share the first flight.
 
     Parameters
     ----------
-    pulse : str or AbstractPulse
-        A name of `PULSE_NAMES`, with a leading minus for the opposite sign, or a pulse object.
+    motion : str, AbstractPulse or Record
+        A name of `PULSE_NAMES`, with a leading minus for the opposite sign; a pulse; or a recorded ground motion, which
+        is linear between its samples and zero after the last.
     slenderness : array_like
-        Dimensionless slenderness g tan(alpha)/a_g = 1/a [-], [1e-12, inf); no uplift from 1 on.
+        g tan(alpha)/a_g = 1/a [-], [1e-12, inf), which depends on the motion, unlike the h/b of a block: its peak
+        acceleration over that of uplift, inverted. No uplift from 1 on.
     frequency_ratio : array_like
-        omega = omega_g/p [-], [1e-9, 1e9].
+        omega = omega_g/p [-], [1e-9, 1e9]; of a pulse.
+    frequency_parameter : array_like
+        p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step; of a record.
     restitution : array_like
         Coefficient of restitution eta [-], [0, 1].
     alpha : array_like, optional
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
+    vertical_scale : array_like, optional
+        Factor of the vertical component of a record [-], [0, 1e6]; 1 by default. It adds to gravity, g + w for g in the
+        restoring moment, in units of 9.80665 m/s2: under another gravity, multiply by the ratio.
     tolerance : float, optional
-        Relative error of the peak allowed for speed [-], [1e-13, 1e-3]; by default rounding error only. Slender blocks
-        are exact in any case, under Ricker wavelets from a frequency ratio of 0.8 or 0.98 on. No tolerance can be kept
-        where the rounding of the arguments decides on the outcome.
+        Relative error of the peak under a pulse allowed for speed [-], [1e-13, 1e-3]; by default rounding error only.
+        Slender blocks and records are exact in any case, Ricker wavelets from a frequency ratio of 0.8 or 0.98 on. No
+        tolerance can be kept where the rounding of the arguments decides on the outcome.
     threads : int, optional
         Number of threads for large arrays, >= 1; by default all cores.
     stop : StopFlag, optional
@@ -104,19 +114,34 @@ def peak_response(
     Returns
     -------
     Response
-        Arrays of the broadcast shape.
+        Arrays of the broadcast shape. Times are p t from the start of the motion.
 
     Raises
     ------
     InvalidArgumentError
-        For an unknown pulse; an argument that is out of range, not finite, not a real number or masked; shapes that do
-        not broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
+        For an unknown pulse; an argument that is missing, out of range, not finite, not a real number or masked, or has
+        no meaning for the kind of motion; where the vertical acceleration reaches -g, with the time; shapes that do not
+        broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
     StoppedError
         If `stop` was set.
     """
+    if isinstance(motion, Recording):
+        reject_given("a record", frequency_ratio=frequency_ratio, tolerance=tolerance)
+        return record_response(
+            motion,
+            frequency_parameter=needed("a record", frequency_parameter=frequency_parameter),
+            slenderness=slenderness,
+            restitution=restitution,
+            alpha=alpha,
+            vertical_scale=vertical_scale,
+            threads=threads,
+            stop=stop,
+        )
+    reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
+    frequency_ratio = needed("a pulse", frequency_ratio=frequency_ratio)
     if threads is not None:
         threads = integer("threads", threads, 1, math.inf)
-    made = as_pulse(pulse)
+    made = as_pulse(motion)
     given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
     checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
     slender = not checked[3].any()

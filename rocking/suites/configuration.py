@@ -31,7 +31,7 @@ from rocking.suites.intensity import MEASURES
 Array = NDArray[np.float64]
 
 DEFAULTS: dict[str, Any] = {
-    "restitution": "housner",
+    "restitution": "momentum",
     "demand": ["overturning"],
     "confidence": 0.95,
     "map": None,
@@ -116,7 +116,7 @@ class BlockMap(EqualByValue):
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity(EqualByValue):
-    """What `rocking.suite_sensitivity` is asked for.
+    """What `rocking.suites.suite_sensitivity` is asked for.
 
     Attributes
     ----------
@@ -178,7 +178,9 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         name=_name(given["name"]),
         records=_record_files(given["records"], folder),
         blocks=_blocks(given["blocks"]),
-        restitution="housner" if given["restitution"] == "housner" else check_number(RESTITUTION, given["restitution"]),
+        restitution="momentum"
+        if given["restitution"] == "momentum"
+        else check_number(RESTITUTION, given["restitution"]),
         measure=measure,
         intensity=_levels("intensity", given["intensity"], logarithmic=True),
         demand=tuple(check_demands(given["demand"])),
@@ -236,7 +238,7 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
 
 def _blocks(given: Any) -> tuple[Block, ...]:
     if not isinstance(given, list) or not given:
-        raise InvalidArgumentError("blocks", given, "a list of half_width and half_height [m], or width and height")
+        raise InvalidArgumentError("blocks", given, "a list of width and height [m]")
     return tuple(_block(f"blocks[{place}]", item) for place, item in enumerate(given))
 
 

@@ -49,7 +49,7 @@ def fragility(
     *,
     intensity: ArrayLike,
     measure: str = "pga",
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     demand: str | float | Sequence[str | float] = "overturning",
     confidence: Scalar = 0.95,
     threads: int | None = None,
@@ -68,7 +68,7 @@ def fragility(
     measure : str
         "pga" [m/s2], "pgv" [m/s], "pga_ratio" PGA/(g tan alpha), "pgv_ratio" p PGV/(g tan alpha) or "frequency_ratio"
         omega_p/p: see `rocking.suites.intensity`.
-    restitution : "housner" or float
+    restitution : "momentum" or float
         (2.4), 0 where that is negative; or eta [-], [0, 1].
     demand : "overturning", "alpha", a number, or a sequence of these
         The limit state: final overturning; passage of alpha at some time; max |theta|/alpha above a threshold [-],

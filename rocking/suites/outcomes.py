@@ -22,6 +22,7 @@ from rocking._model.block import AbstractBlock
 from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
+from rocking._solver.records.amplification import record_amplification as record_amplification  # public here
 from rocking._solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
 
@@ -33,8 +34,8 @@ FIELDS = (PEAK_ROTATION, OVERTURNED, EXCEEDED_ALPHA, OUTCOME, IMPACTS)
 DIMENSIONS = ("block", "intensity", "record")
 
 BLOCK_COORDINATES: dict[str, tuple[str, str]] = {
-    "half_width": ("m", "half width b of the block"),
-    "half_height": ("m", "half height h of the block"),
+    "width": ("m", "width 2b of the block"),
+    "height": ("m", "height 2h of the block"),
     "half_diagonal": ("m", "half diagonal R of the block"),
     "alpha": ("rad", "slenderness angle of the block"),
     "frequency_parameter": ("rad s-1", "frequency parameter p of the block"),

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array, one_of
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.record_scales import overturning_scale
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -84,7 +84,8 @@ class PulseFit(EqualByValue):
             for ratio, block in zip(self.scale_ratio.tolist(), self.blocks, strict=True)
         )
         return (
-            f"<rocking.PulseFit {self.velocity.family}: T  {self.period:.4g} s, a_g {self.peak_acceleration:.3g} m/s2, "
+            f"<rocking.suites.PulseFit {self.velocity.family}: "
+            f"T  {self.period:.4g} s, a_g {self.peak_acceleration:.3g} m/s2, "
             f"{100.0 * self.explained:.0f} % of the velocity; overturns at {ratios} times the record>"
         )
 
@@ -146,7 +147,7 @@ def _overturning_acceleration(
     pulse: AbstractPulse, period: float, block: AbstractBlock, stop: StopFlag | None
 ) -> float:
     """Lowest peak acceleration [m/s2] at which a pulse overturns a block with the restitution (2.4), by (2.2)."""
-    found = critical_amplitude(
+    found = thresholds(
         pulse,
         frequency_ratio=2.0 * math.pi / period / block.frequency_parameter,
         restitution=block.inelastic_restitution,

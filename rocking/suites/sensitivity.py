@@ -63,7 +63,7 @@ def suite_sensitivity(
     *,
     intensity: ArrayLike,
     measure: str = "pga",
-    restitution: Scalar = "housner",
+    restitution: Scalar = "momentum",
     restitution_step: Scalar = RESTITUTION_STEP,
     confidence: Scalar = 0.95,
     threads: int | None = None,

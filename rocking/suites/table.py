@@ -31,7 +31,7 @@ def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     Returns
     -------
     dict
-        Columns demand, half_width [m], half_height [m], intensity (unit of the measure), the counts and fractions with
+        Columns demand, width [m], height [m], intensity (unit of the measure), the counts and fractions with
         their interval, and the fitted probability of each model, such as `lognormal`.
     """
     found = _with_dimensions(fragility)
@@ -48,7 +48,7 @@ def curve_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     Returns
     -------
     dict
-        Columns demand, half_width [m], half_height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if
+        Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if
         there are annual rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
     """
     found = _with_dimensions(fragility)
@@ -71,12 +71,12 @@ SENSITIVITY_COLUMNS = (
 
 
 def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
-    """One row for each block and level of a result of `rocking.suite_sensitivity`.
+    """One row for each block and level of a result of `rocking.suites.suite_sensitivity`.
 
     Returns
     -------
     dict
-        Columns half_width [m], half_height [m], intensity (unit of the measure), restitution and its smaller and larger
+        Columns width [m], height [m], intensity (unit of the measure), restitution and its smaller and larger
         value `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
     """
     found = _with_block(sensitivity)
@@ -102,7 +102,7 @@ def _with_block(found: xr.Dataset) -> xr.Dataset:
 def _rows(found: xr.Dataset, columns: dict[str, Any]) -> dict[str, list[Any]]:
     """Columns that broadcast to (demand, block, last), one row each, after the limit state, if any, and the block."""
     demand = {"demand": found["demand"].values.astype(str)[:, None, None]} if "demand" in found.coords else {}
-    sizes = {name: _by_block(found, name) for name in ("half_width", "half_height")}
+    sizes = {name: _by_block(found, name) for name in ("width", "height")}
     everything = {**demand, **sizes, **columns}
     shape = np.broadcast_shapes(*(np.shape(values) for values in everything.values()))
     return {name: np.broadcast_to(values, shape).ravel().tolist() for name, values in everything.items()}

@@ -34,7 +34,8 @@ from scipy.optimize import least_squares
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array
-from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, get_pulse
+from rocking._excitation import pulses
+from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse
 
 Array = NDArray[np.float64]
 
@@ -151,11 +152,11 @@ class VelocityPulse(EqualByValue):
         """The acceleration: a pulse of unit peak, and its peak a_g [m/s2], > 0."""
         rate = 2.0 * math.pi / self.period  # d phi/dt
         if FAMILIES[self.family].has_cycles:
-            pulse = get_pulse(self.family, cycles=self.cycles, phase=self.phase)
+            pulse = pulses.pulse(self.family, cycles=self.cycles, phase=self.phase)
             assert isinstance(pulse, SinusoidalPulse)
             # the first term of the acceleration over rate/(2 gamma) is gamma, that of the pulse gamma/peak
             return pulse, self.amplitude * rate / (2.0 * pulse.terms[0][0])
-        pulse = get_pulse(self.family if self.amplitude > 0.0 else f"-{self.family}")
+        pulse = pulses.pulse(self.family if self.amplitude > 0.0 else f"-{self.family}")
         # the derivative of the first velocity is the symmetric wavelet, of unit peak
         peak = 1.0 if self.family == "ricker" else _slope_peak(pulse)
         return pulse, abs(self.amplitude) * rate * peak

@@ -52,8 +52,8 @@ def results(tmp_path_factory):
     curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))
     write_dataset(describe(curves), folder / "overturning" / "sine" / "eta-0.85.nc")
-    motions, blocks = [noise(seed) for seed in range(4)], [rocking.Block(0.25, 1.0), rocking.Block(0.4, 2.0)]
-    suite = check_suite(motions, blocks, np.geomspace(1.0, 40.0, 12), "pga", "housner")
+    motions, blocks = [noise(seed) for seed in range(4)], [rocking.Block(0.5, 2.0), rocking.Block(0.8, 4.0)]
+    suite = check_suite(motions, blocks, np.geomspace(1.0, 40.0, 12), "pga", "momentum")
     outcomes = with_margins(suite_outcomes(suite), suite)
     fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
     rate = annual_rate(fragility, ([1.0, 10.0], [1e-2, 1e-4]))

@@ -61,7 +61,7 @@ INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
 NUMBERS: dict[str, Any] = {
     "slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85, "alpha": 0.3, "tolerance": 1e-6, "threads": 1,
     "highest_amplitude": 10.0, "nodes": 16, "duration": 5.0, "samples": 20, "scale": 1.2, "period": 0.6,
-    "half_width": 0.25, "half_height": 1.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
+    "width": 0.5, "height": 2.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
     "frequency_parameter": 2.0, "pulse_frequency": 10.0, "cycles": 2.0, "phase": 0.5,
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
     "vertical_scale": 1.0,
@@ -86,7 +86,7 @@ WINDOWS: dict[str, Any] = {
 }
 """Parameters that are windows, by the function."""
 
-RECORD, BLOCK = noise(1), rocking.Block(0.25, 1.0)
+RECORD, BLOCK = noise(1), rocking.Block(0.5, 2.0)
 FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.0, 16.0])
 OBJECTS: dict[str, Any] = {
     "pulse": "sine", "excitation": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
@@ -111,8 +111,8 @@ UNUSED = ("evaluate", "interpolate", "used", "level", "slice_at")
 
 OPTIONS: dict[str, tuple[float, str]] = {
     "slenderness": (0.4, ""), "frequency_ratio": (5.0, ""), "alpha": (0.3, " rad"), "restitution": (0.85, ""),
-    "width": (0.5, " m"), "height": (2.0, " m"), "half_width": (0.25, " m"), "half_height": (1.0, " m"),
-    "peak_acceleration": (4.0, " m/s^2"), "pulse_period": (0.5, " s"),
+    "width": (0.5, " m"), "height": (2.0, " m"),
+    "peak_acceleration": (4.0, " m/s^2"), "period": (0.5, " s"),
     "period_min": (0.5, " s"), "period_max": (0.6, " s"), "duration": (5.0, " s"),
     "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
     "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
@@ -129,8 +129,8 @@ TEXTS = {
 COMMON = {"restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"}
 VARIANTS = (
     {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
-    {"width", "height", "peak_acceleration", "pulse_period", "period_min", "period_max", "duration"},
-    {"half_width", "half_height", "peak_acceleration", "pulse_period", "period_min", "period_max"},
+    {"width", "height", "peak_acceleration", "period", "period_min", "period_max", "duration"},
+    {"width", "height", "peak_acceleration", "period", "period_min", "period_max"},
 )
 """Options that are given together, beside those that go with all."""
 
@@ -140,7 +140,7 @@ PULSE = {"acceleration": [0.0, 1.0, -0.5, 0.0], "time": [0.0, 1.0, 2.0, 4.0], "p
 SUITE: dict[str, Any] = {
     "name": "extreme",
     "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
-    "blocks": [{"half_width": 0.25, "half_height": 1.0}, {"width": 0.5, "height": 1.0}],
+    "blocks": [{"width": 0.5, "height": 2.0}, {"width": 0.5, "height": 1.0}],
     "restitution": 0.85,
     "measure": "pga",
     "intensity": {"low": 2.0, "high": 9.0, "points": 4},
@@ -168,7 +168,7 @@ def csv_of(table: dict[str, list[float]]) -> str:
     return "\n".join([",".join(table), *(",".join(map(str, row)) for row in rows)]) + "\n"
 
 
-BLOCK_COLUMNS = {"half_width": 0.25, "half_height": 1.0, "peak_acceleration": 4.0, "pulse_period": 0.5}
+BLOCK_COLUMNS = {"width": 0.5, "height": 2.0, "peak_acceleration": 4.0, "period": 0.5}
 ENCODERS: dict[str, Callable[[Any], str]] = {
     "application/json": json.dumps,
     "text/csv": csv_of,
@@ -185,7 +185,7 @@ BODIES: dict[str, dict[str, Any]] = {
     "/v1/history": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "frequency_ratio": 3.0, "duration": 20.0}},
     "/v1/map": {"application/json": UNDER_SAMPLES | {"columns": 4, "rows": 4, "slenderness_min": 0.3}},
     "/v1/overturning": {"application/json": UNDER_SAMPLES},
-    "/v1/critical_amplitude": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest_amplitude": 10.0}},
+    "/v1/thresholds": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest_amplitude": 10.0}},
     "/v1/blocks/response": {
         "application/json": {"blocks": [BLOCK_COLUMNS | {"restitution": 0.85}]},
         "text/csv": {
@@ -260,7 +260,7 @@ def walk_python(walk: Walk, results: Path) -> None:
     """The public functions, classes and methods of `rocking` with numeric parameters."""
     cube = rocking.open_cube(results / "spectra" / "sine" / "eta-0.85.nc")
     equivalent = rocking.EquivalentBlock(0.3, 2.0, restitution=0.85)
-    fit = rocking.fit_pulse(RECORD, family="ricker", blocks=BLOCK)
+    fit = rocking.suites.fit_pulse(RECORD, family="ricker", blocks=BLOCK)
     modules = (rocking, rocking.closed_form, rocking.groups, rocking.orientation)
     named = (
         (f"{one.__name__}.{key}", getattr(one, key))
@@ -299,7 +299,7 @@ def ordinary_arguments(name: str, function: Callable[..., Any], excitation: Any)
     given: dict[str, Any] = {}
     for key, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.VAR_KEYWORD:
-            given |= {"cycles": 2.0, "phase": 0.5}  # of `get_pulse`
+            given |= {"cycles": 2.0, "phase": 0.5}  # of `pulse`
         elif key in OBJECTS:
             given[key] = excitation if key == "excitation" else OBJECTS[key]
         elif NUMERIC.search(str(parameter.annotation)):
@@ -370,7 +370,7 @@ def walk_routes(walk: Walk, results: Path) -> None:
     document = app.openapi()
     routes = [(m.upper(), path, one) for path, some in document["paths"].items() for m, one in some.items()]
     with TestClient(app) as client:
-        while client.get("/v1/critical_amplitude?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
+        while client.get("/v1/thresholds?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
             time.sleep(0.1)
         for method, path, route in routes:
             name = f"{method} {path}"

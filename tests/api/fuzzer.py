@@ -53,10 +53,10 @@ NUMBERS = {
     "tolerance": (1e-9, 1.0),
     "highest_amplitude": (1.1, 100.0),
     "duration": (0.1, 200.0),
-    "half_width": (1e-2, 10.0),
-    "half_height": (1e-2, 10.0),
+    "width": (1e-2, 10.0),
+    "height": (1e-2, 10.0),
     "peak_acceleration": (1e-2, 100.0),
-    "pulse_period": (1e-2, 10.0),
+    "period": (1e-2, 10.0),
     "gravity": (1.0, 30.0),
 }
 COUNTS = {"points": 200, "samples": 200, "columns": 30, "rows": 30}
@@ -70,10 +70,10 @@ GROUPS = ["pulse", "slenderness", "frequency_ratio", "restitution"]
 ROUTES = {
     "/v1/response": (GROUPS, ["alpha_deg", "method", "tolerance"]),
     "/v1/blocks/response": (
-        ["pulse", "half_width", "half_height", "peak_acceleration", "pulse_period"],
+        ["pulse", "width", "height", "peak_acceleration", "period"],
         ["restitution", "gravity", "method", "tolerance"],
     ),
-    "/v1/critical_amplitude": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest_amplitude"]),
+    "/v1/thresholds": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest_amplitude"]),
     "/v1/spectrum": (
         ["pulse", "slenderness", "restitution", "points"],
         ["alpha_deg", "method", "tolerance", "frequency_ratio_min", "frequency_ratio_max", "format"],
@@ -103,7 +103,7 @@ HOSTILE = [
     *( "\ud7ff", "\U0001f600", "' OR 1=1 --", "<script>", "\r\nX: y"),
 ]  # fmt: skip
 RECORDS = [file.data for file in (*GOOD.values(), *ODD.values(), *DAMAGED.values())]
-BLOCK = {"half_width": "0.25", "half_height": "1.0"}
+BLOCK = {"width": "0.5", "height": "2.0"}
 STEPS = [
     "0",
     "5e-324",

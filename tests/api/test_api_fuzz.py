@@ -28,7 +28,7 @@ SEED = os.environ.get("FUZZ_SEED")
 OPERATIONS = [
     ("/v1/response", "GET"),
     ("/v1/response", "POST"),
-    ("/v1/critical_amplitude", "GET"),
+    ("/v1/thresholds", "GET"),
     ("/v1/spectrum", "GET"),
     ("/v1/map", "GET"),
     ("/v1/history", "GET"),

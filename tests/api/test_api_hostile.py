@@ -11,11 +11,11 @@ import xarray as xr
 from tests.api.conftest import assert_problem
 
 POINT = {"pulse": "sine", "slenderness": "0.6", "frequency_ratio": "6", "restitution": "0.85"}
-BLOCK = {"pulse": "sine", "half_width": "0.2", "half_height": "0.8", "peak_acceleration": "4", "pulse_period": "0.5"}
+BLOCK = {"pulse": "sine", "width": "0.4", "height": "1.6", "peak_acceleration": "4", "period": "0.5"}
 ROUTES = {
     "/v1/response": POINT,
     "/v1/blocks/response": BLOCK,
-    "/v1/critical_amplitude": {key: POINT[key] for key in ("pulse", "frequency_ratio", "restitution")},
+    "/v1/thresholds": {key: POINT[key] for key in ("pulse", "frequency_ratio", "restitution")},
     "/v1/spectrum": {key: POINT[key] for key in ("pulse", "slenderness", "restitution")} | {"points": "20"},
     "/v1/history": POINT | {"samples": "20", "duration": "9"},
     "/v1/overturning": {key: POINT[key] for key in ("pulse", "restitution")},

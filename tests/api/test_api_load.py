@@ -71,7 +71,7 @@ def test_work_that_ignores_the_stop_flag_keeps_its_worker():
 
 def slow_search(stop):
     """An elastic block under a slow pulse: half a minute of impacts."""
-    return rocking.critical_amplitude("c2", frequency_ratio=0.05, restitution=1.0, alpha=0.2, stop=stop)
+    return rocking.thresholds("c2", frequency_ratio=0.05, restitution=1.0, alpha=0.2, stop=stop)
 
 
 class Gone:
@@ -129,16 +129,16 @@ def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(resul
 
 
 HEAVY = {
-    "/v1/blocks/response": {"pulse": "sine", "half_width": 0.2, "half_height": 0.8, "peak_acceleration": 4.0,
-                            "pulse_period": 0.5, "method": "solver"},
-    "/v1/critical_amplitude": {"pulse": "sine", "frequency_ratio": 6.0, "restitution": 0.85},
+    "/v1/blocks/response": {"pulse": "sine", "width": 0.4, "height": 1.6, "peak_acceleration": 4.0,
+                            "period": 0.5, "method": "solver"},
+    "/v1/thresholds": {"pulse": "sine", "frequency_ratio": 6.0, "restitution": 0.85},
     "/v1/spectrum": {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85},
     "/v1/map": {"pulse": "sine", "restitution": 0.85},
     "/v1/overturning": {"pulse": "sine", "restitution": 0.85},
     "/v1/history": POINT,
 }  # fmt: skip
 WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ratio": -1.0, "slenderness": -1.0,
-         "half_width": -1.0, "tolerance": -1.0, "highest_amplitude": 0.5, "points": 1, "samples": 1, "columns": 1,
+         "width": -2.0, "tolerance": -1.0, "highest_amplitude": 0.5, "points": 1, "samples": 1, "columns": 1,
          "rows": 1, "duration": -1.0, "frequency_ratio_min": -1.0, "slenderness_max": 0.0}  # fmt: skip
 
 
@@ -188,11 +188,11 @@ def test_timeout_is_504(results, monkeypatch):
         assert "0.2 s" in problem["detail"]
 
 
-@pytest.mark.parametrize("path", ["/v1/critical_amplitude", "/v1/overturning"])
+@pytest.mark.parametrize("path", ["/v1/thresholds", "/v1/overturning"])
 def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, path):
     """An elastic block under a slow pulse has very many impacts: the searches take seconds, or minutes."""
     query = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
-    if path == "/v1/critical_amplitude":
+    if path == "/v1/thresholds":
         query["frequency_ratio"] = 0.02
     with client_of(results, max_seconds=0.3) as client:
         assert_problem(client.get(path, params=query), 504)

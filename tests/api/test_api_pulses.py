@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rocking._excitation.pulses import PULSE_NAMES, get_pulse
+import rocking
+from rocking._excitation.pulses import PULSE_NAMES
 from tests.api.conftest import assert_problem
 
 
@@ -11,7 +12,7 @@ def test_pulses_are_those_of_the_package(client):
     found = client.get("/v1/pulses", params={"samples": 33}).json()["pulses"]
     assert [one["name"] for one in found][: len(PULSE_NAMES)] == list(PULSE_NAMES)
     for one in found[: len(PULSE_NAMES)]:
-        pulse = get_pulse(one["name"])
+        pulse = rocking.pulse(one["name"])
         phase = np.linspace(pulse.start, pulse.end, 33)
         np.testing.assert_allclose(one["time"], (phase - pulse.start) / (2 * np.pi), atol=5.1e-5)
         np.testing.assert_allclose(one["acceleration"], pulse.shape(phase), atol=5.1e-5)

@@ -17,7 +17,7 @@ from tests.excitation.record_files import at2, rows
 
 ROOT = Path(__file__).parents[2]
 NAPA = (ROOT / "workflow/motions/napa_HNE.csv").read_bytes()
-BLOCK = {"half_width": 0.25, "half_height": 1.0}
+BLOCK = {"width": 0.5, "height": 2.0}
 DAMAGED = b"time_s,acceleration_g\n0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n"
 
 
@@ -31,7 +31,7 @@ def motion():
 
 
 def test_the_response_is_that_of_the_library(client, motion):
-    block = rocking.Block(0.25, 1.0)
+    block = rocking.Block(0.5, 2.0)
     expected = respond_to_record(block, motion, scale=1.1)
     found = post(client, scale=1.1, name="napa_HNE.csv").json()
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
@@ -82,8 +82,8 @@ def test_thresholds_and_a_pulse_on_request(client, motion):
 
 
 def test_history_in_three_formats(client, motion):
-    block = rocking.Block(0.25, 1.0)
-    expected = rocking.record_history(
+    block = rocking.Block(0.5, 2.0)
+    expected = rocking.time_history(
         motion,
         frequency_parameter=block.frequency_parameter,
         slenderness=block.uplift_acceleration / motion.peak_acceleration,
@@ -108,12 +108,12 @@ def test_history_in_three_formats(client, motion):
 
 
 def test_scales_are_those_of_the_library(client, motion):
-    block = rocking.Block(0.25, 1.0)
+    block = rocking.Block(0.5, 2.0)
     uplift = block.uplift_acceleration / motion.peak_acceleration
     found = post(client, route="scales", points=30, scale_max=2.0).json()
     scale = np.array(found["scale"])
     np.testing.assert_allclose(scale, np.geomspace(uplift, 2.0, 30), rtol=1e-14)
-    expected = rocking.record_response(
+    expected = rocking.peak_response(
         motion,
         frequency_parameter=block.frequency_parameter,
         slenderness=block.uplift_acceleration / (scale * motion.peak_acceleration),
@@ -139,7 +139,7 @@ def test_the_pulse_is_drawn_beside_the_record(client, motion):
     part = rocking.Record(motion.acceleration[800:2400], motion.time_step, "m/s2")
     plain = "\n".join(map(repr, part.acceleration.tolist())).encode()
     found = post(client, plain, route="pulse", unit="m/s2", time_step=0.005, scale=2.0, samples=400).json()
-    fit = rocking.fit_pulse(part, blocks=rocking.Block(0.25, 1.0))
+    fit = rocking.suites.fit_pulse(part, blocks=rocking.Block(0.5, 2.0))
     assert found["pulse"]["period"] == pytest.approx(fit.period, rel=1e-6)
     assert len(found["time"]) == 400
     np.testing.assert_allclose(found["record_velocity"], 2.0 * part.velocity[::4])
@@ -177,8 +177,8 @@ def test_other_bodies_are_refused(client, body):
 @pytest.mark.parametrize(
     ("params", "name"),
     [
-        ({"half_width": 0.0}, "half_width"),
-        ({"half_height": "x"}, "half_height"),
+        ({"width": 0.0}, "width"),
+        ({"height": "x"}, "height"),
         ({"scale": 0.0}, "scale"),
         ({"restitution": 1.5}, "restitution"),
         ({"restitution": "plastic"}, "restitution"),
@@ -194,10 +194,10 @@ def test_invalid_parameters_are_named(client, params, name):
 
 
 def test_units_are_stated_and_all_wrong_parameters_named(client):
-    problem = assert_problem(post(client, half_height="x", scale=0.0, unit="feet", baseline_order="y"), 422)
+    problem = assert_problem(post(client, height="x", scale=0.0, unit="feet", baseline_order="y"), 422)
     found = {one["name"]: one["allowed"] for one in problem["errors"]}
     assert found == {
-        "half_height": "a number [m]",
+        "height": "a number [m]",
         "baseline_order": "an integer",
         "scale": "[1e-06, 1e+06] [-]",
         "unit": "one of " + ", ".join(UNITS),
@@ -217,7 +217,7 @@ def test_openapi_describes_the_body(client):
     for route in ("response", "history"):
         operation = paths[f"/v1/records/{route}"]["post"]
         assert "text/csv" in operation["requestBody"]["content"]
-        assert {"half_width", "half_height", "scale", "unit"} <= {p["name"] for p in operation["parameters"]}
+        assert {"width", "height", "scale", "unit"} <= {p["name"] for p in operation["parameters"]}
 
 
 def both_columns(motion, share=0.5):
@@ -230,7 +230,7 @@ def test_the_vertical_component_is_a_column_of_the_body(client, motion):
     columns = {"component": "h", "vertical": "up"}
     body = both_columns(motion)
     both = rocking.Record(motion.acceleration, 0.005, "m/s2", vertical=0.5 * np.roll(motion.acceleration, 5))
-    expected = respond_to_record(rocking.Block(0.25, 1.0), both, scale=1.1)
+    expected = respond_to_record(rocking.Block(0.5, 2.0), both, scale=1.1)
     found = post(client, body, **columns, scale=1.1).json()
     assert found["peak_rotation"] == pytest.approx(float(expected.dimensionless.peak_rotation), rel=1e-9)
     assert found["margin"] == expected.margin

@@ -14,7 +14,7 @@ import pytest
 
 from tests.api.servers import serving
 
-ROUTE = "/v1/records/response?half_width=0.25&half_height=1.0&unit=g"
+ROUTE = "/v1/records/response?width=0.5&height=2.0&unit=g"
 
 CLIENTS = f"""
 import http.client, json, sys, threading

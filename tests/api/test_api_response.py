@@ -132,10 +132,10 @@ def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(clie
     assert unknown["allowed"].endswith(", in the query")
     column = assert_problem(client.post(url + "?restitution=1&pulse=sine", **csv), 422, "frequency_ratio")
     assert column["allowed"] == "required: a column of the body or a parameter in the URL"
-    block = {"half_width": 0.2, "half_height": 0.8, "peak_acceleration": 4.0, "pulse_period": 0.5}
+    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
     missing = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block]}), 422, "pulse")
     assert missing["allowed"] == "required in the query, or in a JSON body"
-    blocks = {"blocks": [{"half_width": 0.2}], "colour": 1}
+    blocks = {"blocks": [{"width": 0.4}], "colour": 1}
     problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
     assert "`blocks[0].half_height` is missing in the body" in problem["detail"]
     assert "there is no parameter `colour` in the body" in problem["detail"]

@@ -19,14 +19,14 @@ SAMPLES = {"acceleration": [0.0, 2.0, -1.0, 0.0], "time": [0.0, 0.1, 0.4, 1.0], 
 RAMP = rocking.SampledPulse(SAMPLES["acceleration"], SAMPLES["time"], name="ramp")
 GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
 ONE = {name: GROUPS[name] for name in ("slenderness", "restitution")}
-BLOCK = {"half_width": 0.2, "half_height": 0.8, "peak_acceleration": 4.0, "pulse_period": 0.5}
+BLOCK = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
 BODIES = {
     "/v1/response": GROUPS,
     "/v1/spectrum": ONE | {"points": 5},
     "/v1/history": GROUPS | {"samples": 20},
     "/v1/map": {"restitution": 0.85, "columns": 4, "rows": 3},
     "/v1/overturning": {"restitution": 0.2},
-    "/v1/critical_amplitude": {"frequency_ratio": 5.0, "restitution": 0.85},
+    "/v1/thresholds": {"frequency_ratio": 5.0, "restitution": 0.85},
     "/v1/blocks/response": {"blocks": [BLOCK]},
 }
 
@@ -63,10 +63,10 @@ def test_answers_are_those_of_the_solver(client):
     axes = {"slenderness": np.array(area["slenderness"])[:, None], "frequency_ratio": area["frequency_ratio"]}
     expected = rocking.peak_response(RAMP, **axes, restitution=0.85)
     assert area["outcome"] == expected.outcome.ravel().tolist()
-    amplitudes = rocking.critical_amplitude(RAMP, frequency_ratio=5.0, restitution=0.85).amplitude
-    found = answer(client, "/v1/critical_amplitude")["thresholds"]
+    amplitudes = rocking.thresholds(RAMP, frequency_ratio=5.0, restitution=0.85).amplitude
+    found = answer(client, "/v1/thresholds")["thresholds"]
     assert [one["amplitude"] for one in found] == amplitudes.tolist()
-    one = rocking.Block(0.2, 0.8).response(RAMP, peak_acceleration=4.0, period=0.5)
+    one = rocking.Block(0.4, 1.6).response(RAMP, peak_acceleration=4.0, period=0.5)
     assert answer(client, "/v1/blocks/response")["top_displacement"] == [one.displacement]
 
 
@@ -182,7 +182,7 @@ def test_long_work_under_samples_ends_at_the_time_limit(results):
     rng = np.random.default_rng(1)
     long = {"acceleration": rng.uniform(-1, 1, MAX_SAMPLES).tolist(), "period": 10.0}
     with client_of(results, max_seconds=0.3) as client:
-        while client.get("/v1/critical_amplitude?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
+        while client.get("/v1/thresholds?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
             time.sleep(0.1)
         assert post(client, "/v1/map", pulse=long, columns=300, rows=300, alpha_deg=20.0).status_code == 504
         problem = post(client, "/v1/overturning", pulse=long, alpha_deg=20.0)

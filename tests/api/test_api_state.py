@@ -192,7 +192,7 @@ def test_openapi_describes_every_route(client):
         "/v1/suites",
         "/v1/suites/{name}",
         "/v1/datasets/{name}/subset",
-        "/v1/critical_amplitude",
+        "/v1/thresholds",
         "/v1/datasets",
         "/v1/datasets/{name}",
         "/v1/datasets/{name}.nc",

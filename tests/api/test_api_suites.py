@@ -86,8 +86,8 @@ def test_margins_and_quantiles_follow_from_the_outcomes(suite, files):
 
 
 def test_friction_restitution_and_sampling_are_those_of_direct_calls(suite):
-    blocks = [rocking.Block(0.25, 1.0), rocking.Block(0.4, 2.0)]
-    found = rocking.suite_sensitivity([noise(seed) for seed in range(4)], blocks, intensity=[4.0, 9.0])
+    blocks = [rocking.Block(0.5, 2.0), rocking.Block(0.8, 4.0)]
+    found = rocking.suites.suite_sensitivity([noise(seed) for seed in range(4)], blocks, intensity=[4.0, 9.0])
     for k, block in enumerate(suite["blocks"]):
         assert [level["intensity"] for level in block["sensitivity"]] == [4.0, 9.0]
         for n, level in enumerate(block["sensitivity"]):

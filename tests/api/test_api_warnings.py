@@ -46,14 +46,14 @@ PULSES = [
 ]
 
 
-@pytest.mark.parametrize(("half_width", "half_height", "acceleration", "period", "texts"), PULSES)
-def test_warnings_under_a_pulse(client, half_width, half_height, acceleration, period, texts):
-    python = rocking.Block(half_width, half_height).response("sine", peak_acceleration=acceleration, period=period)
-    sizes = {"half_width": half_width, "half_height": half_height}
-    motion = {"peak_acceleration": acceleration, "pulse_period": period, "pulse": "sine"}
+@pytest.mark.parametrize(("width", "height", "acceleration", "period", "texts"), PULSES)
+def test_warnings_under_a_pulse(client, width, height, acceleration, period, texts):
+    python = rocking.Block(width, height).response("sine", peak_acceleration=acceleration, period=period)
+    sizes = {"width": width, "height": height}
+    motion = {"peak_acceleration": acceleration, "period": period, "pulse": "sine"}
     http = client.get("/v1/blocks/response", params=sizes | motion).json()
     found = command_line(
-        *("response", "--pulse", "sine", "--half-width", f"{half_width}m", "--half-height", f"{half_height}m"),
+        *("response", "--pulse", "sine", "--width", f"{width}m", "--height", f"{height}m"),
         *("--peak-acceleration", f"{acceleration!r} m/s2", "--pulse-period", f"{period}s"),
     )
     assert_same(python, http, *found)
@@ -72,12 +72,12 @@ RECORDS = [
 ]
 
 
-@pytest.mark.parametrize(("half_width", "half_height", "scale", "texts"), RECORDS)
-def test_warnings_under_a_record(client, half_width, half_height, scale, texts):
-    python = rocking.Block(half_width, half_height).response(rocking.read_record(NAPA), scale=scale)
-    params = {"half_width": half_width, "half_height": half_height, "scale": scale, "name": NAPA.name}
+@pytest.mark.parametrize(("width", "height", "scale", "texts"), RECORDS)
+def test_warnings_under_a_record(client, width, height, scale, texts):
+    python = rocking.Block(width, height).response(rocking.read_record(NAPA), scale=scale)
+    params = {"width": width, "height": height, "scale": scale, "name": NAPA.name}
     http = client.post("/v1/records/response", params=params, content=NAPA.read_bytes()).json()
-    sizes = ("--half-width", f"{half_width}m", "--half-height", f"{half_height}m", "--scale", repr(scale))
+    sizes = ("--width", f"{width}m", "--height", f"{height}m", "--scale", repr(scale))
     result, lines = command_line("record", str(NAPA), *sizes)
     assert_same(python, http, result, lines)
     assert lines[1] == python.margin
@@ -88,7 +88,7 @@ def test_warnings_under_a_record(client, half_width, half_height, scale, texts):
 
 
 def test_a_peak_that_the_record_does_not_determine_says_so_beside_it():
-    block, motion = rocking.Block(0.1, 0.5), rocking.read_record(NAPA)
+    block, motion = rocking.Block(0.2, 1.0), rocking.read_record(NAPA)
     found = block.response(motion, scale=0.87, thresholds=False)
     assert found.assessment.amplification > 1e8
     assert not found.assessment.peak_is_determined
@@ -102,7 +102,7 @@ def test_a_peak_that_the_record_does_not_determine_says_so_beside_it():
 
 
 def test_a_block_that_overturns_or_stays_has_no_amplification():
-    block, motion = rocking.Block(0.1, 0.5), rocking.read_record(NAPA)
+    block, motion = rocking.Block(0.2, 1.0), rocking.read_record(NAPA)
     for scale in (0.1, 5.0):
         found = block.response(motion, scale=scale, thresholds=False).assessment
         assert math.isnan(found.amplification)
@@ -110,7 +110,7 @@ def test_a_block_that_overturns_or_stays_has_no_amplification():
 
 
 def test_the_search_of_scales_is_bounded_and_can_be_left_out(client, monkeypatch):
-    params = {"half_width": 0.25, "half_height": 1.0}
+    params = {"width": 0.5, "height": 2.0}
     full = client.post("/v1/records/response", params=params, content=NAPA.read_bytes()).json()
     assert full["overturning_scale"] == full["thresholds"][0]["scale"] == pytest.approx(1.1338, rel=1e-3)
     left = client.post("/v1/records/response", params=params | {"thresholds": False}, content=NAPA.read_bytes()).json()
@@ -125,7 +125,7 @@ def test_the_search_of_scales_is_bounded_and_can_be_left_out(client, monkeypatch
 
 def test_a_block_that_is_not_overturned_says_up_to_which_factor():
     motion = rocking.Record(np.sin(np.arange(200.0)), 0.01, unit="m/s2")
-    found = rocking.Block(0.4, 0.5).response(motion)
+    found = rocking.Block(0.8, 1.0).response(motion)
     assert found.thresholds.scale.size == 0
     assert found.margin.startswith("no factor of the record up to ")
     assert found.margin.endswith(" was found to overturn it")

@@ -91,7 +91,7 @@ def test_arguments_with_equal_labels_are_accepted():
 QUESTIONS = {
     "peak_response": lambda pulse: rocking.peak_response(pulse, **GROUPS),
     "time_history": lambda pulse: rocking.time_history(pulse, **GROUPS),
-    "critical_amplitude": lambda pulse: rocking.critical_amplitude(pulse, frequency_ratio=5.0, restitution=0.85),
+    "thresholds": lambda pulse: rocking.thresholds(pulse, frequency_ratio=5.0, restitution=0.85),
     "overturning_boundary": lambda pulse: rocking.overturning_boundary(pulse, restitution=0.85, nodes=16),
     "margin_without_impact": lambda pulse: closed_form.margin_without_impact(pulse, 2.0, 5.0),
 }
@@ -118,10 +118,10 @@ def test_objects_that_are_no_pulse_are_rejected(ask, pulse):
 @pytest.mark.parametrize("name", [None, 5, b"sine", ["sine"]])
 def test_names_of_pulses_are_strings(name):
     with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
-        rocking.get_pulse(name)
+        rocking.pulse(name)
 
 
 @pytest.mark.parametrize("cycles", [None, "2", [2.0], True])
 def test_parameters_of_pulses_are_numbers(cycles):
     with pytest.raises(InvalidArgumentError, match=r"^`cycles` = "):
-        rocking.get_pulse("mavroeidis_papageorgiou", cycles=cycles)
+        rocking.pulse("mavroeidis_papageorgiou", cycles=cycles)

@@ -49,7 +49,7 @@ WORK = {
     "steps": lambda stop: peak(stop, alpha=0.2),
     "threads": lambda stop: peak(stop, alpha=0.2, slenderness=np.repeat(MANY, 9), threads=2),
     "etas": lambda stop: peak(stop, slenderness=MANY[-1], restitution=np.linspace(0.99999, 1.0, 999)),
-    "amplitude": lambda stop: rocking.critical_amplitude("c2", **ELASTIC, alpha=0.2, stop=stop),
+    "amplitude": lambda stop: rocking.thresholds("c2", **ELASTIC, alpha=0.2, stop=stop),
     "frequency": frequency,
     "boundary": lambda stop: rocking.overturning_boundary("c2", restitution=1.0, nodes=201, alpha=0.2, stop=stop),
     "cube": lambda stop: list(spectra("c2", restitution=[1.0], **AXES, alpha=[0.2], stop=stop)),
@@ -92,7 +92,7 @@ def test_a_kernel_reads_the_flag_within_one_cell():
     for alpha in (0.0, 0.2):
         for delay in (0.003, 0.006, 0.003, 0.006, 0.012):  # on a busy machine kernel or timer may start later
             flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
-            pulse = pulse_state(rocking.get_pulse("c2")).copy()
+            pulse = pulse_state(rocking.pulse("c2")).copy()
             answers["outcome"] = LEFT
             scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse,)
             groups = (s, w, eta, np.array([alpha])) if alpha else (s, w, eta)
@@ -112,7 +112,7 @@ def test_a_kernel_reads_the_flag_within_one_cell():
 
 def test_the_stages_read_the_flag_within_one_block_of_cells():
     """Two million cells, half a second: those after the flag was set have no response."""
-    s, pulse = np.linspace(0.02, 0.95, 2_000_000), rocking.get_pulse("c2")
+    s, pulse = np.linspace(0.02, 0.95, 2_000_000), rocking.pulse("c2")
     w, eta, unknown = np.full(s.size, 3.0), np.full(s.size, 0.85), -2
     for delay in (0.05, 0.02, 0.1, 0.2):  # on a busy machine kernel or timer may start later
         flag, answers = np.zeros(1, np.uint8), np.zeros(s.size, RESPONSE_RECORD)

@@ -81,7 +81,7 @@ def test_each_entry_has_one_signature_for_all_arguments(tmp_path):
 
 def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
     """A sine as the sum of equal parts."""
-    sine, groups = rocking.get_pulse("sine"), {"slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.9}
+    sine, groups = rocking.pulse("sine"), {"slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.9}
     whole = rocking.peak_response(sine, **groups).peak_rotation
     for count in (2, 5, MAX_SINUSOIDS):
         terms = tuple((c / count, w, d) for c, w, d in sine.terms for _ in range(count))

@@ -22,7 +22,7 @@ from rocking._spectra.cubes import spectrum
 from rocking.suites.configuration import suite_configuration
 from tests.lookup_grid import GRID
 
-BLOCK = rocking.Block(0.2, 0.8)
+BLOCK = rocking.Block(0.4, 1.6)
 ARRAYS = {"slenderness": [0.1, 0.4, 2.0], "frequency_ratio": 5.0, "restitution": 0.85}  # overturns: peaks of nan
 
 
@@ -34,7 +34,7 @@ def record():
 def configuration():
     given = {
         "name": "example", "records": {"folder": "motions", "pattern": "*.csv"}, "intensity": [1.0, 2.0],
-        "blocks": [{"half_width": 0.2, "half_height": 0.8}], "measure": "pga",
+        "blocks": [{"width": 0.4, "height": 1.6}], "measure": "pga",
         "sensitivity": {"intensity": [1.0], "restitution_step": 0.1},
         "map": {"intensity": 1.0, "half_diagonal": [1.0, 2.0], "alpha_deg": [5.0, 10.0]},
     }  # fmt: skip
@@ -44,13 +44,13 @@ def configuration():
 EXAMPLES = {
     "Response": lambda: rocking.peak_response("sine", **ARRAYS),
     "BoundedResponse": lambda: solve_with_bound("sine", **ARRAYS, alpha=None),
-    "Thresholds": lambda: rocking.critical_amplitude("sine", frequency_ratio=5.0, restitution=0.85),
+    "Thresholds": lambda: rocking.thresholds("sine", frequency_ratio=5.0, restitution=0.85),
     "FrequencyThresholds": lambda: critical_frequency_ratio(
         "sine", slenderness=0.3, restitution=0.85, window=(1.0, 10.0)
     ),
     "ScaleThresholds": lambda: scale_thresholds(record(), BLOCK),
-    "PulseFit": lambda: rocking.fit_pulse(record(), family="ricker", blocks=BLOCK),
-    "VelocityPulse": lambda: rocking.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
+    "PulseFit": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK),
+    "VelocityPulse": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
     "BlockResponse": lambda: BLOCK.response("sine", peak_acceleration=40.0, period=1.0),
     "BlockRecordResponse": lambda: BLOCK.response(record(), scale=50.0),
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
@@ -150,7 +150,7 @@ def test_cubes_are_equal_if_their_files_are(tmp_path):
 @pytest.mark.parametrize(
     "make",
     [lambda: BLOCK, lambda: rocking.EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5), record,
-     lambda: rocking.get_pulse("-c1"), lambda: BLOCK.response("sine", peak_acceleration=4.0, period=0.5).problem],
+     lambda: rocking.pulse("-c1"), lambda: BLOCK.response("sine", peak_acceleration=4.0, period=0.5).problem],
     ids=["Block", "EquivalentBlock", "Record", "pulse", "BlockProblem"],
 )  # fmt: skip
 def test_what_holds_no_writable_array_has_a_hash(make):

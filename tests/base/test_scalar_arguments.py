@@ -16,7 +16,7 @@ from rocking._spectra.cubes import spectrum
 from rocking.orientation import Orientation
 from tests.lookup_grid import GRID
 
-BLOCK = rocking.Block(0.2, 0.8)
+BLOCK = rocking.Block(0.4, 1.6)
 BODY = rocking.RigidBody(0.15, 0.2, 0.6)
 FRAME = EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5)
 TIME = np.arange(0.0, 3.0, 0.01)
@@ -32,7 +32,7 @@ RIGID = groups.GroupSet.RIGID_SMALL_ROTATION
 SCALED = {"excitation": RECORD, "scale": 1.0, "restitution": 0.9}
 
 CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
-    "Block": (rocking.Block, [{"half_width": 0.2, "half_height": 0.8} | SIZE]),
+    "Block": (rocking.Block, [{"width": 0.4, "height": 1.6} | SIZE]),
     "SampledPulse": (rocking.SampledPulse, [{"period": 2.0, "acceleration": [0.0, 1.0, 0.0]}]),
     "SampledPulse.from_file": (rocking.SampledPulse.from_file, [{"path": __file__, "period": 2.0}]),
     "Block.from_slenderness_angle": (
@@ -88,13 +88,13 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "closed_form.margin_without_impact": (
         closed_form.margin_without_impact, [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0}],
     ),
-    "critical_amplitude": (
-        rocking.critical_amplitude,
+    "thresholds": (
+        rocking.thresholds,
         [{"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "alpha": 0.2, "highest_amplitude": 20.0}],
     ),
     "fragility": (rocking.fragility, [SUITE]),
-    "get_pulse": (
-        lambda **given: rocking.get_pulse("mavroeidis_papageorgiou", **given), [{"cycles": 2.0}, {"phase": 0.5}],
+    "pulse": (
+        lambda **given: rocking.pulse("mavroeidis_papageorgiou", **given), [{"cycles": 2.0}, {"phase": 0.5}],
     ),
     "groups.Problem": (
         groups.Problem,
@@ -116,12 +116,12 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     ),
     "peak_response": (rocking.peak_response, [{"pulse": "sine", "tolerance": 1e-6, "threads": 1} | PROBLEM]),
     "read_record": (rocking.read_record, [{"path": __file__, "time_step": 0.01}]),
-    "record_amplification": (rocking.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
+    "record_amplification": (rocking.suites.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
     "record_history": (
-        rocking.record_history, [{"motion": UPWARDS, "vertical_scale": 1.0, "duration": 5.0, "samples": 10} | OF_RECORD]
+        rocking.time_history, [{"motion": UPWARDS, "vertical_scale": 1.0, "duration": 5.0, "samples": 10} | OF_RECORD]
     ),
-    "record_response": (rocking.record_response, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
-    "suite_sensitivity": (rocking.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
+    "record_response": (rocking.peak_response, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
+    "suite_sensitivity": (rocking.suites.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
     "time_history": (rocking.time_history, [{"pulse": "sine", "duration": 5.0, "samples": 10} | PROBLEM]),
 }  # fmt: skip
 """Public functions with arguments that they accept."""
@@ -198,7 +198,7 @@ CUBE = {"Cube.response", "Cube.evaluate", "Cube.interpolate"}
 def test_every_public_function_with_a_number_is_asked():
     found = dict(public_functions(rocking))
     assert found.keys() - RESULTS - CUBE == CALLS.keys()
-    for name in found.keys() - RESULTS - CUBE - {"get_pulse"}:
+    for name in found.keys() - RESULTS - CUBE - {"pulse"}:
         assert set(found[name]) <= {key for given in CALLS[name][1] for key in given}, name
 
 
@@ -206,7 +206,7 @@ ASKED = [
     (name, number, argument)
     for name, (function, calls) in CALLS.items()
     for number, given in enumerate(calls)
-    for argument in ([*given] if name == "get_pulse" else [key for key in scalars(function) if key in given])
+    for argument in ([*given] if name == "pulse" else [key for key in scalars(function) if key in given])
 ]
 WRONG = {
     "list": lambda value: [value],

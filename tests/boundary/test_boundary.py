@@ -128,7 +128,7 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
     rng = np.random.default_rng(4)
     unlisted = crossings = wrong = 0
     for omega in np.exp(rng.uniform(np.log(0.3), np.log(10.0), 25)):
-        found = rocking.critical_amplitude(pulse, frequency_ratio=omega, **case, highest_amplitude=45.0)
+        found = rocking.thresholds(pulse, frequency_ratio=omega, **case, highest_amplitude=45.0)
         thresholds = 1 / found.amplitude
         y = np.log(omega)
         for x, impacts in zip(thresholds, found.impacts, strict=True):
@@ -206,7 +206,7 @@ def test_islands_are_drawn():
 @pytest.mark.parametrize("pulse", ["sine", "cosine", "c1"])
 def test_thresholds_separate_the_outcomes(pulse, alpha):
     for omega in (1.0, 2.5, 5.0):
-        found = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
+        found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
         assert (np.diff(found.amplitude) > 0).all()
         assert (np.diff(found.overturns_above.astype(int)) != 0).all()  # the outcome alternates
         assert found.overturns_above[0]
@@ -226,7 +226,7 @@ def test_thresholds_separate_the_outcomes(pulse, alpha):
 
 @pytest.mark.parametrize(("pulse", "omega"), [("sine", 4.0), ("half_sine", 3.0), ("rectangular", 3.0)])
 def test_thresholds_and_curves_agree(pulse, omega):
-    found = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.85, highest_amplitude=20.0)
+    found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.85, highest_amplitude=20.0)
     boundary = rocking.overturning_boundary(
         pulse, restitution=0.85, frequency_ratio=(omega / 1.001, omega * 1.001), slenderness=(0.05, 1.0), nodes=33
     )
@@ -238,7 +238,7 @@ def test_thresholds_and_curves_agree(pulse, omega):
 def test_thresholds_of_a_block_that_strikes_thousands_of_times():
     # when each of the thousands of numbers of impacts was a region of its own, this took minutes
     case = {"frequency_ratio": 2.062, "restitution": 1.0}
-    found = rocking.critical_amplitude("ricker", **case)
+    found = rocking.thresholds("ricker", **case)
     assert found.impacts.max() > MOST_COUNTED
     assert (found.overturns_above[1:] != found.overturns_above[:-1]).all()
     beyond = np.where(found.overturns_above, 2.0, -2.0) * ELASTIC_RESOLUTION
@@ -250,10 +250,10 @@ def test_thresholds_of_a_block_that_strikes_thousands_of_times():
 
 
 def test_thresholds_up_to_the_highest_amplitude_only():
-    all_of_them = rocking.critical_amplitude("sine", frequency_ratio=4.0, restitution=0.85)
-    some = rocking.critical_amplitude("sine", frequency_ratio=4.0, restitution=0.85, highest_amplitude=5.0)
+    all_of_them = rocking.thresholds("sine", frequency_ratio=4.0, restitution=0.85)
+    some = rocking.thresholds("sine", frequency_ratio=4.0, restitution=0.85, highest_amplitude=5.0)
     np.testing.assert_allclose(some.amplitude, all_of_them.amplitude[:2], rtol=1e-11)
-    none = rocking.critical_amplitude("sine", frequency_ratio=100.0, restitution=0.85, highest_amplitude=2.0)
+    none = rocking.thresholds("sine", frequency_ratio=100.0, restitution=0.85, highest_amplitude=2.0)
     assert none.amplitude.size == none.overturns_above.size == none.impacts.size == 0
 
 
@@ -289,4 +289,4 @@ def test_wrong_windows(argument, value):
 )
 def test_wrong_thresholds(argument, value):
     with pytest.raises(rocking.InvalidArgumentError, match=argument):
-        rocking.critical_amplitude("sine", **{"frequency_ratio": 2.0, "restitution": 0.9, argument: value})
+        rocking.thresholds("sine", **{"frequency_ratio": 2.0, "restitution": 0.9, argument: value})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._solver.peak_response import peak_response
 
@@ -37,7 +37,7 @@ def test_the_outcome_changes_there_and_nowhere_else(pulse, slenderness, alpha):
 
 def test_a_critical_amplitude_has_its_frequency_as_a_critical_frequency():
     for omega in (2.0, 4.0, 5.0):
-        for a in critical_amplitude("sine", frequency_ratio=omega, restitution=0.9).amplitude:
+        for a in thresholds("sine", frequency_ratio=omega, restitution=0.9).amplitude:
             found = critical_frequency_ratio("sine", slenderness=1 / a, restitution=0.9, window=WINDOW)
             assert np.abs(found.frequency_ratio / omega - 1).min() < 1e-8
 

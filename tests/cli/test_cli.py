@@ -23,8 +23,8 @@ from rocking._solver.peak_response import peak_response
 
 GROUPS = ["--pulse", "sine", "--slenderness", "0.4", "--frequency-ratio", "5", "--restitution", "0.85"]
 UNITS = [
-    "--pulse", "sine", "--half-width", "0.2m", "--half-height", "80 cm", "--peak-acceleration", "4 m/s^2",
-    "--pulse-period", "500 ms", "--restitution", "housner",
+    "--pulse", "sine", "--width", "0.4m", "--height", "160 cm", "--peak-acceleration", "4 m/s^2",
+    "--pulse-period", "500 ms", "--restitution", "momentum",
 ]  # fmt: skip
 
 
@@ -59,12 +59,12 @@ def test_response_in_three_formats():
 
 
 def test_response_with_units_is_that_of_the_rigid_block():
-    block = Block(0.2, 0.8)
+    block = Block(0.4, 1.6)
     expected = peak_response(
         "sine",
         slenderness=block.uplift_acceleration / 4.0,
         frequency_ratio=4 * math.pi / block.frequency_parameter,
-        restitution=block.housner_restitution,
+        restitution=block.momentum_restitution,
         alpha=block.alpha,
     )
     result = json.loads(run("response", *UNITS, "--json"))
@@ -85,7 +85,7 @@ def test_overturned_has_no_peak():
 
 
 def test_first_line_states_that_the_rocking_model_does_not_apply():
-    cube = ["--half-width", "0.5m", "--half-height", "0.5m", "--peak-acceleration", "1.5g"]
+    cube = ["--width", "1.0m", "--height", "1.0m", "--peak-acceleration", "1.5g"]
     options = ["response", *UNITS[:2], *cube, *UNITS[8:]]
     first = run(*options).splitlines()[0]
     assert first.startswith("would slide: the rocking model does not apply")
@@ -97,7 +97,7 @@ def test_first_line_states_that_the_rocking_model_does_not_apply():
 
 
 def test_squat_block_does_not_uplift():
-    squat = ["--half-width", "1m", "--half-height", "0.5m", "--peak-acceleration", "1.2g"]
+    squat = ["--width", "2m", "--height", "1.0m", "--peak-acceleration", "1.2g"]
     assert run("response", *UNITS[:2], *squat, *UNITS[8:]).startswith("never uplifts")
 
 
@@ -122,7 +122,7 @@ WHOLE = [
     "--pulse", "sine", "--width", "40 cm", "--height", "1.6m", "--peak-acceleration", "400 gal",
     "--pulse-period", "0.5s",
 ]  # fmt: skip
-BLOCK = rocking.Block(0.2, 0.8)
+BLOCK = rocking.Block(0.4, 1.6)
 
 
 def test_response_of_a_block_in_si_units():
@@ -144,7 +144,7 @@ def test_response_of_a_block_in_si_units():
     half_sine = json.loads(run("response", "--pulse", "half_sine", *WHOLE[2:], "--json"))
     assert half_sine["pulse_duration"] == pytest.approx(0.25)
     near = run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:])
-    assert near == run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:], "--restitution", "housner")
+    assert near == run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:], "--restitution", "momentum")
     assert "warning: the outcome changes within 5 % of this peak acceleration: at 4.7 m/s2" in near
 
 
@@ -183,7 +183,7 @@ def test_boundary_of_a_block_in_si_units():
     assert min(abs(one.value / acceleration - 1.0) for one in found.thresholds) < 1e-9
 
 
-TABLE = """name,width [cm],half_height [m],peak_acceleration (gal),period [ms],restitution
+TABLE = """name,width [cm],height [m],peak_acceleration (gal),period [ms],restitution
 statue,40,0.8,400,500,
 cabinet,40,0.8,800,500,0.9
 
@@ -203,7 +203,7 @@ def test_table_of_blocks(tmp_path):
     assert as_json["outcome"] == [row["outcome"] for row in rows]
     piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE.replace(",", ";"))
     assert read_csv(piped.stdout) == rows
-    path.write_text(TABLE.replace("period", "pulse_period"))
+    path.write_text(TABLE.replace("period", "period"))
     assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == rows
     path.write_text(TABLE.splitlines()[0])
     assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []
@@ -232,7 +232,7 @@ def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path)
         (TABLE.replace("width [cm]", "width"), "missing unit: write width [m]"),
         (TABLE.replace("[cm]", "[kg]"), "a unit such as m, cm"),
         (TABLE.replace("name", "colour"), "name, restitution"),
-        (TABLE.replace("period [ms]", "half_width [m]"), "one column"),
+        (TABLE.replace("period [ms]", "width [m]"), "one column"),
         (TABLE.replace("800", "x"), "line 3, peak_acceleration: 'x'"),
         (TABLE.replace("800", "-1"), "line 3, peak_acceleration: -1.0 is not allowed; allowed: (0, inf) [gal]"),
         (TABLE.replace("0.9", "1.9"), "line 3, restitution: 1.9"),
@@ -266,7 +266,7 @@ def test_the_header_of_csv_names_units_on_request(tmp_path):
     table = ("response", "--pulse", "sine", "--blocks", str(path))
     plain, named = (run(*table, *more).splitlines() for more in ((), ("--units",)))
     assert plain[1:] == named[1:]
-    assert "half_width [m],half_height [m],peak_acceleration [m/s2],period [s]," in named[0]
+    assert "width [m],height [m],peak_acceleration [m/s2],period [s]," in named[0]
     assert re.sub(r" \[[^]]*\]", "", named[0]) == plain[0]
     assert "top_displacement [m]" in run("history", *WHOLE, "--csv", "--units").splitlines()[0]
     for form in ((), ("--json",)):
@@ -276,17 +276,17 @@ def test_the_header_of_csv_names_units_on_request(tmp_path):
 def test_table_and_options_exclude_each_other(tmp_path):
     assert "--width" in refused("response", "--pulse", "sine", "--blocks", "-", "--width", "1m")
     assert "--blocks" in refused("response", "--pulse", "sine", "--blocks", str(tmp_path / "none.csv"))
-    assert "--width" in refused("response", *WHOLE, "--half-width", "0.2m")
+    assert "--width" in refused("response", *WHOLE, "--width", "0.4m")
 
 
 def test_history_with_the_reactions_of_the_ground():
     options = ["history", *UNITS, "--samples", "20", "--contact"]
-    block = Block(0.2, 0.8)
+    block = Block(0.4, 1.6)
     expected = time_history(
         "sine",
         slenderness=block.uplift_acceleration / 4.0,
         frequency_ratio=4 * math.pi / block.frequency_parameter,
-        restitution=block.housner_restitution,
+        restitution=block.momentum_restitution,
         alpha=block.alpha,
         samples=20,
         contact=True,
@@ -363,7 +363,7 @@ def test_every_command_takes_a_pulse_from_a_file(triangle, tmp_path):
     path = tmp_path / "blocks.csv"
     path.write_text("width [m],height [m],peak_acceleration [g],period [s]\n0.4,1.6,0.4,0.5\n")
     (row,) = read_csv(run("response", "--pulse", triangle, "--blocks", str(path)))
-    block = rocking.Block(0.2, 0.8).response(TRIANGLE, peak_acceleration="0.4 g", period=0.5)
+    block = rocking.Block(0.4, 1.6).response(TRIANGLE, peak_acceleration="0.4 g", period=0.5)
     assert float(row["top_displacement"]) == block.displacement
     printed = json.loads(run("response", "--pulse", triangle, *UNITS[2:], "--json"))
     assert printed["pulse_duration"] == 0.5
@@ -394,17 +394,17 @@ def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
     ("arguments", "option", "allowed"),
     [
         (["response", *GROUPS[:-1], "1.5"], "--restitution", "[0, 1]"),
-        (["response", *GROUPS[:-1], "bouncy"], "--restitution", "housner for a block"),
+        (["response", *GROUPS[:-1], "bouncy"], "--restitution", "momentum for a block"),
         (["response", "--pulse", "sinus", *GROUPS[2:]], "--pulse", "one of sine"),
         (["response", *GROUPS[:3], "nan", *GROUPS[4:]], "--slenderness", "[1e-12, inf)"),
         (["response", *GROUPS[:4], "--restitution", "0.85"], "--frequency-ratio", "a number"),
         (["response", *GROUPS, "--alpha", "20"], "--alpha", "20 deg"),
         (["response", *GROUPS, "--alpha", "95 deg"], "--alpha", "[0, 1.5"),
-        (["response", *GROUPS, "--half-width", "1m"], "--slenderness", "either groups"),
+        (["response", *GROUPS, "--width", "2m"], "--slenderness", "either groups"),
         (["response", *GROUPS, "--json", "--csv"], "--csv", "one of --json and --csv"),
-        (["response", *UNITS[:3], "20", *UNITS[4:]], "--half-width", "missing unit: write 20m (such as 0.3 m"),
-        (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--half-width", "0.3 m"),
-        (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--half-width", "(0, inf)"),
+        (["response", *UNITS[:3], "20", *UNITS[4:]], "--width", "missing unit: write 20m (such as 0.3 m"),
+        (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--width", "0.6 m"),
+        (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--width", "(0, inf)"),
         (["response", *UNITS[:8], *UNITS[10:]], "--pulse-period", "required"),
         (["history", *GROUPS, "--samples", "1"], "--samples", "[2,"),
         (["spectrum", "--pulse", "sine", "--slenderness", "0.4", "--restitution", "0.85", "--points", "1"],

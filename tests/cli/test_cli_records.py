@@ -19,7 +19,7 @@ from tests.excitation.record_files import at2, rows
 
 ROOT = Path(__file__).parents[2]
 NAPA = str(ROOT / "workflow/motions/napa_HNE.csv")
-SIZES = ["--half-width", "0.25m", "--half-height", "100 cm"]
+SIZES = ["--width", "0.5m", "--height", "200 cm"]
 
 
 def run(*arguments):
@@ -49,13 +49,13 @@ def test_remarks_of_the_reader_are_warnings(tmp_path):
     path = tmp_path / "motion.at2"
     path.write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
     remark = "the file holds 100 samples, its header states 101"
-    assert respond_to_record(rocking.Block(0.25, 1.0), rocking.read_record(path)).warnings[0] == remark
+    assert respond_to_record(rocking.Block(0.5, 2.0), rocking.read_record(path)).warnings[0] == remark
     assert f"\nwarning: {remark}\n" in run("record", str(path), *SIZES)
     assert json.loads(run("record", str(path), *SIZES, "--json"))["warnings"][0] == remark
 
 
 def test_record_in_three_formats():
-    block, motion = rocking.Block(0.25, 1.0), rocking.read_record(NAPA)
+    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(NAPA)
     expected = respond_to_record(block, motion, scale=1.1)
     result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
     assert result["peak_rotation"] == float(expected.dimensionless.peak_rotation)
@@ -75,9 +75,9 @@ def test_thresholds_and_pulse():
     scales = np.array(result["threshold_scale"])
     assert np.all(np.diff(scales) > 0.0)
     assert result["overturns_above"][0] is True
-    block, motion = rocking.Block(0.25, 1.0), rocking.read_record(NAPA)
+    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(NAPA)
     for scale, above in zip(scales[:6], result["overturns_above"], strict=False):
-        found = rocking.record_response(
+        found = rocking.peak_response(
             motion,
             frequency_parameter=block.frequency_parameter,
             slenderness=block.uplift_acceleration / motion.peak_acceleration / (scale * np.array([1 - 2e-6, 1 + 2e-6])),
@@ -114,7 +114,7 @@ def test_baseline_is_removed_on_request_only():
     ("arguments", "message"),
     [
         (["nowhere.csv", *SIZES], "nowhere.csv: not a file that can be read"),
-        ([NAPA, "--half-width", "0.25", "--half-height", "1m"], "--half-width"),
+        ([NAPA, "--width", "0.5", "--height", "2m"], "--width"),
         ([NAPA, *SIZES, "--scale", "0"], "--scale"),
         ([NAPA, *SIZES, "--restitution", "plastic"], "--restitution"),
         ([NAPA, *SIZES, "--restitution", "1.5"], "--restitution"),
@@ -160,7 +160,7 @@ def test_fragility_in_three_formats(small):
 
 def test_friction_restitution_and_sampling_in_three_formats(small):
     suite = suite_configuration(json.loads(small.read_text()), small.parent)
-    expected = rocking.suite_sensitivity(suite.motions(), suite.blocks[0], intensity=suite.sensitivity.intensity)
+    expected = rocking.suites.suite_sensitivity(suite.motions(), suite.blocks[0], intensity=suite.sensitivity.intensity)
     result = json.loads(run("fragility", str(small), "--json"))["sensitivity"]
     rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv", "--table", "sensitivity"))))
     for name in ("intensity", "fraction_low_restitution", "changed_resampled", "friction_demand_largest"):
@@ -248,7 +248,7 @@ def test_a_long_line_of_toml_is_refused(tmp_path):
 def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     up = str(ROOT / "workflow/motions/napa_HNN.csv")
     motion = rocking.read_record(NAPA, vertical=up)
-    expected = respond_to_record(rocking.Block(0.25, 1.0), motion, scale=1.1)
+    expected = respond_to_record(rocking.Block(0.5, 2.0), motion, scale=1.1)
     found = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--vertical", up, "--json"))
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration

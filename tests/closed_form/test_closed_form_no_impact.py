@@ -8,7 +8,7 @@ from scipy.integrate import simpson
 
 import rocking
 from rocking import closed_form as cf
-from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
+from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse
 from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 from tests.excitation.test_smooth_pulse import Given
@@ -42,7 +42,7 @@ def test_margin_without_impact_vanishes_on_the_published_curves(pulse, closed, o
 
 @pytest.mark.parametrize("name", PULSE_NAMES)
 def test_first_uplift_phase_of_any_pulse(name):
-    pulse = get_pulse(name)
+    pulse = rocking.pulse(name)
     phi = np.linspace(pulse.start, pulse.end, 200_001)
     for a in (1.0 + 1e-6, 1.3, 4.0, 1e4):
         reached = np.flatnonzero(np.abs(a * pulse.shape(phi)) >= 1)
@@ -57,7 +57,7 @@ def test_first_uplift_phase_of_any_pulse(name):
 @pytest.mark.parametrize("name", PULSE_NAMES)
 @pytest.mark.parametrize("omega", [0.01, 0.7, 5.0, 40.0])
 def test_discounted_integral_against_quadrature(name, omega):
-    pulse = get_pulse(name)
+    pulse = rocking.pulse(name)
     start = pulse.start + 0.3 * (pulse.end - pulse.start)
     reach = min(pulse.end, start + 45 * omega)
 

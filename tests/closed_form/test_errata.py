@@ -175,7 +175,7 @@ def test_below_3_12_condition_that_takes_the_impact_time():
 def test_section_6_figure_10_is_not_of_slender_blocks():
     # in the slender formulation all angles would have one threshold; those of figure 10 differ
     slender, rigid = (
-        rocking.critical_amplitude("sine", frequency_ratio=4.0, restitution=0.85, alpha=alpha).amplitude
+        rocking.thresholds("sine", frequency_ratio=4.0, restitution=0.85, alpha=alpha).amplitude
         for alpha in (None, math.radians(20))
     )
     assert np.all(np.abs(rigid / slender - 1) > 0.005)

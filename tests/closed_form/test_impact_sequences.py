@@ -9,7 +9,7 @@ import pytest
 
 from rocking import closed_form as cf
 from rocking._base.errors import InvalidArgumentError
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 
@@ -37,7 +37,7 @@ REGIONS = {  # pulse, impacts: windows of omega and of a with one region of each
 )
 def test_interval_is_that_of_the_solver(pulse: str, omega: float, impacts: int, window: tuple[float, float]) -> None:
     interval = cf.overturning_interval(pulse, omega, ETA, impacts, amplitude=window)
-    found = critical_amplitude(pulse, frequency_ratio=omega, restitution=ETA)
+    found = thresholds(pulse, frequency_ratio=omega, restitution=ETA)
     of_region = (found.impacts == impacts) & (found.amplitude > window[0]) & (found.amplitude < window[1])
     np.testing.assert_allclose(interval, found.amplitude[of_region], rtol=1e-9)
 

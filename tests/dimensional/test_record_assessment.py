@@ -12,7 +12,7 @@ from rocking._dimensional import record_assessment
 from rocking._numba.cancellation import StopFlag
 from tests.suites.motions import noise
 
-BLOCK = rocking.Block(0.25, 1.0)
+BLOCK = rocking.Block(0.5, 2.0)
 
 
 def test_nothing_is_searched_before_it_is_asked_for(monkeypatch):
@@ -33,7 +33,7 @@ def test_a_set_flag_ends_the_assessment():
 
 def test_a_flag_that_is_set_meanwhile_ends_the_search():
     long = rocking.Record(np.tile(noise(0).acceleration, 40), 0.01, unit="m/s2")
-    large, flag = rocking.Block(2.0, 8.0), StopFlag()
+    large, flag = rocking.Block(4.0, 16.0), StopFlag()
     found = large.response(long)
     timer = threading.Timer(0.2, flag.set)
     timer.start()

@@ -10,7 +10,7 @@ from rocking._dimensional.record_scales import ScaleThresholds, overturning_scal
 from rocking._dimensional.threshold import Threshold, threshold_text
 from tests.suites.motions import noise
 
-BLOCKS = [rocking.Block(0.1, 0.5), rocking.Block(0.25, 1.0), rocking.Block(1.0, 5.0)]
+BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.5, 2.0), rocking.Block(2.0, 10.0)]
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -16,7 +16,6 @@ from rocking._excitation.pulses import (
     AbstractPulse,
     SinusoidalPulse,
     WaveletPulse,
-    get_pulse,
 )
 from rocking._excitation.shapes import MAX_PIECES
 from rocking._excitation.sinusoids import MAX_SINUSOIDS
@@ -43,8 +42,8 @@ PLAIN = {
     "ricker_antisymmetric": (antisymmetric, -4 * pi, 4 * pi),
 }
 FAMILY = [(1.0 + 1e-6, 0.0), (1.3, 0.7), (2.0, 0.0), (2.0, pi / 2), (3.7, -1.0), (20.0, 2.0)]
-EVERY = [get_pulse(name) for name in PULSE_NAMES]
-EVERY += [get_pulse("mavroeidis_papageorgiou", cycles=g, phase=n) for g, n in FAMILY]
+EVERY = [rocking.pulse(name) for name in PULSE_NAMES]
+EVERY += [rocking.pulse("mavroeidis_papageorgiou", cycles=g, phase=n) for g, n in FAMILY]
 
 
 def label(pulse):
@@ -62,7 +61,7 @@ def test_every_name_has_a_definition_in_the_test():
 @pytest.mark.parametrize("name", PLAIN)
 def test_definition(name):
     formula, start, end = PLAIN[name]
-    pulse = get_pulse(name)
+    pulse = rocking.pulse(name)
     assert (pulse.start, pulse.end) == pytest.approx((start, end), abs=2e-7 * pi)
     phi = np.linspace(pulse.start, pulse.end, 999)
     np.testing.assert_allclose(pulse.shape(phi), formula(phi), atol=1e-14)
@@ -70,7 +69,7 @@ def test_definition(name):
 
 @pytest.mark.parametrize(("gamma", "nu"), FAMILY)
 def test_definition_of_mavroeidis_papageorgiou(gamma, nu):
-    pulse = get_pulse("mavroeidis_papageorgiou", cycles=gamma, phase=nu)
+    pulse = rocking.pulse("mavroeidis_papageorgiou", cycles=gamma, phase=nu)
     assert (pulse.start, pulse.end) == pytest.approx((-pi * gamma, pi * gamma))
     assert isinstance(pulse, SinusoidalPulse)
     assert len(pulse.terms) == 3
@@ -81,7 +80,7 @@ def test_definition_of_mavroeidis_papageorgiou(gamma, nu):
 
 @pytest.mark.parametrize(("gamma", "nu"), FAMILY)
 def test_mavroeidis_papageorgiou_is_the_derivative_of_its_velocity(gamma, nu):
-    pulse = get_pulse("mavroeidis_papageorgiou", cycles=gamma, phase=nu)
+    pulse = rocking.pulse("mavroeidis_papageorgiou", cycles=gamma, phase=nu)
     phi, step = np.linspace(pulse.start, pulse.end, 40_001), 1e-4
 
     def velocity(x):
@@ -140,7 +139,7 @@ def test_mirror_image(pulse):
 
 @pytest.mark.parametrize("name", PULSE_NAMES)
 def test_a_leading_minus_changes_the_sign(name):
-    assert get_pulse("-" + name) == get_pulse(name).mirrored()
+    assert rocking.pulse("-" + name) == rocking.pulse(name).mirrored()
 
 
 @pytest.mark.parametrize("pulse", EVERY, ids=label)
@@ -154,7 +153,7 @@ def test_acceleration_is_zero_outside_the_window(pulse):
 
 @pytest.mark.parametrize("name", ["c1", "c2"])
 def test_type_c_has_zero_final_velocity_and_displacement(name):
-    pulse = get_pulse(name)
+    pulse = rocking.pulse(name)
 
     def final(f):  # Gauss quadrature, exact for these
         x, w = np.polynomial.legendre.leggauss(60)
@@ -166,13 +165,13 @@ def test_type_c_has_zero_final_velocity_and_displacement(name):
 
 
 def test_type_c_starts_with_the_published_jump():
-    assert get_pulse("c1").start / pi == pytest.approx(0.0697034, abs=1e-7)
-    assert get_pulse("c2").start / pi == pytest.approx(0.0409760, abs=1e-7)
+    assert rocking.pulse("c1").start / pi == pytest.approx(0.0697034, abs=1e-7)
+    assert rocking.pulse("c2").start / pi == pytest.approx(0.0409760, abs=1e-7)
 
 
 def test_full_sine_and_rickers_have_zero_final_velocity():
     for name in ("sine", "ricker", "ricker_antisymmetric"):
-        pulse = get_pulse(name)
+        pulse = rocking.pulse(name)
         phi = np.linspace(pulse.start, pulse.end, 20_001)
         assert np.trapezoid(pulse.shape(phi), phi) == pytest.approx(0, abs=1e-12)
 
@@ -184,17 +183,17 @@ def test_constant_of_the_antisymmetric_ricker():
 @pytest.mark.parametrize("name", ["square", "", "--sine", "Sine", "sine "])
 def test_unknown_pulses_are_rejected(name):
     with pytest.raises(InvalidArgumentError, match="`pulse`"):
-        get_pulse(name)
+        rocking.pulse(name)
 
 
 def test_parameters_belong_to_one_pulse():
     with pytest.raises(InvalidArgumentError, match="pulse sine"):
-        get_pulse("sine", cycles=2.0)
+        rocking.pulse("sine", cycles=2.0)
     with pytest.raises(InvalidArgumentError, match="mavroeidis_papageorgiou"):
-        get_pulse("mavroeidis_papageorgiou", colour=2.0)
+        rocking.pulse("mavroeidis_papageorgiou", colour=2.0)
     for name, value in (("cycles", 1.0), ("cycles", 21.0), ("phase", 7.0), ("phase", math.nan)):
         with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
-            get_pulse("mavroeidis_papageorgiou", **{name: value})
+            rocking.pulse("mavroeidis_papageorgiou", **{name: value})
 
 
 def test_abstract_pulse_cannot_be_instantiated():
@@ -219,7 +218,8 @@ def test_an_equal_pulse_object_gives_the_response_of_the_catalogue(name):
     groups = {"slenderness": [0.2, 0.5, 0.8], "frequency_ratio": [[1.0], [4.0]], "restitution": 0.85}
     for alpha in (None, 0.3):
         own, known = (
-            rocking.peak_response(pulse, **groups, alpha=alpha) for pulse in (without_stationary(get_pulse(name)), name)
+            rocking.peak_response(pulse, **groups, alpha=alpha)
+            for pulse in (without_stationary(rocking.pulse(name)), name)
         )
         np.testing.assert_array_equal(own.outcome, known.outcome)
         np.testing.assert_allclose(own.peak_rotation, known.peak_rotation, rtol=1e-11)

@@ -144,7 +144,7 @@ def test_equality_and_mirror_image():
 def test_a_class_without_curve_is_no_pulse():
     with pytest.raises(TypeError, match="curve"):
         SmoothPulse("none", 0.0, 1.0)
-    assert rocking.get_pulse("sine").stationary == (math.pi / 2, 3 * math.pi / 2)
+    assert rocking.pulse("sine").stationary == (math.pi / 2, 3 * math.pi / 2)
 
 
 def test_the_example_of_the_docstring():

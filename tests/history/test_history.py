@@ -100,7 +100,7 @@ def test_history_and_response_agree(name, alpha):
 def test_ground_acceleration_is_the_pulse(alpha):
     for name in SIGNED:
         history = rocking.time_history(name, slenderness=0.5, frequency_ratio=2.0, restitution=0.9, alpha=alpha)
-        pulse = rocking.get_pulse(name)
+        pulse = rocking.pulse(name)
         inside = history.tau.values <= history.pulse_end
         np.testing.assert_allclose(
             history.ground_acceleration.values[inside],

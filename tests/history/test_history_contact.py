@@ -154,7 +154,7 @@ def test_contact_forces_are_computed_on_request_only():
 def test_a_motion_of_any_length_is_sampled_a_bounded_number_of_times():
     # an elastic block that almost overturns: 10,000 impacts, each of which takes several units of tau
     question = {"frequency_ratio": 5.0, "restitution": 1.0, "alpha": 0.2}
-    survives = 1.000001 / rocking.critical_amplitude("sine", **question).amplitude[0]
+    survives = 1.000001 / rocking.thresholds("sine", **question).amplitude[0]
     motion = build_motion("sine", slenderness=survives, **question, duration=1e9)
     record, impact_times = motion.events()
     assert impact_times[-1] > 20 * MAX_STEP * MAX_STEPS

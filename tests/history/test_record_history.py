@@ -19,8 +19,8 @@ ALPHAS = [None, 0.2]
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_the_peak_is_that_of_the_response(alpha: float | None) -> None:
-    history = rocking.record_history(MOTION, **BLOCK, alpha=alpha, samples=200_000)
-    response = rocking.record_response(MOTION, **BLOCK, alpha=alpha)
+    history = rocking.time_history(MOTION, **BLOCK, alpha=alpha, samples=200_000)
+    response = rocking.peak_response(MOTION, **BLOCK, alpha=alpha)
     assert history.attrs["peak_rotation"] == pytest.approx(float(response.peak_rotation), rel=1e-12)
     assert float(np.abs(history.rotation).max()) == pytest.approx(float(response.peak_rotation), rel=1e-6)
     assert history.attrs["impacts"] == response.impacts
@@ -32,8 +32,8 @@ def test_a_vertical_component_enters_the_equation(alpha: float | None) -> None:
     """Every flight, by the work of the ground and of gravity between samples; the peak is that of the response."""
     motion = rocking.Record(MOTION.acceleration, 0.005, "m/s2", vertical=0.7 * np.roll(MOTION.acceleration, 40))
     groups = BLOCK | {"slenderness": 0.6, "alpha": alpha, "vertical_scale": 1.3}
-    history = rocking.record_history(motion, **groups, samples=100_000)
-    response = rocking.record_response(motion, **groups)
+    history = rocking.time_history(motion, **groups, samples=100_000)
+    response = rocking.peak_response(motion, **groups)
     assert history.attrs["peak_rotation"] == pytest.approx(float(response.peak_rotation), rel=1e-11)
     assert float(np.abs(history.rotation).max()) == pytest.approx(float(response.peak_rotation), rel=1e-6)
     assert history.attrs["vertical_scale"] == 1.3
@@ -57,7 +57,7 @@ def test_a_vertical_component_enters_the_equation(alpha: float | None) -> None:
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_between_impacts_the_motion_satisfies_the_equation(alpha: float | None) -> None:
     """The first long flight, integrated by scipy with a step at each sample."""
-    history = rocking.record_history(MOTION, **BLOCK, alpha=alpha)
+    history = rocking.time_history(MOTION, **BLOCK, alpha=alpha)
     p, angle = BLOCK["frequency_parameter"], alpha or 0.0
     bounds = np.concatenate([[float(history.time[history.rotation != 0.0][0])], history.impact_time.values])
     longest = int(np.diff(bounds).argmax())
@@ -81,23 +81,23 @@ def test_between_impacts_the_motion_satisfies_the_equation(alpha: float | None) 
 
 
 def test_by_default_the_samples_are_those_of_the_record_and_some_more() -> None:
-    history = rocking.record_history(MOTION, **BLOCK)
+    history = rocking.time_history(MOTION, **BLOCK)
     interval = BLOCK["frequency_parameter"] * MOTION.time_step
     assert np.isin(interval * np.arange(MOTION.samples + 700), history.tau).all()
     assert np.diff(history.time).max() == pytest.approx(MOTION.time_step)
     long = rocking.Record(np.append(np.zeros(1_200_000), 1.0), 0.01, "m/s2")
-    assert rocking.record_history(long, **BLOCK).time[-1] > long.duration
+    assert rocking.time_history(long, **BLOCK).time[-1] > long.duration
     for samples, step in (([0.0, 3.0, -2.0, 1.0], 1e-6), (np.sin(np.arange(20_000)), 1e-5)):
         short = rocking.Record(samples, step, "m/s2")
-        history = rocking.record_history(short, **BLOCK)
+        history = rocking.time_history(short, **BLOCK)
         events = history.sizes["impact"] + 3
         assert history.sizes["time"] <= short.samples + max(short.samples, 10_000) + events
         assert history.time[-1] == pytest.approx(short.duration + 8.0 / BLOCK["frequency_parameter"])
 
 
 def test_impacts_reduce_the_velocity_by_the_restitution() -> None:
-    history = rocking.record_history(MOTION, **BLOCK)
-    before = rocking.record_history(MOTION, **BLOCK, samples=400_000)
+    history = rocking.time_history(MOTION, **BLOCK)
+    before = rocking.time_history(MOTION, **BLOCK, samples=400_000)
     for time in history.impact_time.values[:20:3]:
         after = float(history.angular_velocity.sel(time=time))
         place = int(np.searchsorted(before.time.values, time)) - 1
@@ -107,8 +107,8 @@ def test_impacts_reduce_the_velocity_by_the_restitution() -> None:
 
 
 def test_a_tiny_angle_gives_the_slender_history() -> None:
-    slender = rocking.record_history(MOTION, **BLOCK)
-    rigid = rocking.record_history(MOTION, **BLOCK, alpha=1e-7, samples=None)
+    slender = rocking.time_history(MOTION, **BLOCK)
+    rigid = rocking.time_history(MOTION, **BLOCK, alpha=1e-7, samples=None)
     common = np.intersect1d(slender.time.values, rigid.time.values)
     assert common.size > 6000
     np.testing.assert_allclose(slender.rotation.sel(time=common), rigid.rotation.sel(time=common), atol=1e-9)
@@ -116,7 +116,7 @@ def test_a_tiny_angle_gives_the_slender_history() -> None:
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_an_overturning_block_is_followed_until_it_has_fallen(alpha: float | None) -> None:
-    history = rocking.record_history(MOTION, **(BLOCK | {"slenderness": 0.2}), alpha=alpha)
+    history = rocking.time_history(MOTION, **(BLOCK | {"slenderness": 0.2}), alpha=alpha)
     assert history.attrs["overturned"] == 1
     last = float(abs(history.rotation[-1]))
     assert last > 3.9  # the last sample before it passes 4, the first of pi/2 and 4
@@ -126,7 +126,7 @@ def test_an_overturning_block_is_followed_until_it_has_fallen(alpha: float | Non
 def test_after_the_motion_the_block_rocks_freely() -> None:
     """A short motion: the energy is constant between impacts after its end."""
     motion = rocking.Record([0.0, 1.0, 1.0, -0.5], 0.1, unit="g")
-    history = rocking.record_history(motion, frequency_parameter=3.0, slenderness=0.4, restitution=0.8, samples=5000)
+    history = rocking.time_history(motion, frequency_parameter=3.0, slenderness=0.4, restitution=0.8, samples=5000)
     assert history.attrs["overturned"] == 0
     z, w = np.abs(history.rotation.values), history.angular_velocity.values
     free = (history.time.values > motion.duration) & (z > 0.0)
@@ -139,7 +139,7 @@ def test_after_the_motion_the_block_rocks_freely() -> None:
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_contact_forces_of_a_rocking_block(alpha: float | None) -> None:
-    history = rocking.record_history(MOTION, **BLOCK, alpha=alpha, contact=True)
+    history = rocking.time_history(MOTION, **BLOCK, alpha=alpha, contact=True)
     rest = (history.rotation == 0.0) & (history.angular_velocity == 0.0) & (abs(history.ground_acceleration) < 1.0)
     np.testing.assert_allclose(history.normal_reaction.values[rest], 1.0)
     slope = math.tan(alpha or 0.0)
@@ -153,7 +153,7 @@ def test_contact_forces_of_a_rocking_block(alpha: float | None) -> None:
 
 
 def test_without_uplift_nothing_moves() -> None:
-    history = rocking.record_history(MOTION, **(BLOCK | {"slenderness": 1.5}))
+    history = rocking.time_history(MOTION, **(BLOCK | {"slenderness": 1.5}))
     assert not history.rotation.any()
     assert history.attrs["outcome"] == "NO_UPLIFT"
 
@@ -161,11 +161,11 @@ def test_without_uplift_nothing_moves() -> None:
 @pytest.mark.parametrize(("change", "named"), [({"samples": 1}, "samples"), ({"duration": 0.0}, "duration")])
 def test_arguments_are_checked(change: dict, named: str) -> None:
     with pytest.raises(InvalidArgumentError, match=named):
-        rocking.record_history(MOTION, **BLOCK, **change)
+        rocking.time_history(MOTION, **BLOCK, **change)
 
 
 def test_a_stopped_history_raises() -> None:
     stop = StopFlag()
     stop.set()
     with pytest.raises(StoppedError):
-        rocking.record_history(MOTION, **BLOCK, stop=stop)
+        rocking.time_history(MOTION, **BLOCK, stop=stop)

@@ -197,7 +197,7 @@ def test_impulse_of_an_impact_is_the_change_of_momentum(alpha):
 def test_impulse_ratio_of_housner_is_the_demand_of_slow_rocking(alpha):
     block = rocking.Block.from_slenderness_angle(alpha, 1.0)
     slow = reactions(np.zeros(1), np.zeros(1), np.zeros(1), np.ones(1), alpha)
-    ratio = impulse_ratio(block.housner_restitution, alpha)
+    ratio = impulse_ratio(block.momentum_restitution, alpha)
     assert ratio == pytest.approx(math.tan(alpha) * float(slow.friction_demand[0]), rel=1e-13)
     assert ratio < math.tan(alpha)
 

@@ -79,7 +79,7 @@ def test_positive_margin_means_overturning(z, w, eta, alpha):
 def test_tolerance_is_kept_near_an_outcome_boundary(pulse, alpha, tolerance):
     """Near a threshold the peak is sensitive, and cells are solved at full precision whatever the tolerance."""
     for omega in (2.0, 4.0, 7.0):
-        threshold = rocking.critical_amplitude(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
+        threshold = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
         distance = 10.0 ** np.arange(-9, -1)
         beside = threshold.amplitude[:, None] * (1 + np.concatenate([-distance, distance]))
         groups = {"slenderness": 1 / beside.ravel(), "frequency_ratio": omega, "restitution": 0.9, "alpha": alpha}

@@ -9,7 +9,7 @@ from rocking._dimensional.curves import block_boundary
 from rocking._spectra.cubes import spectrum
 from tests.suites.motions import noise
 
-BLOCK = rocking.Block(half_width=0.2, half_height=0.8)
+BLOCK = rocking.Block(width=0.4, height=1.6)
 GROUPS = {"slenderness": 0.3, "frequency_ratio": 5.0, "restitution": 0.85}
 
 
@@ -18,7 +18,7 @@ def grid(**values):
 
 
 def record_history():
-    return rocking.record_history(noise(3), frequency_parameter=3.0, slenderness=0.3, restitution=0.85)
+    return rocking.time_history(noise(3), frequency_parameter=3.0, slenderness=0.3, restitution=0.85)
 
 
 PICTURES = {

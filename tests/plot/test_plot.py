@@ -16,7 +16,7 @@ from rocking._dimensional.curves import block_boundary
 from rocking.plot.output import new_figure, save_figure
 from tests.suites.motions import noise
 
-BLOCK = rocking.Block(half_width=0.2, half_height=0.8)
+BLOCK = rocking.Block(width=0.4, height=1.6)
 PULSE = {"peak_acceleration": 4.0, "period": 0.5}
 GROUPS = {"slenderness": 0.3, "frequency_ratio": 5.0, "restitution": 0.85}
 
@@ -79,7 +79,7 @@ def test_pictures_of_a_body_with_two_edges(ax):
 
 def test_history_of_a_record_and_in_groups(ax):
     record = noise(3)
-    found = rocking.record_history(record, frequency_parameter=3.0, slenderness=0.3, restitution=0.85)
+    found = rocking.time_history(record, frequency_parameter=3.0, slenderness=0.3, restitution=0.85)
     assert plot.history(found, ax).get_xlabel() == "time [s]"
     history = rocking.time_history("sine", **GROUPS)
     assert plot.history(history, color="k").get_xlabel() == r"time $\tau=p\,t$ [-]"
@@ -153,9 +153,7 @@ def test_boundary_in_groups_and_in_si_units(ax):
     groups = plot.boundary(curves.drop_vars(["period", "peak_acceleration"]))
     direct = groups.lines[2]
     nearest = np.nanargmin(np.abs(direct.get_xdata() - 3.0))
-    found = rocking.critical_amplitude(
-        "sine", frequency_ratio=direct.get_xdata()[nearest], restitution=0.85, alpha=BLOCK.alpha
-    )
+    found = rocking.thresholds("sine", frequency_ratio=direct.get_xdata()[nearest], restitution=0.85, alpha=BLOCK.alpha)
     assert direct.get_ydata()[nearest] == pytest.approx(found.amplitude[-1], rel=1e-6)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import PULSE_NAMES, Outcome, closed_form, get_pulse
+from rocking import PULSE_NAMES, Outcome, closed_form
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
@@ -64,7 +64,7 @@ def test_outcomes_of_the_sine(sine_cells):
 
 @pytest.mark.parametrize("name", SIGNED)
 def test_overturning_without_a_further_impact_for_every_pulse(name):
-    pulse = get_pulse(name)
+    pulse = rocking.pulse(name)
     rng = np.random.default_rng(13)
     n = 120
     a, omega = 1 / rng.uniform(0.05, 0.95, n), np.exp(rng.uniform(-0.5, 2.5, n))

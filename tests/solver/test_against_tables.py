@@ -119,7 +119,7 @@ def test_table_errors_are_within_the_effect_of_the_last_bit(
     if (
         column == "uplift_time"
     ):  # computed as a phase, a double relative to a crest (sines) or to the middle of the pulse
-        start = np.array([max(abs(rocking.get_pulse(name).start), np.pi / 2) for name in table.pulse])
+        start = np.array([max(abs(rocking.pulse(name).start), np.pi / 2) for name in table.pulse])
         tiny = float(np.finfo(float).tiny)
         ulps += EPS * start / (table["frequency_ratio"] * np.maximum(table["uplift_time"], tiny))
     explained = error / ulps

@@ -64,7 +64,7 @@ FALLING = SinusoidalPulse("falling", 0.4, 5.0, (np.pi,), ((1.0, 1.0, 0.0),))
 @pytest.mark.parametrize("pulse", ["c1", "-c2", GROWING, FALLING], ids=str)
 def test_a_pulse_that_starts_where_the_block_just_uplifts(pulse, alpha):
     """Within rounding of |a f| = 1 at the start a flight may be shorter than rounding; they followed each other."""
-    started = rocking.get_pulse(pulse) if isinstance(pulse, str) else pulse
+    started = rocking.pulse(pulse) if isinstance(pulse, str) else pulse
     case = {"frequency_ratio": np.array([[0.15], [1.0], [3.0]]), "alpha": alpha}
     at_start = neighbours(abs(started.shape(started.start)), 4)
     for eta in (0.0, 0.7, 0.85):

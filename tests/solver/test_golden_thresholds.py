@@ -36,13 +36,13 @@ HALF_OF_LAST_DIGIT = 0.5001e-6
 GRAVITY = 9.80665
 
 
-def housner(alpha: float) -> float:
+def momentum(alpha: float) -> float:
     return 1 - 1.5 * math.sin(alpha) ** 2  # (2.4)
 
 
 @pytest.mark.parametrize(("omega", "eta"), [(omega, eta) for omega in DIRECT for eta in (0.85, 0.90, 0.95)])
 def test_slender_full_sine_to_the_last_digit(omega, eta):
-    found = rocking.critical_amplitude("sine", frequency_ratio=omega, restitution=eta)
+    found = rocking.thresholds("sine", frequency_ratio=omega, restitution=eta)
     by_one_impact = (found.outcome == Outcome.OVERTURNED_AFTER_IMPACT) & (found.impacts == 1)
     directly = found.outcome == Outcome.OVERTURNED_DIRECTLY
     expected = AFTER_IMPACT.get((omega, eta), ())
@@ -60,7 +60,7 @@ def test_slender_full_sine_to_the_last_digit(omega, eta):
 @pytest.mark.parametrize("eta", [0.8, 0.9, 0.97])
 def test_slender_full_sine_against_closed_forms(omega, eta):
     closed = closed_form.overturning_amplitudes(omega, eta)
-    found = rocking.critical_amplitude("sine", frequency_ratio=omega, restitution=eta)
+    found = rocking.thresholds("sine", frequency_ratio=omega, restitution=eta)
     for amplitude in closed:
         if not np.isnan(amplitude):
             assert np.min(np.abs(found.amplitude / amplitude - 1)) <= 1e-11 * float(amplitude)
@@ -78,28 +78,28 @@ def test_slender_full_sine_against_closed_forms(omega, eta):
 @pytest.mark.parametrize("omega", [1.0, 2.0, 3.0, 7.0])
 def test_overturning_without_impact_of_simple_pulses(pulse, formula, omega):
     for name in (pulse, f"-{pulse}"):
-        found = rocking.critical_amplitude(name, frequency_ratio=omega, restitution=0.85, highest_amplitude=200.0)
+        found = rocking.thresholds(name, frequency_ratio=omega, restitution=0.85, highest_amplitude=200.0)
         directly = found.outcome == Outcome.OVERTURNED_DIRECTLY
         np.testing.assert_allclose(found.amplitude[directly], [float(formula(omega))], rtol=2e-12 * formula(omega))
 
 
 def test_half_sine_as_published_by_shi_et_al_1996():
     for omega, amplitude in ((1, 1.322397), (2, 1.800724), (3, 2.293872)):
-        found = rocking.critical_amplitude("half_sine", frequency_ratio=omega, restitution=0.5)
+        found = rocking.thresholds("half_sine", frequency_ratio=omega, restitution=0.5)
         np.testing.assert_allclose(found.amplitude, [amplitude], rtol=0, atol=HALF_OF_LAST_DIGIT)
 
 
 def test_half_sine_and_rectangle_have_one_threshold_whatever_the_restitution():
     for pulse in ("half_sine", "rectangular"):
         thresholds = [
-            rocking.critical_amplitude(pulse, frequency_ratio=3.0, restitution=eta).amplitude for eta in (0.0, 0.6, 1.0)
+            rocking.thresholds(pulse, frequency_ratio=3.0, restitution=eta).amplitude for eta in (0.0, 0.6, 1.0)
         ]
         for amplitude in thresholds[1:]:
             np.testing.assert_array_equal(amplitude, thresholds[0])
 
 
 def test_full_sine_as_read_off_by_zhang_and_makris_2001():
-    found = rocking.critical_amplitude("sine", frequency_ratio=5.0, restitution=0.9)
+    found = rocking.thresholds("sine", frequency_ratio=5.0, restitution=0.9)
     np.testing.assert_allclose(found.amplitude, [3.01, 6.33, 7.18], atol=0.015)
 
 
@@ -114,8 +114,8 @@ def test_full_sine_as_read_off_by_zhang_and_makris_2001():
 def test_rigid_full_sine_by_size(half_diagonal, expected):
     alpha, period = 0.2, 0.5
     omega = 2 * math.pi / period / math.sqrt(0.75 * GRAVITY / half_diagonal)
-    found = rocking.critical_amplitude(
-        "sine", frequency_ratio=omega, restitution=housner(alpha), alpha=alpha, highest_amplitude=10.0
+    found = rocking.thresholds(
+        "sine", frequency_ratio=omega, restitution=momentum(alpha), alpha=alpha, highest_amplitude=10.0
     )
     np.testing.assert_array_equal(found.overturns_above, [True, False, True])
     for amplitude, printed in zip(found.amplitude, expected, strict=True):
@@ -125,8 +125,8 @@ def test_rigid_full_sine_by_size(half_diagonal, expected):
         for side in (-1e-9, 1e-9):  # the multi-precision integration gives the same threshold
             question = {"slenderness": 1 / (amplitude * (1 + side)), "frequency_ratio": omega}
             with working_precision(128):
-                truth = integrate("sine", **question, restitution=housner(alpha), alpha=alpha)
-            response = rocking.peak_response("sine", **question, restitution=housner(alpha), alpha=alpha)
+                truth = integrate("sine", **question, restitution=momentum(alpha), alpha=alpha)
+            response = rocking.peak_response("sine", **question, restitution=momentum(alpha), alpha=alpha)
             assert truth.outcome == response.outcome
             changed = np.flatnonzero(found.amplitude == amplitude)[0]
             assert truth.overturned == (found.overturns_above[changed] == (side > 0))
@@ -135,8 +135,8 @@ def test_rigid_full_sine_by_size(half_diagonal, expected):
 def test_rigid_cosine_of_makris_and_konstantinidis_2003():
     alpha, p, period = math.radians(15), 2.0, 2.0
     omega = 2 * math.pi / period / p
-    found = rocking.critical_amplitude(
-        "cosine", frequency_ratio=omega, restitution=housner(alpha), alpha=alpha, highest_amplitude=3.0
+    found = rocking.thresholds(
+        "cosine", frequency_ratio=omega, restitution=momentum(alpha), alpha=alpha, highest_amplitude=3.0
     )
     in_g = found.amplitude * math.tan(alpha)
     assert abs(in_g[0] - 0.3150340) <= 0.5001e-7
@@ -145,7 +145,7 @@ def test_rigid_cosine_of_makris_and_konstantinidis_2003():
         "cosine",
         slenderness=math.tan(alpha) / np.array([0.315, 0.316]),
         frequency_ratio=omega,
-        restitution=housner(alpha),
+        restitution=momentum(alpha),
         alpha=alpha,
     )
     np.testing.assert_array_equal(found.overturned, [False, True])

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse, get_pulse
+import rocking
+from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, splat, store
 from rocking._solver.excitation import shapes_and_slopes
@@ -13,9 +14,9 @@ from tests.kernels import cell
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 OTHERS = (
-    get_pulse("mavroeidis_papageorgiou", cycles=1.1, phase=1.0),
-    get_pulse("mavroeidis_papageorgiou", cycles=20.0, phase=-2.0),
-    get_pulse("mavroeidis_papageorgiou", cycles=3.3, phase=0.4),
+    rocking.pulse("mavroeidis_papageorgiou", cycles=1.1, phase=1.0),
+    rocking.pulse("mavroeidis_papageorgiou", cycles=20.0, phase=-2.0),
+    rocking.pulse("mavroeidis_papageorgiou", cycles=3.3, phase=0.4),
 )
 SLENDERNESS = st.one_of(st.floats(1e-4, 1 - 1e-6), st.floats(-12, -2).map(lambda x: 1 - 10**x))
 
@@ -59,7 +60,7 @@ def test_intervals_of_every_pulse(name):
     @given(slenderness=SLENDERNESS)
     @settings(max_examples=40)
     def check(slenderness):
-        check_cuts(get_pulse(name), slenderness)
+        check_cuts(rocking.pulse(name), slenderness)
 
     check()
 
@@ -104,7 +105,7 @@ def shape_and_slope(flight, phi):
 
 def test_slope_is_the_derivative():
     for name in SIGNED:
-        pulse, flight = get_pulse(name), cell(name, 0.5, 1.0)
+        pulse, flight = rocking.pulse(name), cell(name, 0.5, 1.0)
         for phi in np.linspace(pulse.start, pulse.end, 41):
             f, slope = shape_and_slope(flight, float(phi))
             assert f == pytest.approx(float(pulse.shape(phi)), abs=4e-15)

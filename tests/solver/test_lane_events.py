@@ -91,7 +91,7 @@ def first_steps(flights, steps, slenderness, omega, alpha):
 def test_events_of_all_lanes_are_those_of_one(pulse):
     """Steps from uplift, then with states in the air: where a lane is decided, the scalar functions agree."""
     rng = np.random.default_rng(2)
-    state = pulse_state(rocking.get_pulse(pulse))
+    state = pulse_state(rocking.pulse(pulse))
     flights, steps = np.array([state] * LANES), step_state(state)
     impacts = peaks = undecided = 0
     for case in range(120):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import PULSE_NAMES, Outcome, closed_form, get_pulse
+from rocking import PULSE_NAMES, Outcome, closed_form
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
@@ -25,7 +25,7 @@ def test_an_impulse_is_an_initial_velocity_of_free_rocking(name):
     assert (np.abs(error) < 1.3 * np.pi / omega / speed).all()  # the distance moved during the pulse
     assert (found.outcome == Outcome.SAFE).all()
     # overturns when the velocity reaches 1, (3.8), up to the distance moved during the pulse, of the order of 1/omega
-    threshold = rocking.critical_amplitude(name, frequency_ratio=omega, restitution=0.9, highest_amplitude=1e5)
+    threshold = rocking.thresholds(name, frequency_ratio=omega, restitution=0.9, highest_amplitude=1e5)
     assert velocity_given(name, 1 / threshold.amplitude[0]) / omega == pytest.approx(1.0, rel=3e-4)
 
 
@@ -48,7 +48,7 @@ def test_a_slow_pulse_overturns_every_block_that_uplifts(name, alpha):
 @pytest.mark.parametrize("name", ["sine", "half_sine", "rectangular", "cosine"])
 def test_threshold_of_slow_pulses_tends_to_one(name):
     amplitude = [
-        rocking.critical_amplitude(name, frequency_ratio=omega, restitution=0.5, highest_amplitude=3.0).amplitude[0]
+        rocking.thresholds(name, frequency_ratio=omega, restitution=0.5, highest_amplitude=3.0).amplitude[0]
         for omega in (0.3, 0.1, 0.03, 0.01)
     ]
     assert (np.diff(amplitude) <= 1e-9).all()
@@ -77,7 +77,7 @@ def test_peaks_vanish_at_the_onset_of_rocking(name):
     assert (np.diff(found.peak_rotation) < 0).all()
     assert found.peak_rotation[-1] < 1e-9
     # over the half-width sqrt(2 gap) of uplift the acceleration is of order gap: rotation of order gap^2/omega^2
-    if abs(float(get_pulse(name).shape(get_pulse(name).start))) < 1:
+    if abs(float(rocking.pulse(name).shape(rocking.pulse(name).start))) < 1:
         order = np.diff(np.log(found.peak_rotation[2:])) / np.log(0.1)
         assert np.median(order) == pytest.approx(2.0, abs=0.1)
 
@@ -99,7 +99,7 @@ def test_small_flights_under_slow_pulses(name):
     assert (arcs.peak_rotation[~arcs.overturned] > 0).all()
     impacted = np.isfinite(arcs.first_impact_time)
     assert (arcs.first_impact_time[impacted] > 0).all()
-    terms = len(get_pulse(name).terms)
+    terms = len(rocking.pulse(name).terms)
     allowed = 1e-9 + 20 * terms * np.finfo(float).eps / gap  # 1 - 1/a is known to one ulp of 1/a; each term rounds
     for found, other in ((arcs.peak_rotation, steps.peak_rotation), (arcs.first_impact_time, steps.first_impact_time)):
         known = np.isfinite(found)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking
-from rocking import PULSE_NAMES, Outcome, get_pulse
+from rocking import PULSE_NAMES, Outcome
 from rocking._model.fields import RESPONSE_FIELDS
 from rocking._solver.peak_response import MAX_CHUNK, peak_response
 
@@ -158,12 +158,12 @@ def test_unknown_pulses_are_rejected_with_the_list(name):
 
 def test_parameters_of_pulses_are_checked():
     with pytest.raises(rocking.InvalidArgumentError, match="cycles"):
-        get_pulse("sine", cycles=2.0)
+        rocking.pulse("sine", cycles=2.0)
     with pytest.raises(rocking.InvalidArgumentError, match="sharpness"):
-        get_pulse("mavroeidis_papageorgiou", sharpness=2.0)
+        rocking.pulse("mavroeidis_papageorgiou", sharpness=2.0)
     for cycles in (1.0, 0.0, math.nan, 21.0):
         with pytest.raises(rocking.InvalidArgumentError, match="cycles"):
-            get_pulse("mavroeidis_papageorgiou", cycles=cycles)
+            rocking.pulse("mavroeidis_papageorgiou", cycles=cycles)
 
 
 @given(
@@ -187,7 +187,7 @@ def test_every_valid_cell_has_a_consistent_response(pulse, log_omega, log_slende
     assert (outcome == Outcome.OVERTURNED_AFTER_IMPACT) <= (impacts > 0)
     assert impacts >= 0
     assert (found.peak_mode == -1) == (math.isnan(peak) or peak == 0)
-    duration = (get_pulse(pulse).end - get_pulse(pulse).start) / 10**log_omega
+    duration = (rocking.pulse(pulse).end - rocking.pulse(pulse).start) / 10**log_omega
     assert 0 <= found.uplift_time <= duration
     if math.isfinite(found.first_impact_time):
         assert impacts >= 1

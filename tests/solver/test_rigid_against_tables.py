@@ -82,7 +82,7 @@ def test_table_errors_are_bounded_by_the_conditioning(truth, name, record_testsu
     # some hundred Taylor steps with rounding errors
     ulps = EPS + truth.true[f"{name}_per_ulp"]
     if name == "uplift_time":  # computed as a phase relative to a crest or to the middle of the pulse
-        start = np.array([max(abs(rocking.get_pulse(pulse).start), np.pi / 2) for pulse in truth.pulse])
+        start = np.array([max(abs(rocking.pulse(pulse).start), np.pi / 2) for pulse in truth.pulse])
         tiny = float(np.finfo(float).tiny)
         ulps = ulps + EPS * start / (truth.true["frequency_ratio"] * np.maximum(truth.true["uplift_time"], tiny))
     explained = np.nan_to_num(truth.relative_error(name) / ulps)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, get_pulse
+from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse
 from rocking._solver.arcs.arc import (
     MAX_EXPONENT,
     SERIES_RADIUS,
@@ -21,7 +21,7 @@ from rocking._solver.state import IMPACT, step_state
 from rocking._solver.taylor.flight import flight_by_steps
 from tests.kernels import first_flight, flight_from
 
-SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(get_pulse(name), SinusoidalPulse))
+SINUSOIDS = tuple(name for name in PULSE_NAMES if isinstance(rocking.pulse(name), SinusoidalPulse))
 
 
 @pytest.mark.parametrize("h", [0.0, 1e-300, 1e-9, 1e-3, 0.3, 0.5 - 1e-16, 0.5, 0.7, 3.0, 40.0, 300.0])
@@ -61,7 +61,7 @@ def test_series_is_the_solution_in_many_digits(name):
     omega, slenderness = 2.3, 0.4
     flight = first_flight(name, slenderness, omega)
     phase, sign = float(flight["phase"]), float(flight["sign"])
-    terms = get_pulse(name).terms
+    terms = rocking.pulse(name).terms
     with mpmath.workprec(120):
 
         def pulled(s):

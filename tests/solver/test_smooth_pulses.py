@@ -24,7 +24,7 @@ from rocking.closed_form import margin_without_impact
 from tests.excitation.test_smooth_pulse import CHIRP, Given
 
 SINE = Given("own_sine", 0.0, 2.0 * math.pi, np.sin)
-RICKER = Given("own_ricker", *(s * 4.0 * math.pi for s in (-1, 1)), rocking.get_pulse("ricker").shape)
+RICKER = Given("own_ricker", *(s * 4.0 * math.pi for s in (-1, 1)), rocking.pulse("ricker").shape)
 GROUPS = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
 
 
@@ -110,7 +110,7 @@ def test_smooth_pulses_in_every_use():
     peak = float(rocking.peak_response(CHIRP, **GROUPS, alpha=0.2).peak_rotation)
     assert float(abs(rigid.rotation).max()) == pytest.approx(peak, rel=1e-3)
     block = {"frequency_ratio": 3.0, "restitution": 0.85}
-    threshold = 1.0 / rocking.critical_amplitude(CHIRP, **block).amplitude[0]
+    threshold = 1.0 / rocking.thresholds(CHIRP, **block).amplitude[0]
     sides = rocking.peak_response(CHIRP, **block, slenderness=threshold * np.array([1 + 1e-9, 1 - 1e-9]))
     assert sides.overturned.tolist() == [False, True]
     assert rocking.overturning_boundary(CHIRP, restitution=0.85, nodes=31).sizes["curve"] > 0
@@ -129,7 +129,7 @@ def test_margin_without_impact_is_that_of_the_named_pulse():
 def test_registered_by_name():
     found = rocking.peak_response("chirp", **GROUPS)
     assert float(found.peak_rotation) == float(rocking.peak_response(CHIRP, **GROUPS).peak_rotation)
-    block = rocking.Block(half_width=0.2, half_height=0.8)
+    block = rocking.Block(width=0.4, height=1.6)
     assert block.response("-chirp", peak_acceleration="0.4 g", period="0.6 s").peak_rotation > 0.0
     groups = [f"--{name.replace('_', '-')}={value}" for name, value in GROUPS.items()]
     printed = CliRunner().invoke(app, ["response", "--pulse", "chirp", "--json", *groups])

@@ -15,7 +15,7 @@ from rocking._solver.stages.remainder import solve_remainder
 from rocking._solver.stages.state import BLOCK_SIZE, stage_state
 from rocking._solver.state import RESPONSE_RECORD, pulse_state
 
-SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.get_pulse(name).series.has_exact_arcs]
+SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.pulse(name).series.has_exact_arcs]
 SIGNED = [sign + name for name in SINUSOIDS for sign in ("", "-")]
 NUMBERS = ("uplift_time", "first_impact_time", "first_impact_velocity", "peak_rotation")
 STATE = ("end_rotation", "end_velocity")
@@ -87,14 +87,14 @@ def assert_agree(stages, loop, s, eta, state=STATE):
 
 @pytest.mark.parametrize("name", SIGNED)
 def test_stages_and_event_loop_agree(name):
-    pulse = rocking.get_pulse(name)
+    pulse = rocking.pulse(name)
     s, w, eta = cells(4000, SIGNED.index(name))
     assert_agree(by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta), s, eta)
 
 
 @pytest.mark.parametrize("name", ["sine", "-c1", "mavroeidis_papageorgiou", "ricker"])
 def test_a_cell_does_not_depend_on_its_company(name):
-    pulse = rocking.get_pulse(name)
+    pulse = rocking.pulse(name)
     s, w, eta = cells(BLOCK_SIZE + 300, 5)
     together = by_stages(pulse, s, w, eta)
     order = np.random.default_rng(6).permutation(s.size)
@@ -106,7 +106,7 @@ def test_a_cell_does_not_depend_on_its_company(name):
 @pytest.mark.parametrize("name", ["sine", "c2", "-mavroeidis_papageorgiou", "-ricker_antisymmetric"])
 def test_cells_that_differ_in_restitution_share_the_first_flight(name):
     """In blocks of every size, some of which end at the end of a block of the solver."""
-    pulse = rocking.get_pulse(name)
+    pulse = rocking.pulse(name)
     rng = np.random.default_rng(7)
     s, w, _ = cells(300, 8)
     counts = rng.integers(1, 40, 300)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking
-from rocking import PULSE_NAMES, get_pulse
+from rocking import PULSE_NAMES
 from rocking._excitation.pulses import SinusoidalPulse
 
 EVEN = (
@@ -57,7 +57,7 @@ def test_mirror_pulse_gives_the_mirrored_history(name, alpha):
 @pytest.mark.parametrize("by", [1.0, -20.0])
 def test_only_the_time_since_the_start_of_the_pulse_matters(name, by):
     question = random_cells(300, seed=8)
-    pulse = get_pulse(name)
+    pulse = rocking.pulse(name)
     one = rocking.peak_response(pulse, **question)
     other = rocking.peak_response(shifted(pulse, by), **question)
     np.testing.assert_array_equal(one.outcome, other.outcome)
@@ -74,7 +74,7 @@ def test_half_sine_is_a_window_of_the_cosine():
 
 
 def test_a_sinusoid_and_its_three_equal_parts_give_equal_responses():
-    sine = get_pulse("sine")
+    sine = rocking.pulse("sine")
     amplitude, multiple, shift = sine.terms[0]
     parts = tuple((share * amplitude, multiple, shift) for share in (0.5, 0.25, 0.25))
     split = SinusoidalPulse("split", sine.start, sine.end, sine.stationary, parts)
@@ -96,7 +96,7 @@ def test_blocks_of_equal_groups_respond_equally(half_diagonal, alpha, slendernes
     gravity = 9.80665
     peaks = []
     for size in (half_diagonal, half_diagonal * times):
-        block = rocking.Block(half_width=size * np.sin(alpha), half_height=size * np.cos(alpha))
+        block = rocking.Block(width=2 * (size * np.sin(alpha)), height=2 * (size * np.cos(alpha)))
         a_g = gravity * np.tan(alpha) / slenderness
         omega_g = frequency_ratio * block.frequency_parameter
         peaks.append(

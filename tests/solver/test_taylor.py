@@ -32,7 +32,7 @@ def step_from(
     precision: float = FULL_PRECISION,
     limit: float = np.inf,
 ):
-    steps = step_state(pulse_state(rocking.get_pulse(pulse)), precision)
+    steps = step_state(pulse_state(rocking.pulse(pulse)), precision)
     set_edge_lane(steps, lane, edge(alpha), 0)
     steps["omega"][lane] = omega
     for name, value in {"z0": z, "w0": w, "phase": phase, "strength": sign / 0.4, "limit": limit}.items():
@@ -66,7 +66,7 @@ def bend_of(coefficients: np.ndarray, h: float) -> float:
 def test_coefficients_satisfy_the_equation_of_motion(name, alpha):
     phase, omega, sign = 0.7, 1.9, -1.0
     steps = step_from(name, 0.2, 0.3, phase, omega, alpha, sign)
-    pulse = rocking.get_pulse(name)
+    pulse = rocking.pulse(name)
     for h in (0.0, 0.02, 0.06):
         z, slope = value_and_slope(steps["z"], 3, MAX_ORDER, h)
         assert z == pytest.approx(rotation(steps, h), rel=1e-14)
@@ -125,7 +125,7 @@ def test_the_error_of_a_step_follows_the_precision(name):
 
 def test_lanes_are_independent():
     alone = [step_from("c1", 0.2, 0.3, 0.7, 1.9, alpha, lane=lane) for lane, alpha in enumerate((0.0, 0.3, 1e-6))]
-    together = step_state(pulse_state(rocking.get_pulse("c1")))
+    together = step_state(pulse_state(rocking.pulse("c1")))
     for lane, one in enumerate(alone):
         set_edge_lane(together, lane, edge((0.0, 0.3, 1e-6)[lane]), 0)
         together["omega"][lane] = 1.9
@@ -140,7 +140,7 @@ def test_lanes_are_independent():
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-9, 0.3, 1.5])
 def test_acceleration_at_uplift_is_exactly_zero(alpha):
-    steps = step_state(pulse_state(rocking.get_pulse("sine")))
+    steps = step_state(pulse_state(rocking.pulse("sine")))
     set_edge_lane(steps, 0, edge(alpha), 0)
     steps["omega"][0] = 2.0
     steps["starts_at_uplift"][0], steps["phase"][0], steps["strength"][0], steps["limit"][0] = 1.0, 0.4, -2.5, 1.0

@@ -14,7 +14,7 @@ from rocking._solver.state import BODY_CELL, block_cells
 
 
 def under_pulse(name: str, cells: NDArray[np.void]) -> tuple[NDArray[np.void], NDArray[np.float64]]:
-    records, edges = solve_motion(rocking.get_pulse(name), cells, None, None)
+    records, edges = solve_motion(rocking.pulse(name), cells, None, None)
     return records, edges[:, :2]
 
 
@@ -31,7 +31,7 @@ def bodies(count: int, seed: int) -> NDArray[np.void]:
 @pytest.mark.parametrize("name", ["sine", "-cosine", "c1", "ricker"])
 def test_bodies_under_a_pulse_are_those_under_its_samples(name: str) -> None:
     """Errors fall with the square of the sample step; the outcomes of most bodies are those of coarse samples."""
-    cells, pulse = bodies(150, 7), rocking.get_pulse(name)
+    cells, pulse = bodies(150, 7), rocking.pulse(name)
     exact, sides = under_pulse(name, cells)
     errors = []
     for count in (2000, 4000):

@@ -27,7 +27,7 @@ def cubic_wavelet():
     return WaveletPulse("cubic", start, end, (), tuple(shape.coef / peak), spread)
 
 
-PULSES = {name: rocking.get_pulse(name) for name in NAMES} | {"cubic": cubic_wavelet()}
+PULSES = {name: rocking.pulse(name) for name in NAMES} | {"cubic": cubic_wavelet()}
 
 
 def frequencies(pulse, s, w):

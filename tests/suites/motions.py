@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from rocking import Block, Record, get_pulse
+import rocking
+from rocking import Block, Record
 
 BLOCK = Block.from_slenderness_angle(0.2, 1.0)
 
 
 def sampled(pulse: str, frequency_ratio: float, block: Block = BLOCK, samples: int = 2000, name: str = "") -> Record:
     """A pulse of unit peak [m/s2] with omega_g/p of a block."""
-    shape = get_pulse(pulse)
+    shape = rocking.pulse(pulse)
     phi = np.linspace(shape.start, shape.end, samples)
     step = (phi[1] - phi[0]) / (frequency_ratio * block.frequency_parameter)
     return Record(shape.acceleration(phi), step, "m/s2", name=name or f"{pulse} {frequency_ratio:.3g}")

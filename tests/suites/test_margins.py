@@ -12,11 +12,11 @@ from rocking.suites.summary import record_margins
 from tests.suites.motions import BLOCK, noise
 
 RECORDS = [noise(seed) for seed in range(3)]
-BLOCKS = [BLOCK, rocking.Block(0.4, 2.0)]
+BLOCKS = [BLOCK, rocking.Block(0.8, 4.0)]
 
 
 def outcomes_of(levels, measure="pga"):
-    suite = check_suite(RECORDS, BLOCKS, levels, measure, "housner")
+    suite = check_suite(RECORDS, BLOCKS, levels, measure, "momentum")
     return with_margins(suite_outcomes(suite), suite)
 
 
@@ -52,7 +52,7 @@ def test_the_largest_frequency_ratio_at_which_it_overturns_is_the_mildest():
     for k, n in np.argwhere(np.isfinite(found)):
         assert found[k, n] >= levels[overturned[k, :, n]].max()
         near = check_suite(
-            RECORDS[n], BLOCKS[k], found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5]), "frequency_ratio", "housner"
+            RECORDS[n], BLOCKS[k], found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5]), "frequency_ratio", "momentum"
         )
         assert suite_outcomes(near)["overturned"].values.ravel().tolist() == [1, 0]
         assert margins["overturning_scale"][k, n] == 1.0

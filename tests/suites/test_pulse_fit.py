@@ -13,7 +13,7 @@ from tests.suites.motions import BLOCK, noise, sampled
 
 def record_of(name, period, step=0.005, peak=2.0, lead=400, **parameters):
     """A record of a pulse of the catalogue after `lead` samples of rest."""
-    pulse = rocking.get_pulse(name, **parameters)
+    pulse = rocking.pulse(name, **parameters)
     phi = np.arange(pulse.start, pulse.end, 2 * math.pi * step / period)
     rest = np.zeros(lead)
     return rocking.Record(np.concatenate([rest, peak * pulse.acceleration(phi), rest]), step, "m/s2", name)
@@ -21,7 +21,7 @@ def record_of(name, period, step=0.005, peak=2.0, lead=400, **parameters):
 
 @pytest.mark.parametrize("name", ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"])
 def test_ricker_wavelets_are_recognised(name):
-    fit = rocking.fit_pulse(record_of(name, 1.2), blocks=[])
+    fit = rocking.suites.fit_pulse(record_of(name, 1.2), blocks=[])
     assert fit.pulse.name == name
     assert fit.period == pytest.approx(1.2, rel=1e-3)
     assert fit.peak_acceleration == pytest.approx(2.0, rel=1e-3)
@@ -31,7 +31,7 @@ def test_ricker_wavelets_are_recognised(name):
 @pytest.mark.parametrize(("cycles", "phase"), [(1.2, 0.5), (2.0, -2.0), (3.1, 1.4)])
 def test_pulse_of_a_record_overturns_as_the_record(cycles, phase):
     record = record_of("mavroeidis_papageorgiou", 0.9, cycles=cycles, phase=phase)
-    fit = rocking.fit_pulse(record, blocks=BLOCK)
+    fit = rocking.suites.fit_pulse(record, blocks=BLOCK)
     assert fit.velocity.cycles == pytest.approx(cycles, rel=1e-2)
     assert fit.velocity.phase == pytest.approx(phase, abs=0.02)
     assert fit.scale_ratio == pytest.approx([1.0], abs=0.01)
@@ -41,20 +41,20 @@ def test_pulse_of_a_record_overturns_as_the_record(cycles, phase):
 
 def test_fit_describes_a_record_and_gives_the_ratio_of_scales():
     record = noise(3)
-    fit = rocking.fit_pulse(record)
+    fit = rocking.suites.fit_pulse(record)
     assert 0.2 < fit.explained < 1.0
     assert [block.half_diagonal for block in fit.blocks] == pytest.approx([1.0, 4.0, 16.0])
     assert np.isfinite(fit.scale_ratio).all()
     assert "times the record" in repr(fit)
     for family in ("ricker", "ricker_antisymmetric", "mavroeidis_papageorgiou"):
-        assert rocking.fit_pulse(record, family=family, blocks=[]).explained <= fit.explained + 1e-12
+        assert rocking.suites.fit_pulse(record, family=family, blocks=[]).explained <= fit.explained + 1e-12
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_overturning_scale_is_where_the_outcome_changes(seed):
     record = noise(seed)
     scale = overturning_scale(record, BLOCK)
-    response = rocking.record_response(
+    response = rocking.peak_response(
         record,
         frequency_parameter=BLOCK.frequency_parameter,
         slenderness=BLOCK.uplift_acceleration / record.peak_acceleration / (scale * np.array([1.0 - 1e-5, 1.0])),
@@ -63,7 +63,7 @@ def test_overturning_scale_is_where_the_outcome_changes(seed):
     )
     assert response.overturned.tolist() == [False, True]
     uplift = BLOCK.uplift_acceleration / record.peak_acceleration
-    coarse = rocking.record_response(
+    coarse = rocking.peak_response(
         record,
         frequency_parameter=BLOCK.frequency_parameter,
         slenderness=uplift / np.geomspace(uplift, scale * (1 - 1e-5), 300),
@@ -75,16 +75,14 @@ def test_overturning_scale_is_where_the_outcome_changes(seed):
 
 def test_scale_of_a_sampled_pulse_is_its_critical_amplitude():
     record = sampled("sine", 3.0)
-    exact = rocking.critical_amplitude(
-        "sine", frequency_ratio=3.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha
-    )
+    exact = rocking.thresholds("sine", frequency_ratio=3.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha)
     found = overturning_scale(record, BLOCK) * record.peak_acceleration / BLOCK.uplift_acceleration
     assert found == pytest.approx(exact.amplitude[0], rel=1e-3)
 
 
 def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     record = sampled("sine", 4.0, samples=8000)
-    exact = rocking.critical_amplitude(
+    exact = rocking.thresholds(
         "sine", frequency_ratio=4.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha, highest_amplitude=10.0
     )
     found = scale_thresholds(record, BLOCK)
@@ -107,5 +105,5 @@ def test_below_uplift_there_is_no_threshold():
 def test_invalid_arguments_are_named(arguments, name):
     given = {"record": noise(0)} | arguments
     with pytest.raises(InvalidArgumentError) as error:
-        rocking.fit_pulse(given.pop("record"), **given)
+        rocking.suites.fit_pulse(given.pop("record"), **given)
     assert error.value.parameter == name

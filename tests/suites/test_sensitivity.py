@@ -19,7 +19,7 @@ def motions():
 
 @pytest.fixture(scope="module")
 def found(motions):
-    return rocking.suite_sensitivity(motions, BLOCK, intensity=LEVELS, restitution_step=0.1)
+    return rocking.suites.suite_sensitivity(motions, BLOCK, intensity=LEVELS, restitution_step=0.1)
 
 
 def direct(motion, level, *, resampled=False, change=0.0):
@@ -46,7 +46,7 @@ def test_outcomes_are_those_of_direct_calls(found, motions):
 
 def test_friction_demand_is_that_of_the_history(found, motions):
     for n, k in ((0, 0), (1, 3), (2, 1)):
-        history = rocking.record_history(
+        history = rocking.time_history(
             motions[k],
             frequency_parameter=BLOCK.frequency_parameter,
             slenderness=BLOCK.uplift_acceleration / LEVELS[n],
@@ -65,7 +65,7 @@ def test_coarse_samples_change_the_outcome_and_are_named(motions):
     fine = sampled("sine", 4.0, samples=2001, name="fine")
     coarse = rocking.Record(fine.acceleration[::200], 200 * fine.time_step, "m/s2", "coarse")
     levels = np.linspace(4.9, 5.3, 5) * BLOCK.uplift_acceleration
-    found = rocking.suite_sensitivity([fine, coarse, motions[0]], [BLOCK], intensity=levels)
+    found = rocking.suites.suite_sensitivity([fine, coarse, motions[0]], [BLOCK], intensity=levels)
     named = {name for text in found.records_changed_by_sampling.values.ravel().tolist() for name in text.split("; ")}
     assert "coarse" in named
     assert "fine" not in named
@@ -79,25 +79,25 @@ def test_coarse_samples_change_the_outcome_and_are_named(motions):
 def test_levels_of_the_frequency_ratio_change_the_size(motions):
     levels = [1.0, 4.0]
     loud = [rocking.Record(3.0 * motion.acceleration, motion.time_step, "m/s2", motion.name) for motion in motions[:2]]
-    found = rocking.suite_sensitivity(loud, BLOCK, intensity=levels, measure="frequency_ratio")
+    found = rocking.suites.suite_sensitivity(loud, BLOCK, intensity=levels, measure="frequency_ratio")
     for n, level in enumerate(levels):
         for k, motion in enumerate(loud):
             p = 2.0 * np.pi / motion.mean_period / level
             body = rocking.Block.from_slenderness_angle(BLOCK.alpha, 0.75 * BLOCK.gravity / p**2)
-            single = rocking.suite_sensitivity(motion, body, intensity=motion.peak_acceleration)
+            single = rocking.suites.suite_sensitivity(motion, body, intensity=motion.peak_acceleration)
             np.testing.assert_allclose(found.friction_demand[n, k], single.friction_demand[0, 0], rtol=1e-9)
             assert found.overturned_resampled[n, k] == single.overturned_resampled[0, 0]
 
 
 def test_restitution_stays_between_0_and_1(motions):
-    found = rocking.suite_sensitivity(motions[0], BLOCK, intensity=[3.0], restitution=0.98, restitution_step=0.5)
+    found = rocking.suites.suite_sensitivity(motions[0], BLOCK, intensity=[3.0], restitution=0.98, restitution_step=0.5)
     assert float(found.restitution_low) == pytest.approx(0.48)
     assert float(found.restitution_high) == 1.0
 
 
 def test_forces_of_equivalent_blocks_are_not_known(motions):
     frame = rocking.EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5)
-    found = rocking.suite_sensitivity(motions[0], frame, intensity=[3.0])
+    found = rocking.suites.suite_sensitivity(motions[0], frame, intensity=[3.0])
     assert np.isnan(found.friction_demand.item())
     assert found.overturned.item() == rocking.fragility(motions[0], frame, intensity=[3.0]).overturned.item()
 
@@ -108,8 +108,8 @@ def test_table_has_a_row_for_each_block_and_level(found, motions):
     assert rows["changed_resampled"] == found.changed_resampled.values.tolist()
     assert set(rows["restitution_low"]) == {float(found.restitution_low)}
     assert "demand" not in rows
-    both = rocking.suite_sensitivity(motions[:1], [BLOCK, rocking.Block(0.25, 1.0)], intensity=LEVELS[:1])
-    assert sensitivity_table(both)["half_width"] == both.half_width.values.tolist()
+    both = rocking.suites.suite_sensitivity(motions[:1], [BLOCK, rocking.Block(0.5, 2.0)], intensity=LEVELS[:1])
+    assert sensitivity_table(both)["width"] == both.width.values.tolist()
 
 
 def test_every_variable_has_unit_and_meaning(found):
@@ -129,7 +129,7 @@ def test_every_variable_has_unit_and_meaning(found):
 )
 def test_invalid_arguments_are_named(motions, arguments, name):
     with pytest.raises(InvalidArgumentError) as error:
-        rocking.suite_sensitivity(motions[:1], BLOCK, **({"intensity": [3.0]} | arguments))
+        rocking.suites.suite_sensitivity(motions[:1], BLOCK, **({"intensity": [3.0]} | arguments))
     assert error.value.parameter == name
 
 
@@ -137,4 +137,4 @@ def test_work_can_be_stopped(motions):
     stop = StopFlag()
     stop.set()
     with pytest.raises(StoppedError):
-        rocking.suite_sensitivity(motions, BLOCK, intensity=LEVELS, stop=stop)
+        rocking.suites.suite_sensitivity(motions, BLOCK, intensity=LEVELS, stop=stop)

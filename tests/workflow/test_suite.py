@@ -59,7 +59,7 @@ def test_the_shorter_configuration_of_the_guide_is_enough(tmp_path: Path) -> Non
     (tmp_path / "motions").symlink_to(PROJECT / "workflow/motions")
     suite = suite_configuration(given, tmp_path)
     assert len(suite.motions()) == len(RECORDS)
-    assert (suite.restitution, suite.demand, suite.confidence) == ("housner", ("overturning",), 0.95)
+    assert (suite.restitution, suite.demand, suite.confidence) == ("momentum", ("overturning",), 0.95)
     assert (suite.map, suite.hazard, suite.sensitivity) == (None, None, None)
     described = set(re.findall(r"`suite\.([\w.]+)`", page))
     sections = {name.partition(".")[0] for name in described}
@@ -79,7 +79,7 @@ def test_products_are_those_of_the_library(products: Path) -> None:
         np.testing.assert_array_equal(fragility[name], direct[name])
     assert outcomes.record.values.tolist() == list(RECORDS)
     assert outcomes.digest.values.tolist() == [motion.digest for motion in suite.motions()]
-    rate = rocking.annual_rate(direct, suite.hazard)
+    rate = rocking.suites.annual_rate(direct, suite.hazard)
     np.testing.assert_allclose(fragility.annual_rate, rate.annual_rate)
 
 
@@ -88,7 +88,7 @@ def test_friction_restitution_and_sampling_are_those_of_the_library(products: Pa
     asked = suite.sensitivity
     assert asked is not None
     found = read_dataset(products / "sensitivity.nc")
-    direct = rocking.suite_sensitivity(
+    direct = rocking.suites.suite_sensitivity(
         suite.motions()[2:], suite.blocks[1], intensity=asked.intensity, restitution_step=asked.restitution_step
     )
     for name in (
@@ -104,7 +104,7 @@ def test_friction_restitution_and_sampling_are_those_of_the_library(products: Pa
     assert found.attrs["confidence"] == suite.confidence
     rows = (products / "sensitivity.csv").read_text().splitlines()
     assert len(rows) == 1 + len(suite.blocks) * asked.intensity.size
-    assert rows[0].startswith("half_width,half_height,intensity,restitution,restitution_low")
+    assert rows[0].startswith("width,height,intensity,restitution,restitution_low")
 
 
 def test_map_is_that_of_single_blocks(products: Path) -> None:
@@ -121,7 +121,7 @@ def test_map_is_that_of_single_blocks(products: Path) -> None:
 def test_table_has_a_row_for_each_limit_state_block_and_level(products: Path) -> None:
     lines = (products / "fragility.csv").read_text().splitlines()
     assert len(lines) == 1 + 3 * 3 * 36
-    assert lines[0].startswith("demand,half_width,half_height,intensity,exceedances,fraction")
+    assert lines[0].startswith("demand,width,height,intensity,exceedances,fraction")
     assert {line.split(",")[0] for line in lines[1:]} == {"overturning", "alpha", "0.5 alpha"}
 
 
@@ -151,9 +151,9 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run
 def test_sizes_of_blocks_are_half_or_whole_in_metres_or_with_units() -> None:
     configuration = yaml.safe_load(CONFIGURATION.read_text())["suite"]
     same = [
-        {"half_width": 0.25, "half_height": 1.0},
+        {"width": 0.5, "height": 2.0},
         {"width": "50cm", "height": 2.0},
-        {"width": 0.5, "half_height": "1 m"},
+        {"width": 0.5, "height": "2 m"},
     ]
     found = suite_configuration(configuration | {"blocks": same}, CONFIGURATION.parent).blocks
     assert len(found) == 3
@@ -169,11 +169,11 @@ def test_sizes_of_blocks_are_half_or_whole_in_metres_or_with_units() -> None:
         ("records/pattern", "../*.csv", "suite.records.pattern = '../*.csv'"),
         ("records/unit", "feet", "suite.records.unit = 'feet': allowed: one of m/s2"),
         ("records/baseline_order", 1.5, "suite.records.baseline_order = 1.5: allowed: null, or an integer"),
-        ("blocks", [], "suite.blocks = []: allowed: a list of half_width and half_height"),
-        ("blocks", [{"half_width": 0.2}], "suite.blocks[0] = 'no half_height'"),
+        ("blocks", [], "suite.blocks = []: allowed: a list of width and height"),
+        ("blocks", [{"width": 0.4}], "suite.blocks[0] = 'no height'"),
         (
             "blocks",
-            [{"half_width": 0.2, "half_height": -1.0}],
+            [{"width": 0.4, "height": -2.0}],
             "suite.blocks[0].half_height = -1.0: allowed: (0, inf) [m]",
         ),
         ("blocks", [{"width": "20", "height": 1.0}], "suite.blocks[0].width = '20': allowed: missing unit: write 20m"),

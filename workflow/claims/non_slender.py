@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from rocking._boundary.amplitude import Thresholds, critical_amplitude
+from rocking._boundary.amplitude import Thresholds, thresholds
 from rocking._model.block import STANDARD_GRAVITY, Block
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
@@ -65,9 +65,7 @@ def threshold_cases(restitution: float) -> list[Case]:
 
 
 def _thresholds(pulse: str, omega: float, restitution: float, angle: float) -> Thresholds:
-    return critical_amplitude(
-        pulse, frequency_ratio=omega, restitution=restitution, alpha=float(np.radians(angle)) or None
-    )
+    return thresholds(pulse, frequency_ratio=omega, restitution=restitution, alpha=float(np.radians(angle)) or None)
 
 
 def _change(case: Case, angle: float) -> float:
@@ -213,7 +211,7 @@ def uplifts() -> tuple[Floats, Flags, Flags]:
 
     Decided by the moments of inertia and weight about the corner, h m a_g and b m g, of blocks of given sides.
     """
-    blocks = [Block(float(b), 1.0) for b in np.linspace(0.02, 5.0, 80)]
+    blocks = [Block(2 * float(b), 2.0) for b in np.linspace(0.02, 5.0, 80)]
     angles = np.array([block.alpha for block in blocks])
     below, above = (
         STANDARD_GRAVITY * np.tan(angles) * (1 + step) * [block.half_height for block in blocks]

@@ -174,14 +174,14 @@ def larger_slenderness(found: Mapping[str, Spread]) -> list[Claim]:
     ]
 
 
-def twofold_effect(one_restitution: xr.Dataset, housner: xr.Dataset) -> list[Claim]:
+def twofold_effect(one_restitution: xr.Dataset, momentum: xr.Dataset) -> list[Claim]:
     """The variation with alpha in the groups of (6.1), at one restitution and with that of (2.4)."""
     pulses = one_restitution.attrs["pulse_names"].split()
     median = {
         name: [float(np.nanmedian(figure.spread[k])) for k in range(len(pulses))]
-        for name, figure in (("one", one_restitution), ("housner", housner))
+        for name, figure in (("one", one_restitution), ("momentum", momentum))
     }
-    met = [fixed <= SMALL < varied for fixed, varied in zip(median["one"], median["housner"], strict=True)]
+    met = [fixed <= SMALL < varied for fixed, varied in zip(median["one"], median["momentum"], strict=True)]
     angle, omega = float(np.degrees(one_restitution.alpha.max())), one_restitution.frequency_ratio.values
     return [
         Claim(
@@ -197,7 +197,7 @@ def twofold_effect(one_restitution: xr.Dataset, housner: xr.Dataset) -> list[Cla
             f"{omega[0]:g} to {omega[-1]:g}; share of the pulses",
             found="; ".join(
                 f"{pulse}: {percent(fixed)} with one restitution, {percent(varied)} with (2.4)"
-                for pulse, fixed, varied in zip(pulses, median["one"], median["housner"], strict=True)
+                for pulse, fixed, varied in zip(pulses, median["one"], median["momentum"], strict=True)
             ),
             verdict=verdict_of(float(np.mean(met))),
             numbers={

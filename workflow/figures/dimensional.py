@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from rocking._excitation.pulses import get_pulse
+from rocking._excitation.pulses import as_pulse
 from rocking._model.block import STANDARD_GRAVITY, Block
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ class DimensionalProblem:
     block: Block
     pulse: str
     peak_acceleration: float  # a_g [m/s2]
-    pulse_period: float  # T_p [s]
+    period: float  # T_p [s]
     restitution: float
     rigid: bool = False  # (2.2), else its small-angle form (3.2)
 
@@ -51,13 +51,13 @@ class DimensionalProblem:
     @property
     def pulse_end(self) -> float:
         """Duration of the pulse [s]."""
-        shape = get_pulse(self.pulse)
-        return (shape.end - shape.start) / (2 * np.pi) * self.pulse_period
+        shape = as_pulse(self.pulse)
+        return (shape.end - shape.start) / (2 * np.pi) * self.period
 
     def ground_acceleration(self, time: Array | float) -> Array:
         """a_g f(omega_g t) [m/s2]; time [s] since the start of the pulse."""
-        shape = get_pulse(self.pulse)
-        phi = shape.start + 2 * np.pi / self.pulse_period * np.asarray(time)
+        shape = as_pulse(self.pulse)
+        phi = shape.start + 2 * np.pi / self.period * np.asarray(time)
         return self.peak_acceleration * shape.acceleration(phi)
 
     def history(self, time: Array) -> tuple[Array, Array]:
@@ -90,7 +90,7 @@ class DimensionalProblem:
             events = [_impact(sign, start), *([_overturned] if self.rigid else [])]
             arc = solve_ivp(
                 self._rate, (start, stop), state, args=(sign,), method="DOP853", rtol=1e-11, atol=1e-14,
-                max_step=self.pulse_period / 50 if start < self.pulse_end else np.inf, events=events, **options,
+                max_step=self.period / 50 if start < self.pulse_end else np.inf, events=events, **options,
             )  # fmt: skip
             yield arc
             start, state = arc.t[-1], arc.y[:, -1].copy()

@@ -8,38 +8,38 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking._excitation.pulses import get_pulse
+from rocking._excitation.pulses import as_pulse
 from rocking._model.block import Block
 from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.style import panel_letters, plotted
 
 
 def data(
-    *, pulse: str, half_width: float, half_height: float, rotation: float, peak_acceleration: float, pulse_period: float
+    *, pulse: str, width: float, height: float, rotation: float, peak_acceleration: float, period: float
 ) -> xr.Dataset:
     """Corners of the block at rest and rotated about its right corner, and the ground acceleration.
 
     Parameters
     ----------
     pulse : str
-    half_width, half_height : float
+    width, height : float
         b and h [m].
     rotation : float
         theta/alpha of the rotated block [-].
     peak_acceleration : float
         a_g [g].
-    pulse_period : float
+    period : float
         T_p [s].
     """
-    block = Block(half_width, half_height)
+    block = Block(width, height)
     theta = rotation * block.alpha
-    b, h = half_width, half_height
+    b, h = 0.5 * width, 0.5 * height
     corners = np.array([[b, 0], [b, 2 * h], [-b, 2 * h], [-b, 0], [0, h]])  # the last one is the centre of mass
     turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])  # clockwise, about (b, 0)
     rotated = (corners - [b, 0]) @ turn.T + [b, 0]
-    shape = get_pulse(pulse)
-    time = np.linspace(0.0, (shape.end - shape.start) / (2 * np.pi) * pulse_period, 201)
-    acceleration = peak_acceleration * shape.acceleration(shape.start + 2 * np.pi * time / pulse_period)
+    shape = as_pulse(pulse)
+    time = np.linspace(0.0, (shape.end - shape.start) / (2 * np.pi) * period, 201)
+    acceleration = peak_acceleration * shape.acceleration(shape.start + 2 * np.pi * time / period)
     return xr.Dataset(
         {
             "at_rest": plotted(("corner", "axis"), corners, "corners and centre of the block at rest", units="m"),
@@ -50,13 +50,13 @@ def data(
         attrs={
             "title": "Geometry of the rigid rocking block and the pulse",
             "summary": "Block of the given half width and half height, drawn to scale, and the pulse under it.",
-            "half_width": b,
-            "half_height": h,
+            "width": width,
+            "height": height,
             "alpha": block.alpha,
             "rotation": theta,
             "pulse_name": pulse,
             "peak_acceleration": peak_acceleration,
-            "pulse_period": pulse_period,
+            "period": period,
         },
     )
 
@@ -73,7 +73,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 def _draw_block(ax: Axes, data: xr.Dataset) -> None:
     rest, turned = data.at_rest.values, data.rotated.values
-    b, h = data.attrs["half_width"], data.attrs["half_height"]
+    b, h = 0.5 * data.attrs["width"], 0.5 * data.attrs["height"]
     pivot, centre = turned[0], turned[4]
     R = np.hypot(b, h)
     ax.set_aspect("equal")
@@ -122,7 +122,7 @@ def _label_on_arc(ax: Axes, centre: np.ndarray, radius: float, angle: float, tex
 
 
 def _draw_pulse(ax: Axes, data: xr.Dataset) -> None:
-    T, a = data.attrs["pulse_period"], data.attrs["peak_acceleration"]
+    T, a = data.attrs["period"], data.attrs["peak_acceleration"]
     ax.plot(data.time, data.ground_acceleration, color=VERMILION)
     ax.axhline(0, color="black", linewidth=0.6)
     uplift = np.tan(data.attrs["alpha"])

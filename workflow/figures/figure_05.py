@@ -58,7 +58,7 @@ def data(
             "half_diagonal": each(half_diagonal, "half diagonal R", "m"),
             "frequency_parameter": each([b.frequency_parameter for b in blocks], "frequency parameter p", "rad s-1"),
             "peak_acceleration": each([s.peak_acceleration for s in problems], "a_g", "m s-2"),
-            "pulse_period": each([s.pulse_period for s in problems], "T_p", "s"),
+            "period": each([s.period for s in problems], "T_p", "s"),
         },
         coords={"time": plotted(dims, times, "time since the start of the pulse", units="s")},
         attrs={
@@ -97,5 +97,5 @@ def _describe(data: xr.Dataset, k: int) -> str:
     one = data.isel(block=k)
     return (
         rf"$\alpha={np.degrees(one.alpha):.1f}$°, $R={float(one.half_diagonal):g}$ m, "
-        rf"$a_g={float(one.peak_acceleration) / STANDARD_GRAVITY:.2f}\,g$, $T_p={float(one.pulse_period):.2f}$ s"
+        rf"$a_g={float(one.peak_acceleration) / STANDARD_GRAVITY:.2f}\,g$, $T_p={float(one.period):.2f}$ s"
     )

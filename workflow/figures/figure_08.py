@@ -38,7 +38,7 @@ def data(
     frequency_ratio : mapping
         low and high [-] of what is shown.
     """
-    blocks = [Block(pulse, s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
+    blocks = [Block(2 * pulse, 2 * s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
     # theta/alpha times 1/a is g theta/a_g
     curves = xr.Dataset(curve_variables(blocks, frequency_ratio, [block.slenderness for block in blocks]))
     names = ("pulse", "slenderness", "restitution")

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from rocking._datasets.cube import read_dataset
 from rocking._model.block import STANDARD_GRAVITY, Block
 from rocking._solver.peak_response import peak_response
@@ -55,7 +55,7 @@ def data(
     alpha_deg: float,
     half_diagonal: Sequence[float],
     restitution: float,
-    pulse_period: Sequence[float],
+    period: Sequence[float],
 ) -> xr.Dataset:
     """The traced boundary, thresholds of each block in SI units, and where blocks pass alpha and survive.
 
@@ -69,7 +69,7 @@ def data(
         R [m] of each block.
     restitution : float
         eta [-].
-    pulse_period : sequence
+    period : sequence
         T_p [s] at which thresholds are found and checked.
     """
     alpha = float(np.radians(alpha_deg))
@@ -79,8 +79,8 @@ def data(
         {"pulse": i, "block": j, "period": period, **row}
         for i, pulse in enumerate(pulses)
         for j, block in enumerate(blocks)
-        for period in pulse_period
-        for row in thresholds(pulse, block, period, restitution)
+        for period in period
+        for row in block_thresholds(pulse, block, period, restitution)
     ]
     frequency_ratio = np.geomspace(FEWEST, max(WIDEST.values()), NODES)
     safe = np.array([upper_safe_region(pulse, frequency_ratio, restitution, alpha) for pulse in pulses])
@@ -162,21 +162,21 @@ def upper_safe_region(pulse: str, frequency_ratio: Floats, restitution: float, a
     return ends[0], ends[1]
 
 
-def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float) -> Iterator[dict[str, Any]]:
+def block_thresholds(pulse: str, block: Block, period: float, restitution: float) -> Iterator[dict[str, Any]]:
     """Peak accelerations at which the outcome of a block changes, from the groups, and outcomes integrated in SI units.
 
     Parameters
     ----------
     pulse : str
     block : Block
-    pulse_period : float
+    period : float
         T_p [s].
     restitution : float
         eta [-].
     """
-    p, frequency = block.frequency_parameter, 2 * np.pi / pulse_period
+    p, frequency = block.frequency_parameter, 2 * np.pi / period
     groups = groups_of(Problem(block.alpha, p, block.uplift_acceleration, frequency), GroupSet.RIGID)  # (5.3)
-    found = critical_amplitude(
+    found = thresholds(
         pulse,
         frequency_ratio=float(groups.frequency_ratio),
         restitution=restitution,
@@ -189,9 +189,7 @@ def thresholds(pulse: str, block: Block, pulse_period: float, restitution: float
         np.atleast_1d(problem.peak_acceleration), found.amplitude, found.overturns_above, found.impacts, strict=True
     ):
         below, beyond = (
-            DimensionalProblem(
-                block, pulse, acceleration * (1 + step), pulse_period, restitution, rigid=True
-            ).overturns()
+            DimensionalProblem(block, pulse, acceleration * (1 + step), period, restitution, rigid=True).overturns()
             for step in (-STEP, STEP)
         )
         yield {

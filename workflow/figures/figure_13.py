@@ -40,11 +40,11 @@ def data(
         low and high [-] of what is shown.
     """
     angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
-    blocks = [Block(pulse, s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]
+    blocks = [Block(2 * pulse, 2 * s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]
     scale = [block.slenderness * float(scale_of(np.array(block.alpha))) for block in blocks]
     curves = xr.Dataset(curve_variables(blocks, frequency_ratio, scale))
     slender = [
-        curve_slenderness * peaks(Block(PULSES[pulse], curve_slenderness, restitution), omega)
+        curve_slenderness * peaks(Block(2 * PULSES[pulse], 2 * curve_slenderness, restitution), omega)
         for pulse, curve_slenderness, omega in zip(
             curves.curve_pulse.values,
             curves.curve_slenderness.values,

@@ -97,7 +97,7 @@ def spread_of(peaks: np.ndarray) -> np.ndarray:
 
 def housner_restitutions(angles: np.ndarray) -> np.ndarray:
     """Restitution of rectangular blocks (2.4) [-]; 1 in the slender limit, angle 0."""
-    return np.array([Block.from_slenderness_angle(a, 1.0).housner_restitution if a else 1.0 for a in angles.tolist()])
+    return np.array([Block.from_slenderness_angle(a, 1.0).momentum_restitution if a else 1.0 for a in angles.tolist()])
 
 
 def _peaks(pulse: str, s: np.ndarray, omega: np.ndarray, eta: float, alpha: float) -> np.ndarray:

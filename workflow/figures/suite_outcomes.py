@@ -34,7 +34,7 @@ def data(*, outcomes: Path) -> xr.Dataset:
     order = np.argsort(first, kind="stable")
     about = {"flag_values": np.arange(len(CLASSES), dtype=np.int8), "flag_meanings": " ".join(map(_flag, CLASSES))}
     variable = plotted(("block", "intensity", "record"), code, "class of the outcome", **about)
-    sizes = given[["half_width", "half_height", "intensity", "record"]].reset_coords(["half_width", "half_height"])
+    sizes = given[["width", "height", "intensity", "record"]].reset_coords(["width", "height"])
     return (
         sizes.assign(outcome_class=variable)
         .isel(record=order)
@@ -79,7 +79,7 @@ def _panel(ax: Axes, data: xr.Dataset, colours: ListedColormap, norm: BoundaryNo
 
 def block_title(data: xr.Dataset, k: int) -> str:
     """Width and height of a block in metres."""
-    return f"{2 * float(data.half_width[k]):g} m x {2 * float(data.half_height[k]):g} m"
+    return f"{float(data.width[k]):g} m x {float(data.height[k]):g} m"
 
 
 def intensity_label(data: xr.Dataset) -> str:

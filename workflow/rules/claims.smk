@@ -11,7 +11,7 @@ rule claims:
         similar_blocks="results/figures/figure-09.nc",
         histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
         master="results/figures/figure-master-spectra.nc",
-        housner="results/figures/figure-master-housner.nc",
+        momentum="results/figures/figure-master-housner.nc",
     output:
         **CLAIM_FILES,
         record=record_of("claims", CLAIMS_PROVENANCE),

@@ -26,7 +26,7 @@ def main(
     similar_blocks: Path,
     histories: Sequence[Path],
     master: Path,
-    housner: Path,
+    momentum: Path,
     restitution: Sequence[float],
     table: Path,
     text: Path,
@@ -44,7 +44,7 @@ def main(
         Plotted data of figure 9.
     histories : sequence of paths
         Plotted data of figures 11 and 12.
-    master, housner : path
+    master, momentum : path
         Plotted data of figure-master-spectra and figure-master-housner.
     restitution : sequence
         eta [-] at which the closed forms are compared with each other.
@@ -65,7 +65,7 @@ def main(
         *non_slender.tip_of_the_loop(non_slender.tips(eta)),
         *non_slender.convergence(non_slender.distances_from_closed_forms(eta)),
         *section_6(pulses, eta, histories),
-        *small_rotations.twofold_effect(read_dataset(master), read_dataset(housner)),
+        *small_rotations.twofold_effect(read_dataset(master), read_dataset(momentum)),
     ]
     content = {
         "claims": [claim.record() for claim in claims],

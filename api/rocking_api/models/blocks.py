@@ -15,10 +15,10 @@ from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD, PointResponse
 
 RANGES = {
-    "half_width": (1e-4, 1e4, "m"),
-    "half_height": (1e-4, 1e4, "m"),
+    "width": (1e-4, 1e4, "m"),
+    "height": (1e-4, 1e4, "m"),
     "peak_acceleration": (1e-6, 1e6, "m/s2"),
-    "pulse_period": (1e-4, 1e4, "s"),
+    "period": (1e-4, 1e4, "s"),
     "gravity": (1e-3, 1e3, "m/s2"),
 }
 """Ranges of the service, far outside of practice, within which all numbers are representable as doubles."""
@@ -30,15 +30,15 @@ def quantity(name: str, text: str, **more: Any) -> Any:
     return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
 
 
-def _housner_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
+def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
     """One error message for both alternatives."""
     try:
         return read(value)
     except ValidationError:
-        raise PydanticCustomError("restitution", "housner, or a number in [0, 1] [-]") from None
+        raise PydanticCustomError("restitution", "momentum, or a number in [0, 1] [-]") from None
 
 
-HousnerOrNumber = Annotated[Literal["housner"] | float, WrapValidator(_housner_or_number)]
+MomentumOrNumber = Annotated[Literal["momentum"] | float, WrapValidator(_momentum_or_number)]
 
 
 def check_block_value(name: str, value: Any) -> None:
@@ -52,7 +52,7 @@ def check_block_value(name: str, value: Any) -> None:
     if name in RANGES:
         low, high, unit = RANGES[name]
         in_range(name, value, low, high, unit=unit)
-    elif value != "housner":
+    elif value != "momentum":
         check_value(name, value)
 
 
@@ -60,13 +60,15 @@ class BlockParams(Params):
     """A block and a pulse in SI units."""
 
     pulse: PulseName
-    half_width: float = quantity("half_width", "b; the base is 2b wide", examples=[0.2])
-    half_height: float = quantity("half_height", "h", examples=[0.8])
+    width: float = quantity("width", "width 2b of the base", examples=[0.4])
+    height: float = quantity("height", "height 2h", examples=[1.6])
     peak_acceleration: float = quantity("peak_acceleration", "a_g", examples=[4.0])
-    pulse_period: float = quantity(
-        "pulse_period", "T_p = 2 pi/omega_g; a half sine or rectangular pulse lasts half of it", examples=[0.5]
+    period: float = quantity(
+        "period", "T_p = 2 pi/omega_g; a half sine or rectangular pulse lasts half of it", examples=[0.5]
     )
-    restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
+    restitution: MomentumOrNumber = Field(
+        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
+    )
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
     tolerance: Tolerance = 1e-4
@@ -80,8 +82,8 @@ class BlocksParams(Params):
     """What many blocks in a body have in common."""
 
     pulse: PulseName | None = Field(None, description="pulse, required unless a JSON body holds it", examples=["sine"])
-    restitution: HousnerOrNumber = Field(
-        "housner", description="eta [-] of the blocks that state none, or housner: (2.4), 0 where that is negative"
+    restitution: MomentumOrNumber = Field(
+        "momentum", description="eta [-] of the blocks that state none, or momentum: (2.4), 0 where that is negative"
     )
     format: TableFormat = None
 
@@ -94,11 +96,11 @@ class BlockRow(Params):
     """One of many blocks in a JSON body, in SI units."""
 
     name: str = Field("", description="label", max_length=200)
-    half_width: float = quantity("half_width", "b; the base is 2b wide")
-    half_height: float = quantity("half_height", "h")
+    width: float = quantity("width", "width 2b of the base")
+    height: float = quantity("height", "height 2h")
     peak_acceleration: float = quantity("peak_acceleration", "a_g")
-    pulse_period: float = quantity("pulse_period", "T_p = 2 pi/omega_g")
-    restitution: HousnerOrNumber | None = Field(None, description="eta [-], or housner; absent: that of the query")
+    period: float = quantity("period", "T_p = 2 pi/omega_g")
+    restitution: MomentumOrNumber | None = Field(None, description="eta [-], or momentum; absent: that of the query")
 
 
 class BlockRows(Params):
@@ -113,8 +115,8 @@ class BlocksResponse(BaseModel):
 
     query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
     name: list[str] | None = Field(None, description="labels; null without any")
-    half_width: list[float] = Field(description="b [m]")
-    half_height: list[float] = Field(description="h [m]")
+    width: list[float] = Field(description="width 2b [m]")
+    height: list[float] = Field(description="height 2h [m]")
     peak_acceleration: list[float] = Field(description="a_g [m/s2]")
     period: list[float] = Field(description="T_p [s]")
     uplift_acceleration: list[float] = Field(description="smallest ground acceleration that starts rocking [m/s2]")
@@ -145,7 +147,7 @@ class Threshold(BaseModel):
 class PeriodThreshold(BaseModel):
     """A period at which the outcome changes, the amplitude being what it is."""
 
-    pulse_period: float = Field(description="T_p [s]")
+    period: float = Field(description="T_p [s]")
     overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
 
 
@@ -198,7 +200,7 @@ class BlockResponse(BaseModel):
     alpha_deg: float = Field(description="slenderness angle [deg]")
     half_diagonal: float = Field(description="R [m]")
     frequency_parameter: float = Field(description="p [rad/s]")
-    restitution: float = Field(description="eta [-]; with housner 0 where (2.4) is negative")
+    restitution: float = Field(description="eta [-]; with momentum 0 where (2.4) is negative")
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
     thresholds: list[Threshold] | None = Field(
         description="all amplitudes at which the outcome changes, this period, ascending; null if not found in time, "

@@ -43,7 +43,7 @@ class PulseSamples(BaseModel):
     time: Samples | None = Field(None, description="their times, ascending, in any unit; absent: equidistant")
     period: float | None = Field(
         None,
-        description="T_p in the unit of the times, which frequency_ratio and pulse_period refer to; absent: the time "
+        description="T_p in the unit of the times, which frequency_ratio and period refer to; absent: the time "
         "from the first sample to the last",
     )
     name: str = Field("sampled", description="name that the response repeats", min_length=1, max_length=200)

@@ -11,7 +11,7 @@ from rocking._base.errors import in_range, one_of
 from rocking._dimensional.record_groups import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
-from rocking_api.models.blocks import RANGES, HousnerOrNumber, check_block_value, quantity
+from rocking_api.models.blocks import RANGES, MomentumOrNumber, check_block_value, quantity
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, Motion
@@ -46,9 +46,11 @@ class RecordFileParams(Params):
     BOUNDS: ClassVar[dict[str, tuple[float, float]]] = {"baseline_order": (0, MAX_BASELINE_ORDER)}
     """Ranges of the parameters that are numbers without unit, both ends included [-]."""
 
-    half_width: float = quantity("half_width", "b; the base is 2b wide", examples=[0.2])
-    half_height: float = quantity("half_height", "h", examples=[0.8])
-    restitution: HousnerOrNumber = Field("housner", description="eta [-], or housner: (2.4), 0 where that is negative")
+    width: float = quantity("width", "width 2b of the base", examples=[0.4])
+    height: float = quantity("height", "height 2h", examples=[1.6])
+    restitution: MomentumOrNumber = Field(
+        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
+    )
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     name: str = Field("record", description="name of the file, for messages", max_length=200)
     unit: Unit = None
@@ -220,7 +222,7 @@ class RecordResponse(BaseModel):
     alpha_deg: float = Field(description="slenderness angle [deg]")
     half_diagonal: float = Field(description="R [m]")
     frequency_parameter: float = Field(description="p [rad/s]")
-    restitution: float = Field(description="eta [-]; with housner 0 where (2.4) is negative")
+    restitution: float = Field(description="eta [-]; with momentum 0 where (2.4) is negative")
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
     slenderness: float = Field(description="g tan(alpha)/PGA of the scaled record [-]")
     overturned_resampled: bool | None = Field(

@@ -152,8 +152,8 @@ class Sensitivity(BaseModel):
 class SuiteBlock(BaseModel):
     """A block under the records of a suite."""
 
-    half_width: float = Field(description="half width b [m]")
-    half_height: float = Field(description="half height h [m]")
+    width: float = Field(description="width 2b [m]")
+    height: float = Field(description="height 2h [m]")
     half_diagonal: float = Field(description="half diagonal R [m]")
     alpha_deg: float = Field(description="slenderness angle [deg]")
     frequency_parameter: float = Field(description="frequency parameter p [rad/s]")

@@ -50,8 +50,8 @@ _FORMS: tuple[Form, ...] = ("json", "csv")
 
 _EXAMPLE = {
     "blocks": [
-        {"name": "vase", "half_width": 0.1, "half_height": 0.4, "peak_acceleration": 4.0, "pulse_period": 0.5},
-        {"name": "column", "half_width": 0.5, "half_height": 3.0, "peak_acceleration": 4.0, "pulse_period": 0.5},
+        {"name": "vase", "width": 0.2, "height": 0.8, "peak_acceleration": 4.0, "period": 0.5},
+        {"name": "column", "width": 1.0, "height": 6.0, "peak_acceleration": 4.0, "period": 0.5},
     ]
 }
 
@@ -85,7 +85,7 @@ async def get_block(params: Annotated[BlockParams, Query()], request: Request, s
 async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request, service: ServiceDep) -> Response:
     """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
 
-    Columns of CSV: width or half_width, height or half_height, peak_acceleration, period, each with its unit in
+    Columns of CSV: width, height, peak_acceleration, period, each with its unit in
     brackets, and optionally name and restitution.
     """
     given = body_form(request, _FORMS)
@@ -113,10 +113,10 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksPa
         _check_count(len(rows.blocks))
         problems = [
             BlockProblem(
-                Block(row.half_width, row.half_height),
+                Block(row.width, row.height),
                 params.pulse,
                 row.peak_acceleration,
-                row.pulse_period,
+                row.period,
                 params.restitution if row.restitution is None else row.restitution,
             )
             for row in rows.blocks
@@ -128,10 +128,10 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksPa
     for problem in table.problems:
         block = problem.block
         for name, value in (
-            ("half_width", block.half_width),
-            ("half_height", block.half_height),
+            ("width", block.width),
+            ("height", block.height),
             ("peak_acceleration", problem.peak_acceleration),
-            ("pulse_period", problem.period),
+            ("period", problem.period),
         ):
             low, high, unit = RANGES[name]
             in_range(name, value, low, high, unit=unit)
@@ -152,8 +152,8 @@ def _blocks(service: Service, params: BlocksParams, table: BlockTable, form: str
 
 
 def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse:
-    block = Block(params.half_width, params.half_height, params.gravity)
-    problem = BlockProblem(block, params.pulse, params.peak_acceleration, params.pulse_period, params.restitution)
+    block = Block(params.width, params.height, params.gravity)
+    problem = BlockProblem(block, params.pulse, params.peak_acceleration, params.period, params.restitution)
     found = _point(service, params, problem, stop)
     seconds = SEARCH_SHARE * service.settings.max_seconds
     assessment = assess(problem, seconds=seconds, stop=stop, served=(FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper))
@@ -216,6 +216,6 @@ def _assessed(found: Assessment) -> dict[str, Any]:
 
 
 def _margins(found: FoundMargins) -> Margins:
-    periods = [PeriodThreshold(pulse_period=one.value, overturns_above=one.overturns_above) for one in found.periods]
+    periods = [PeriodThreshold(period=one.value, overturns_above=one.overturns_above) for one in found.periods]
     sizes = [SizeThreshold(half_diagonal=one.value, overturns_above=one.overturns_above) for one in found.sizes]
     return Margins.model_validate(vars(found) | {"periods": periods, "sizes": sizes})

@@ -75,7 +75,7 @@ async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse
 
 
 def _described(name: str, samples: int) -> PulseDescription:
-    pulse = pulses.get_pulse(name)
+    pulse = pulses.pulse(name)
     phase = np.linspace(pulse.start, pulse.end, samples)
     return PulseDescription(
         name=name,

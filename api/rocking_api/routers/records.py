@@ -146,7 +146,7 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
 
 
 def _response(service: Service, params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
-    block = Block(params.half_width, params.half_height, params.gravity)
+    block = Block(params.width, params.height, params.gravity)
     found = respond_to_record(
         block, record, scale=params.scale, restitution=params.restitution, thresholds=params.thresholds, stop=stop
     )
@@ -187,7 +187,7 @@ def _response(service: Service, params: RecordResponseParams, record: Record, st
 
 
 def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopFlag) -> Response:
-    block = Block(params.half_width, params.half_height, params.gravity)
+    block = Block(params.width, params.height, params.gravity)
     motion = record_history(
         record,
         **record_groups(
@@ -213,7 +213,7 @@ def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopF
 
 
 def _scales(params: RecordScalesParams, record: Record, form: str, stop: StopFlag) -> Response:
-    block = Block(params.half_width, params.half_height, params.gravity)
+    block = Block(params.width, params.height, params.gravity)
     eta = restitution_of(block, params.restitution)
     uplift, highest, _ = search_range(record, block, None)
     low = uplift if params.scale_min is None else params.scale_min
@@ -251,7 +251,7 @@ def _scales(params: RecordScalesParams, record: Record, form: str, stop: StopFla
 
 
 def _pulse(params: RecordPulseParams, record: Record, stop: StopFlag) -> RecordPulseResponse:
-    fit = fit_pulse(record, blocks=Block(params.half_width, params.half_height, params.gravity), stop=stop)
+    fit = fit_pulse(record, blocks=Block(params.width, params.height, params.gravity), stop=stop)
     every = max(1, math.ceil(record.samples / params.samples))
     time = record.times[::every]
     drawn = {

@@ -49,7 +49,7 @@ def fragility(data: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.plot(fine, probability, line, color=colour, label=model)
     ax.set_xlabel(label_of(data["intensity"]))
     ax.set_ylabel(f"probability of {data['demand'].item()} [-]")
-    ax.set_title(f"{2 * float(data['half_width']):g} m x {2 * float(data['half_height']):g} m", loc="right")
+    ax.set_title(f"{float(data['width']):g} m x {float(data['height']):g} m", loc="right")
     ax.legend(loc="upper left", frameon=True)
     return ax
 

@@ -20,7 +20,7 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     Parameters
     ----------
     data : xarray.Dataset
-        Result of `rocking.time_history`, `rocking.record_history`, or of `history` of a block or body. Rotation in
+        Result of `rocking.time_history`, `rocking.time_history`, or of `history` of a block or body. Rotation in
         radians is drawn in degrees.
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default in a new figure.

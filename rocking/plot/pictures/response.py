@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.response import BlockResponse
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.outcome import Outcome
@@ -29,7 +29,7 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
 
     The curve ranges from zero to twice the amplitude in question, or to the lowest one at which the block overturns if
     that is higher. The ranges in which the block overturns are shaded; their ends are searched with
-    `rocking.critical_amplitude`, so that narrow ones are not missed.
+    `rocking.thresholds`, so that narrow ones are not missed.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
     groups["alpha"] = groups.get("alpha") or None
     slenderness = groups.pop("slenderness")
     amplitude = 1.0 / slenderness
-    edges = critical_amplitude(pulse, **groups, highest_amplitude=max(12.0, 2.0 * amplitude)).amplitude
+    edges = thresholds(pulse, **groups, highest_amplitude=max(12.0, 2.0 * amplitude)).amplitude
     top = max(2.0 * amplitude, 1.1 * edges[0] if edges.size else 0.0, 1.2)
     beside = (edges[:, None] * (1.0 + BESIDE * np.array([-1.0, 1.0]))).ravel()
     a = np.union1d(np.linspace(top / SAMPLES, top, SAMPLES), beside[beside < top])

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.image import imread
 from playwright.sync_api import Page
 
-BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=housner"
+BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=momentum"
 POINT = "/?frequency_ratio=4&slenderness=0.7"
 
 

@@ -232,7 +232,7 @@ def test_another_angle_shows_a_note_that_the_block_was_left(open_page):
 
 
 def test_a_block_outside_the_rocking_model_says_so_first(open_page):
-    page = open_page("/?width=1+m&height=1+m&acceleration=1.5+g&period=0.5+s&restitution=housner")
+    page = open_page("/?width=1+m&height=1+m&acceleration=1.5+g&period=0.5+s&restitution=momentum")
     expect(page.locator(".verdict")).to_have_text("The rocking model does not apply.")
     said = page.locator("#answer").inner_text()
     assert "would slide" in said

@@ -31,13 +31,13 @@ def test_the_form_gives_the_verdict_of_the_package(open_page, typed, metres):
     page.locator("#period").press("Enter")
     expect(page.locator(".verdict")).to_be_visible()
 
-    half_width, half_height, acceleration = metres
-    block = rocking.Block(half_width=half_width, half_height=half_height)
+    width, height, acceleration = metres
+    block = rocking.Block(width=2 * width, height=2 * height)
     found = rocking.peak_response(
         "sine",
         slenderness=block.uplift_acceleration / acceleration,
         frequency_ratio=2 * np.pi / 0.5 / block.frequency_parameter,
-        restitution=block.housner_restitution,
+        restitution=block.momentum_restitution,
         alpha=block.alpha,
     )
     verdict = {0: "It does not uplift.", 1: "It survives (comes to rest)."}.get(int(found.outcome), "It overturns.")
@@ -51,12 +51,12 @@ def test_the_form_gives_the_verdict_of_the_package(open_page, typed, metres):
 
 
 def test_three_blocks_have_three_outcomes():
-    block, other = rocking.Block(half_width=0.2, half_height=0.8), rocking.Block(half_width=0.1524, half_height=0.4572)
+    block, other = rocking.Block(width=0.4, height=1.6), rocking.Block(width=0.3048, height=0.9144)
     amplitudes = (
-        rocking.critical_amplitude(
+        rocking.thresholds(
             "sine",
             frequency_ratio=2 * np.pi / 0.5 / block.frequency_parameter,
-            restitution=block.housner_restitution,
+            restitution=block.momentum_restitution,
             alpha=block.alpha,
         ).amplitude
         * block.uplift_acceleration

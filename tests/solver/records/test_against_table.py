@@ -18,7 +18,7 @@ def test_the_table_has_slender_and_rigid_cases() -> None:
 
 @pytest.mark.parametrize("row", ROWS, ids=[str(k) for k in range(len(ROWS))])
 def test_outcome_and_peak_of_each_case(row: Row) -> None:
-    response = rocking.record_response(row.motion, **row.groups)
+    response = rocking.peak_response(row.motion, **row.groups)
     assert bool(response.overturned) == row.overturned
     if row.overturned:
         assert np.isnan(response.peak_rotation)

@@ -107,7 +107,7 @@ def test_equal_edges_are_the_block_bit_by_bit() -> None:
         rng.uniform(0.5, 1, 200),
         rng.uniform(0.1, 0.5, 200),
     )
-    block = rocking.record_response(motion, frequency_parameter=p, slenderness=s, restitution=eta, alpha=alpha)
+    block = rocking.peak_response(motion, frequency_parameter=p, slenderness=s, restitution=eta, alpha=alpha)
     cells = block_cells(p * motion.time_step, s, eta, alpha)
     body, sides = solve_bodies(motion_samples(motion), cells, None, None, each_side=True)
     np.testing.assert_array_equal(body["outcome"], block.outcome)

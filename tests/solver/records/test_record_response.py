@@ -30,7 +30,7 @@ def test_a_sine_sampled_ever_finer_converges_with_second_order(
     errors = []
     for count in (64, 256, 1024):
         motion = rocking.Record(np.sin(2 * np.pi * np.arange(count + 1) / count), 1.0 / count, unit="m/s2")
-        found = rocking.record_response(
+        found = rocking.peak_response(
             motion, frequency_parameter=2 * np.pi / omega, slenderness=slenderness, restitution=eta, alpha=alpha
         )
         errors.append(abs(float(found.peak_rotation / exact) - 1.0))
@@ -52,14 +52,14 @@ def test_interpolated_samples_change_nothing(alpha: float | None) -> None:
     times = np.arange(3 * (MOTION.samples - 1) + 1) * (MOTION.time_step / 3)
     finer = rocking.Record(np.interp(times, MOTION.times, MOTION.acceleration), MOTION.time_step / 3, unit="m/s2")
     responses_equal(
-        rocking.record_response(MOTION, **GRID, alpha=alpha), rocking.record_response(finer, **GRID, alpha=alpha), 1e-7
+        rocking.peak_response(MOTION, **GRID, alpha=alpha), rocking.peak_response(finer, **GRID, alpha=alpha), 1e-7
     )
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_the_opposite_motion_gives_the_mirror_image(alpha: float | None) -> None:
     mirrored = rocking.Record(-MOTION.acceleration, MOTION.time_step, unit="m/s2")
-    first, second = (rocking.record_response(motion, **GRID, alpha=alpha) for motion in (MOTION, mirrored))
+    first, second = (rocking.peak_response(motion, **GRID, alpha=alpha) for motion in (MOTION, mirrored))
     np.testing.assert_array_equal(first.peak_rotation, second.peak_rotation)
     np.testing.assert_array_equal(first.first_impact_velocity, -second.first_impact_velocity)
 
@@ -67,15 +67,15 @@ def test_the_opposite_motion_gives_the_mirror_image(alpha: float | None) -> None
 def test_time_and_amplitude_enter_through_the_groups_only() -> None:
     """Twice the step with half of p, and any amplitude with the same slenderness: the same bits."""
     slower = rocking.Record(4.0 * MOTION.acceleration, 2.0 * MOTION.time_step, unit="m/s2")
-    first = rocking.record_response(MOTION, **GRID)
-    second = rocking.record_response(slower, **(GRID | {"frequency_parameter": 1.15}))
+    first = rocking.peak_response(MOTION, **GRID)
+    second = rocking.peak_response(slower, **(GRID | {"frequency_parameter": 1.15}))
     np.testing.assert_array_equal(first.peak_rotation, second.peak_rotation)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_quiet_samples_before_and_after_change_nothing(alpha: float | None) -> None:
     padded = rocking.Record(np.pad(MOTION.acceleration, (777, 1000)), MOTION.time_step, unit="m/s2")
-    first, second = (rocking.record_response(motion, **GRID, alpha=alpha) for motion in (MOTION, padded))
+    first, second = (rocking.peak_response(motion, **GRID, alpha=alpha) for motion in (MOTION, padded))
     np.testing.assert_array_equal(first.outcome, second.outcome)
     np.testing.assert_allclose(first.peak_rotation, second.peak_rotation, rtol=1e-7)
     shift = 777 * 0.01 * 2.3
@@ -84,7 +84,7 @@ def test_quiet_samples_before_and_after_change_nothing(alpha: float | None) -> N
 
 def test_a_tiny_angle_gives_the_slender_response() -> None:
     """Exact arcs and Taylor steps share neither formula nor search of events."""
-    slender, rigid = (rocking.record_response(MOTION, **GRID, alpha=alpha) for alpha in (None, 1e-9))
+    slender, rigid = (rocking.peak_response(MOTION, **GRID, alpha=alpha) for alpha in (None, 1e-9))
     responses_equal(slender, rigid, 1e-6)
     np.testing.assert_allclose(slender.first_impact_time, rigid.first_impact_time, rtol=1e-7)
     np.testing.assert_allclose(slender.first_impact_velocity, rigid.first_impact_velocity, rtol=1e-7)
@@ -98,7 +98,7 @@ def test_a_coarse_motion_needs_several_taylor_steps_an_interval(alpha: float | N
     fine = rocking.Record(np.interp(times, coarse.times, coarse.acceleration), 1.0 / 64, unit="m/s2")
     blocks = {"frequency_parameter": 3.0, "slenderness": np.linspace(0.3, 0.95, 14), "restitution": 0.6}
     responses_equal(
-        rocking.record_response(coarse, **blocks, alpha=alpha), rocking.record_response(fine, **blocks, alpha=alpha)
+        rocking.peak_response(coarse, **blocks, alpha=alpha), rocking.peak_response(fine, **blocks, alpha=alpha)
     )
 
 
@@ -107,7 +107,7 @@ def test_a_constant_acceleration_that_ends_has_a_closed_form(alpha: float | None
     """A rectangular pulse: samples 1, ..., 1, then zero after the last; it is the catalogue's rectangular pulse."""
     motion = rocking.Record(np.ones(51), 0.01, unit="m/s2")  # half a second
     p, s = 4.0, np.array([0.2, 0.4, 0.6, 0.9])
-    found = rocking.record_response(motion, frequency_parameter=p, slenderness=s, restitution=0.8, alpha=alpha)
+    found = rocking.peak_response(motion, frequency_parameter=p, slenderness=s, restitution=0.8, alpha=alpha)
     pulse = rocking.peak_response(
         "rectangular", slenderness=s, frequency_ratio=2 * np.pi / (2 * 0.5) / p, restitution=0.8, alpha=alpha
     )
@@ -116,7 +116,7 @@ def test_a_constant_acceleration_that_ends_has_a_closed_form(alpha: float | None
 
 
 def test_a_block_without_restitution_rests_after_each_impact() -> None:
-    response = rocking.record_response(MOTION, frequency_parameter=2.3, slenderness=0.5, restitution=0.0)
+    response = rocking.peak_response(MOTION, frequency_parameter=2.3, slenderness=0.5, restitution=0.0)
     assert response.outcome == rocking.Outcome.SAFE
     assert response.impacts > 3
     assert not response.chatter
@@ -125,7 +125,7 @@ def test_a_block_without_restitution_rests_after_each_impact() -> None:
 
 def test_a_perfectly_elastic_block_ends() -> None:
     for alpha in ALPHAS:
-        response = rocking.record_response(
+        response = rocking.peak_response(
             MOTION, frequency_parameter=2.3, slenderness=[0.9, 0.999], restitution=1.0, alpha=alpha
         )
         assert (response.outcome == rocking.Outcome.SAFE).all()
@@ -133,7 +133,7 @@ def test_a_perfectly_elastic_block_ends() -> None:
 
 def test_a_motion_that_starts_with_a_jump_lifts_the_block_at_once() -> None:
     motion = rocking.Record([1.0, 0.5, 0.0], 0.05, unit="g")
-    response = rocking.record_response(motion, frequency_parameter=3.0, slenderness=0.4, restitution=0.8)
+    response = rocking.peak_response(motion, frequency_parameter=3.0, slenderness=0.4, restitution=0.8)
     assert response.uplift_time == 0.0
     assert response.outcome == rocking.Outcome.SAFE
 
@@ -141,25 +141,25 @@ def test_a_motion_that_starts_with_a_jump_lifts_the_block_at_once() -> None:
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_threads_and_order_of_the_blocks_change_no_bit(alpha: float | None) -> None:
     slenderness = np.tile(np.linspace(0.2, 1.1, 97), 3)
-    first = rocking.record_response(MOTION, **(GRID | {"slenderness": slenderness}), alpha=alpha, threads=1)
-    second = rocking.record_response(MOTION, **(GRID | {"slenderness": slenderness[::-1]}), alpha=alpha, threads=2)
+    first = rocking.peak_response(MOTION, **(GRID | {"slenderness": slenderness}), alpha=alpha, threads=1)
+    second = rocking.peak_response(MOTION, **(GRID | {"slenderness": slenderness[::-1]}), alpha=alpha, threads=2)
     np.testing.assert_array_equal(first.peak_rotation, second.peak_rotation[::-1])
     np.testing.assert_array_equal(first.impacts, second.impacts[::-1])
 
 
 def test_arguments_broadcast_and_slender_and_rigid_blocks_mix() -> None:
     p, s = np.array([1.5, 2.5])[:, None, None], np.array([0.3, 0.6, 0.9])[:, None]
-    response = rocking.record_response(MOTION, frequency_parameter=p, slenderness=s, restitution=0.8, alpha=[0.0, 0.3])
+    response = rocking.peak_response(MOTION, frequency_parameter=p, slenderness=s, restitution=0.8, alpha=[0.0, 0.3])
     assert response.shape == (2, 3, 2)
-    single = rocking.record_response(MOTION, frequency_parameter=2.5, slenderness=0.6, restitution=0.8, alpha=0.3)
+    single = rocking.peak_response(MOTION, frequency_parameter=2.5, slenderness=0.6, restitution=0.8, alpha=0.3)
     assert response.peak_rotation[1, 1, 1] == single.peak_rotation
-    empty = rocking.record_response(MOTION, frequency_parameter=2.0, slenderness=[], restitution=0.8)
+    empty = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=[], restitution=0.8)
     assert empty.shape == (0,)
 
 
 def test_responses_are_labelled() -> None:
     slenderness = xr.DataArray([0.3, 0.6], dims="block")
-    response = rocking.record_response(MOTION, frequency_parameter=2.0, slenderness=slenderness, restitution=0.8)
+    response = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=slenderness, restitution=0.8)
     labelled = response.to_xarray()
     assert labelled.peak_rotation.dims == ("block",)
     assert float(labelled.frequency_parameter) == 2.0
@@ -181,12 +181,12 @@ def test_responses_are_labelled() -> None:
 )
 def test_invalid_arguments_are_named(change: dict, named: str) -> None:
     with pytest.raises(InvalidArgumentError, match=named):
-        rocking.record_response(MOTION, **(GRID | change))
+        rocking.peak_response(MOTION, **(GRID | change))
 
 
 def test_only_records_are_motions() -> None:
     with pytest.raises(InvalidArgumentError, match="read_record"):
-        rocking.record_response("napa.at2", **GRID)  # type: ignore[arg-type]
+        rocking.peak_response("napa.at2", **GRID)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -196,7 +196,7 @@ def test_work_can_be_stopped(alpha: float | None) -> None:
     timer.start()
     many = GRID | {"slenderness": np.linspace(0.3, 0.9, 300_000)}
     with pytest.raises(StoppedError):
-        rocking.record_response(MOTION, **many, alpha=alpha, stop=stop)
+        rocking.peak_response(MOTION, **many, alpha=alpha, stop=stop)
     timer.cancel()
 
 
@@ -228,7 +228,7 @@ def test_a_sample_that_just_uplifts_the_block(alpha):
         samples = np.append(rng.choice(levels, rng.integers(3, 12)), 1.5)
         motion = rocking.Record(samples, float(rng.choice([0.005, 0.1, 1.0])), unit="m/s2")
         ties = np.unique(np.abs(samples[samples != 0.0])) / 1.5
-        found = rocking.record_response(
+        found = rocking.peak_response(
             motion,
             frequency_parameter=float(rng.choice([0.5, 2.0, 5.0])),
             slenderness=np.concatenate([ties, np.nextafter(ties, 0.0), np.nextafter(ties, 2.0)])[:, None],

@@ -55,7 +55,7 @@ def test_the_same_samples_are_the_same_record(alpha: float | None) -> None:
     pulse = rocking.SampledPulse(values, 0.02 * np.arange(40), period=0.4)
     p = np.linspace(2.0, 9.0, 30)
     groups = {"slenderness": 0.5, "restitution": 0.9, "alpha": alpha}
-    one = rocking.record_response(record, frequency_parameter=p, **groups)
+    one = rocking.peak_response(record, frequency_parameter=p, **groups)
     other = rocking.peak_response(pulse, frequency_ratio=2.0 * math.pi / 0.4 / p, **groups)
     np.testing.assert_array_equal(one.outcome, other.outcome)
     np.testing.assert_array_equal(one.impacts, other.impacts)
@@ -77,7 +77,7 @@ def test_times_need_not_be_equidistant() -> None:
 
 def test_every_function_that_takes_a_pulse_takes_samples() -> None:
     groups = {"frequency_ratio": 2.0, "restitution": 0.85}
-    threshold = float(rocking.critical_amplitude(TRIANGLE, **groups).amplitude[0])
+    threshold = float(rocking.thresholds(TRIANGLE, **groups).amplitude[0])
     around = rocking.peak_response(TRIANGLE, slenderness=1.0 / (threshold * np.array([1 - 1e-9, 1 + 1e-9])), **groups)
     assert around.overturned.tolist() == [False, True]
     for alpha in (None, 0.2):
@@ -87,7 +87,7 @@ def test_every_function_that_takes_a_pulse_takes_samples() -> None:
     curves = rocking.overturning_boundary(TRIANGLE, restitution=0.85, frequency_ratio=(1.0, 3.0))
     nearest = np.abs(curves.frequency_ratio.values - 2.0).argmin()
     assert 1.0 / curves.slenderness.values[nearest] == pytest.approx(threshold, rel=0.05)
-    block = rocking.Block(half_width=0.2, half_height=0.8)
+    block = rocking.Block(width=0.4, height=1.6)
     assert block.response(TRIANGLE, peak_acceleration="0.6 g", period="1 s").overturned
     assert isinstance(TRIANGLE, AbstractPulse)
 

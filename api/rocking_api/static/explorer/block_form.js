@@ -20,7 +20,7 @@ export function wireForm(submit, edit) {
   form.elements.how.addEventListener("change", showHow);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    if (showErrors(form, form.elements.how.value === "housner" ? QUANTITIES : [...QUANTITIES, "eta"])) submit(formParts());
+    if (showErrors(form, form.elements.how.value === "momentum" ? QUANTITIES : [...QUANTITIES, "eta"])) submit(formParts());
   });
   form.addEventListener("input", edit);
   showHow();
@@ -32,7 +32,7 @@ export function formParts() {
   for (const name of QUANTITIES) {
     parts[name] = `${form.elements[name].value.trim() || MISSING} ${form.elements[`${name}_unit`].value}`;
   }
-  parts.restitution = form.elements.how.value === "housner" ? "housner" : form.elements.eta.value.trim() || MISSING;
+  parts.restitution = form.elements.how.value === "momentum" ? "momentum" : form.elements.eta.value.trim() || MISSING;
   return parts;
 }
 
@@ -45,8 +45,8 @@ export function fillForm(state) {
     form.elements[name].value = value === MISSING ? "" : value;
     if (unit in UNITS[name]) form.elements[`${name}_unit`].value = unit;
   }
-  form.elements.how.value = state.restitution === "housner" ? "housner" : "number";
-  if (state.restitution !== "housner") form.elements.eta.value = state.restitution === MISSING ? "" : state.restitution;
+  form.elements.how.value = state.restitution === "momentum" ? "momentum" : "number";
+  if (state.restitution !== "momentum") form.elements.eta.value = state.restitution === MISSING ? "" : state.restitution;
   showHow();
 }
 
@@ -118,5 +118,5 @@ function marginOf(found) {
 }
 
 function showHow() {
-  form.elements.eta.disabled = form.elements.how.value === "housner";
+  form.elements.eta.disabled = form.elements.how.value === "momentum";
 }

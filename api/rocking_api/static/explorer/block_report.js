@@ -16,7 +16,7 @@ export function blockReport(found) {
         pairs: [
           ...geometryOf(found),
           ["Uplifts at", inG(found.uplift_acceleration)],
-          ["Coefficient of restitution", `${number(found.restitution, 4)}${query.restitution === "housner" ? ", from geometry (2.4)" : ", given"}`],
+          ["Coefficient of restitution", `${number(found.restitution, 4)}${query.restitution === "momentum" ? ", from geometry (2.4)" : ", given"}`],
           ["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 3)],
         ],
       },
@@ -25,7 +25,7 @@ export function blockReport(found) {
         pairs: [
           ["Shape", PULSES[query.pulse.replace("-", "")] ?? query.pulse],
           ["Peak acceleration", inG(query.peak_acceleration)],
-          ["Period T of the pulse", `${number(query.pulse_period, 5)} s`],
+          ["Period T of the pulse", `${number(query.period, 5)} s`],
         ],
       },
       { heading: "Result", text: resultOf(found) },
@@ -59,7 +59,7 @@ function marginsOf({ query, overturned, thresholds: found, margins, largest_safe
   all.forEach((one, at) => lines.push(`It ${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} m/s² at this period.`));
   const period = margins?.nearest_period;
   const survivalFrom = margins?.surviving_from_half_diagonal;
-  if (period) lines.push(`The nearest period at which the outcome changes: ${threshold(period, period > query.pulse_period !== overturned, 4)} s.`);
+  if (period) lines.push(`The nearest period at which the outcome changes: ${threshold(period, period > query.period !== overturned, 4)} s.`);
   if (survivalFrom) lines.push(`Blocks of this shape survive from R = ${length(survivalFrom, (value, digits) => threshold(value, false, digits))}.`);
   return lines.length ? lines : ["None were found."];
 }

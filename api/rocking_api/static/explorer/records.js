@@ -79,8 +79,8 @@ function paramsOf() {
   return {
     name: file.name.slice(0, 200),
     ...Object.fromEntries(["unit", "time_step", "component", "baseline_order"].map((name) => [name, text(name)])),
-    half_width: quantity("width"),
-    half_height: quantity("height"),
+    width: quantity("width"),
+    height: quantity("height"),
     scale: scale || "?",
     restitution: restitution.toLowerCase() || "?",
   };

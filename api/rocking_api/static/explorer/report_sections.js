@@ -15,8 +15,8 @@ export function section({ heading, pairs, lines, text }) {
 /** Size and shape of the block of a response in SI units: pairs of term and value. */
 export function geometryOf(found) {
   return [
-    ["Width of the base", length(2 * found.query.half_width)],
-    ["Height", length(2 * found.query.half_height)],
+    ["Width of the base", length(found.query.width)],
+    ["Height", length(found.query.height)],
     ["Half diagonal R", length(found.half_diagonal)],
     ["Slenderness angle α", `${number(found.alpha_deg, 4)}°`],
     ["Frequency parameter p", `${number(found.frequency_parameter, 4)} rad/s`],

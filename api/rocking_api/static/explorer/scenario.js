@@ -45,16 +45,16 @@ export function validityNote({ answer }) {
 export function blockParams(state) {
   return {
     pulse: state.pulse,
-    half_width: toSI("width", state.width, 0.5),
-    half_height: toSI("height", state.height, 0.5),
+    width: toSI("width", state.width),
+    height: toSI("height", state.height),
     peak_acceleration: toSI("acceleration", state.acceleration),
-    pulse_period: toSI("period", state.period),
+    period: toSI("period", state.period),
     restitution: readable(state.restitution) ? state.restitution : "nan", // the service then refuses it and names the range
   };
 }
 
 function readable(restitution) {
-  return restitution === "housner" || Number.isFinite(Number.parseFloat(restitution));
+  return restitution === "momentum" || Number.isFinite(Number.parseFloat(restitution));
 }
 
 /** The parts of a state that show a point: for a block, the ground motion with these groups. */

@@ -113,7 +113,7 @@ function ofBlock(view, block) {
 }
 
 function nameOf(block) {
-  return `${length(2 * block.half_width)} by ${length(2 * block.half_height)}`;
+  return `${length(block.width)} by ${length(block.height)}`;
 }
 
 function geometry(block) {

@@ -1,11 +1,11 @@
-"""GET /v1/critical_amplitude: every amplitude at which the outcome changes."""
+"""GET /v1/thresholds: every amplitude at which the outcome changes."""
 
 import pytest
 
-from rocking._boundary.amplitude import critical_amplitude
+from rocking._boundary.amplitude import thresholds
 from tests.api.conftest import assert_problem
 
-URL = "/v1/critical_amplitude"
+URL = "/v1/thresholds"
 QUERY = {"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.85}
 
 
@@ -24,7 +24,7 @@ def test_thresholds_equal_those_of_the_package(client, alpha_deg):
     query = QUERY | ({} if alpha_deg is None else {"alpha_deg": alpha_deg})
     response = client.get(URL, params=query).json()
     alpha = 0.3490658503988659 if alpha_deg else None
-    expected = critical_amplitude("sine", frequency_ratio=5.0, restitution=0.85, alpha=alpha)
+    expected = thresholds("sine", frequency_ratio=5.0, restitution=0.85, alpha=alpha)
     assert [one["amplitude"] for one in response["thresholds"]] == expected.amplitude.tolist()
     assert [one["impacts"] for one in response["thresholds"]] == expected.impacts.tolist()
     assert all(one["slenderness"] == 1 / one["amplitude"] for one in response["thresholds"])

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field, SerializeAsAny
 
-from rocking._boundary.amplitude import Thresholds, critical_amplitude
+from rocking._boundary.amplitude import Thresholds, thresholds
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.params_route import ParamsRoute
@@ -60,8 +60,8 @@ class AmplitudeResponse(BaseModel):
     metadata_url: str = METADATA_URL_FIELD
 
 
-@router.get("/critical_amplitude", summary="Amplitudes at which the outcome of a block changes")
-async def get_critical_amplitude(
+@router.get("/thresholds", summary="Amplitudes at which the outcome of a block changes")
+async def get_thresholds(
     params: Annotated[AmplitudeParams, Query()], request: Request, service: ServiceDep
 ) -> AmplitudeResponse:
     """Every threshold between survival and overturning, by the solver, each accurate to 1e-12 in 1/a.
@@ -72,17 +72,17 @@ async def get_critical_amplitude(
 
 
 @router.post(
-    "/critical_amplitude",
+    "/thresholds",
     summary="Amplitudes at which the outcome of a block changes, under a pulse given by samples",
     openapi_extra=body_of(AmplitudeParams),
 )
-async def post_critical_amplitude(request: Request, service: ServiceDep) -> AmplitudeResponse:
+async def post_thresholds(request: Request, service: ServiceDep) -> AmplitudeResponse:
     """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-    return await get_critical_amplitude(await service.read_params(AmplitudeParams, request), request, service)
+    return await get_thresholds(await service.read_params(AmplitudeParams, request), request, service)
 
 
 def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
-    found = critical_amplitude(
+    found = thresholds(
         params.pulse,
         frequency_ratio=params.frequency_ratio,
         restitution=params.restitution,
@@ -90,9 +90,9 @@ def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
         highest_amplitude=params.highest_amplitude,
         stop=stop,
     )
-    thresholds = _thresholds(found)
-    lowest = thresholds[0].amplitude if thresholds else None
-    return AmplitudeResponse(query=params, thresholds=thresholds, largest_safe_amplitude=lowest)
+    listed = _thresholds(found)
+    lowest = listed[0].amplitude if listed else None
+    return AmplitudeResponse(query=params, thresholds=listed, largest_safe_amplitude=lowest)
 
 
 def _thresholds(found: Thresholds) -> list[AmplitudeThreshold]:
