@@ -1,6 +1,4 @@
-from . import closed_form as closed_form
-from . import groups as groups
-from . import orientation as orientation
+from . import paper as paper
 from . import plot as plot
 from . import suites as suites
 from ._base.errors import InvalidArgumentError as InvalidArgumentError

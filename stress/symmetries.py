@@ -1,6 +1,6 @@
 """Transformations that must not change the response: mirror, neighbours, size of the block, units.
 
-The SI problems are built with `rocking.Block` and `rocking.groups`. A factor of 4 in lengths halves p exactly, and a
+The SI problems are built with `rocking.Block` and `rocking.paper`. A factor of 4 in lengths halves p exactly, and a
 factor of 1,024 between units divides out exactly: the groups, and hence the responses, must be equal to the last bit.
 Other factors leave groups that differ by rounding, and responses that differ accordingly.
 """
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import rocking
 from rocking._model.block import STANDARD_GRAVITY
-from rocking.groups import GroupSet, groups_of, problem_of_block
+from rocking.paper import GroupSet, groups_of, problem_of_block
 from stress.solver import EPS, solve
 from stress.tables import Table
 
@@ -58,7 +58,7 @@ def in_units(table: Table, *, length: float, time: float, size: float) -> Table:
             2 * (metres.half_width * size * length), 2 * (metres.half_height * size * length), gravity
         )
         group_set = GroupSet.RIGID_SMALL_ROTATION if rigid[k] else GroupSet.SLENDER_BY_BLOCK
-        wanted = rocking.groups.Groups(table["frequency_ratio"][k], table["slenderness"][k])
+        wanted = rocking.paper.Groups(table["frequency_ratio"][k], table["slenderness"][k])
         problem = problem_of_block(
             wanted, group_set, alpha=block.alpha, frequency_parameter=block.frequency_parameter, gravity=gravity
         )

@@ -53,7 +53,7 @@ CHANGES: dict[str, Callable[[Path], None]] = {
     ),
     "the script of figure 7": appended("workflow/figures/figure_07.py"),
     "the claims' settings": replaced("claims:\n  restitution: [0.85, 0.90]", "claims:\n  restitution: [0.85]"),
-    "rocking/groups/scale_law.py": appended("rocking/groups/scale_law.py"),
+    "rocking/paper/scale_law.py": appended("rocking/paper/scale_law.py"),
     "rocking/_history/time_history.py": appended("rocking/_history/time_history.py"),
     "the grid of the cubes": replaced("points: 161}", "points: 171}"),
     "one restitution more": replaced("restitution: [0.85, 0.90]\n\ngrid", "restitution: [0.85, 0.88, 0.90]\n\ngrid"),

@@ -36,8 +36,8 @@ class SourceTree:
     def files(self, *paths: Path) -> list[Path]:
         """All files under `root` that the given files import, directly or indirectly, and these files; sorted.
 
-        `rocking/__init__.py` only loads names lazily. Importing a module through it does not add a dependency on every
-        public name; importing a name that is not a module does, and then all files of the package are included.
+        A package with an `__init__.pyi` loads its names lazily. Importing a module through it does not add a dependency
+        on every public name; importing a name that is not a module does, and then all its files are included.
         """
         seen: set[Path] = set()
         waiting = [path.resolve() for path in paths]
@@ -111,8 +111,8 @@ def _module_files(name: str, root: Path, attribute_of: str | None = None) -> Ite
     place = root.joinpath(*name.split("."))
     module = place.with_suffix(".py") if place.name else place
     initial = place / "__init__.py"
-    if name == "rocking":
-        yield from _package(root)
+    if (place / "__init__.pyi").is_file():
+        yield from place.rglob("*.py")
     elif module.is_file():
         yield module
     elif initial.is_file():

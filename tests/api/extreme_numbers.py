@@ -35,8 +35,7 @@ from typer.testing import CliRunner
 import rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._cli.app import app as command_line
-from rocking.groups import Groups, GroupSet, Problem
-from rocking.orientation import Orientation
+from rocking.paper import Groups, GroupSet, Orientation, Problem
 from tests.suites.motions import noise
 
 MEMORY = 2 * 1024**3
@@ -81,8 +80,8 @@ WINDOWS: dict[str, Any] = {
     "rocking.SampledPulse": {"time": [0.0, 1.0, 2.0, 4.0]},
     "rocking.overturning_boundary": {"frequency_ratio": (2.0, 3.0), "slenderness": (0.3, 0.6)},
     "rocking.Block.boundary": {"period": (0.5, 0.6)},
-    "rocking.closed_form.overturning_interval": {"amplitude": (2.0, 4.0)},
-    "rocking.closed_form.island_tip": {"amplitude": (2.0, 4.0), "frequency_ratio": (2.0, 6.0)},
+    "rocking.paper.overturning_interval": {"amplitude": (2.0, 4.0)},
+    "rocking.paper.island_tip": {"amplitude": (2.0, 4.0), "frequency_ratio": (2.0, 6.0)},
 }
 """Parameters that are windows, by the function."""
 
@@ -261,7 +260,7 @@ def walk_python(walk: Walk, results: Path) -> None:
     cube = rocking.open_cube(results / "spectra" / "sine" / "eta-0.85.nc")
     equivalent = rocking.EquivalentBlock(0.3, 2.0, restitution=0.85)
     fit = rocking.suites.fit_pulse(RECORD, family="ricker", blocks=BLOCK)
-    modules = (rocking, rocking.closed_form, rocking.groups, rocking.orientation)
+    modules = (rocking, rocking.paper)
     named = (
         (f"{one.__name__}.{key}", getattr(one, key))
         for one in modules

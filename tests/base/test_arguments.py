@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking import InvalidArgumentError, closed_form
+from rocking import InvalidArgumentError, paper
 from rocking._base.errors import in_range
 from rocking._excitation.pulses import AbstractPulse
 
@@ -93,7 +93,7 @@ QUESTIONS = {
     "time_history": lambda pulse: rocking.time_history(pulse, **GROUPS),
     "thresholds": lambda pulse: rocking.thresholds(pulse, frequency_ratio=5.0, restitution=0.85),
     "overturning_boundary": lambda pulse: rocking.overturning_boundary(pulse, restitution=0.85, nodes=16),
-    "margin_without_impact": lambda pulse: closed_form.margin_without_impact(pulse, 2.0, 5.0),
+    "margin_without_impact": lambda pulse: paper.margin_without_impact(pulse, 2.0, 5.0),
 }
 NO_PULSES = {
     "none": None,

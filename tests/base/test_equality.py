@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import groups
+from rocking import paper
 from rocking._base.equality import EqualByValue, equal_values
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._datasets.cube import write_dataset
@@ -55,8 +55,8 @@ EXAMPLES = {
     "BlockRecordResponse": lambda: BLOCK.response(record(), scale=50.0),
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
     "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
-    "Problem": lambda: groups.Problem(0.2, [2.0, 3.0], 4.0, 8.0),
-    "Groups": lambda: groups.Groups([2.0, 3.0], 0.5),
+    "Problem": lambda: paper.Problem(0.2, [2.0, 3.0], 4.0, 8.0),
+    "Groups": lambda: paper.Groups([2.0, 3.0], 0.5),
     "SuiteConfiguration": configuration,
     "BlockMap": lambda: configuration().map,
     "Sensitivity": lambda: configuration().sensitivity,
@@ -65,7 +65,7 @@ EXAMPLES = {
 
 def dataclasses_of_the_package():
     for module in pkgutil.walk_packages(rocking.__path__, "rocking."):
-        if module.name.split(".")[1] not in ("__main__", "cli", "plot", "precompile"):
+        if module.name.split(".")[1] not in ("_cli", "plot", "precompile"):
             for value in vars(importlib.import_module(module.name)).values():
                 if (
                     isinstance(value, type)

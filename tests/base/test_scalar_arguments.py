@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import EquivalentBlock, InvalidArgumentError, closed_form, groups, orientation
+from rocking import EquivalentBlock, InvalidArgumentError, paper
 from rocking._datasets.cube import write_dataset
 from rocking._spectra.cubes import spectrum
-from rocking.orientation import Orientation
+from rocking.paper import Orientation
 from tests.lookup_grid import GRID
 
 BLOCK = rocking.Block(0.4, 1.6)
@@ -27,8 +27,9 @@ OF_RECORD = {"frequency_parameter": 3.0, "slenderness": 0.4, "restitution": 0.85
 PULSE = {"excitation": "sine", "peak_acceleration": 4.0, "period": 0.5, "restitution": 0.9}
 SUITE = {"records": RECORD, "blocks": BLOCK, "intensity": [3.0], "restitution": 0.9, "confidence": 0.9, "threads": 1}
 SIZE = {"gravity": 9.81}
-GROUPS = groups.Groups(5.0, 0.4)
-RIGID = groups.GroupSet.RIGID_SMALL_ROTATION
+GROUPS = paper.Groups(5.0, 0.4)
+PEAKS = {"peak_rotation": [1.0, 2.0], "restitution": [0.8, 0.9]}
+RIGID = paper.GroupSet.RIGID_SMALL_ROTATION
 SCALED = {"excitation": RECORD, "scale": 1.0, "restitution": 0.9}
 
 CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
@@ -60,33 +61,33 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "Record": (rocking.Record, [{"acceleration": [1.0, 2.0], "time_step": 0.01, "unit": "g"}]),
     "Record.baseline_corrected": (RECORD.baseline_corrected, [{"order": 1}]),
     "Record.resampled": (RECORD.resampled, [{"time_step": 0.005}]),
-    "closed_form.discounted_integral": (
-        closed_form.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
+    "paper.discounted_integral": (
+        paper.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
     ),
-    "closed_form.first_uplift_phase": (closed_form.first_uplift_phase, [{"pulse": "sine", "amplitude": 2.0}]),
-    "closed_form.impacts_in_pulse": (
-        closed_form.impacts_in_pulse,
+    "paper.first_uplift_phase": (paper.first_uplift_phase, [{"pulse": "sine", "amplitude": 2.0}]),
+    "paper.impacts_in_pulse": (
+        paper.impacts_in_pulse,
         [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0, "restitution": 0.9, "most": 2}],
     ),
-    "closed_form.margin_after_impacts": (
-        closed_form.margin_after_impacts,
+    "paper.margin_after_impacts": (
+        paper.margin_after_impacts,
         [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0, "restitution": 0.9, "impacts": 1}],
     ),
-    "closed_form.overturning_interval": (
-        closed_form.overturning_interval,
+    "paper.overturning_interval": (
+        paper.overturning_interval,
         [{"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "impacts": 1, "amplitude": (2.0, 20.0)}],
     ),
-    "closed_form.island_tip": (
-        closed_form.island_tip,
+    "paper.island_tip": (
+        paper.island_tip,
         [{"pulse": "sine", "restitution": 0.9, "impacts": 1, "frequency_ratio": (4.0, 8.0), "amplitude": (2.0, 20.0)}],
     ),
-    "closed_form.margin_after_impact": (
-        closed_form.margin_after_impact,
+    "paper.margin_after_impact": (
+        paper.margin_after_impact,
         [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0, "restitution": 0.9, "impact_phase": 4.0,
           "impact_velocity": 1.0}],
     ),
-    "closed_form.margin_without_impact": (
-        closed_form.margin_without_impact, [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0}],
+    "paper.margin_without_impact": (
+        paper.margin_without_impact, [{"pulse": "sine", "amplitude": 2.0, "frequency_ratio": 5.0}],
     ),
     "thresholds": (
         rocking.thresholds,
@@ -96,20 +97,23 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "pulse": (
         lambda **given: rocking.pulse("mavroeidis_papageorgiou", **given), [{"cycles": 2.0}, {"phase": 0.5}],
     ),
-    "groups.Problem": (
-        groups.Problem,
+    "paper.Problem": (
+        paper.Problem,
         [{"alpha": 0.2, "frequency_parameter": 2.0, "peak_acceleration": 4.0, "pulse_frequency": 8.0} | SIZE],
     ),
-    "groups.problem_of_block": (
-        groups.problem_of_block,
+    "paper.problem_of_block": (
+        paper.problem_of_block,
         [{"groups": GROUPS, "group_set": RIGID, "alpha": 0.2, "frequency_parameter": 2.0} | SIZE],
     ),
-    "groups.problem_of_pulse": (
-        groups.problem_of_pulse,
+    "paper.problem_of_pulse": (
+        paper.problem_of_pulse,
         [{"groups": GROUPS, "group_set": RIGID, "peak_acceleration": 4.0, "pulse_frequency": 8.0} | SIZE],
     ),
-    "orientation.admissible_exponents": (
-        orientation.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
+    "paper.scale_law_deviation": (paper.scale_law_deviation, [PEAKS | {"reference": 0.9, "axis": 0}]),
+    "paper.largest_deviation": (paper.largest_deviation, [PEAKS | {"reference": 0.9, "axis": 0}]),
+    "paper.restitution_exponent": (paper.restitution_exponent, [PEAKS | {"axis": 0}]),
+    "paper.admissible_exponents": (
+        paper.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
     ),
     "overturning_boundary": (
         rocking.overturning_boundary, [{"pulse": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32}],
@@ -154,7 +158,7 @@ CALLS |= {
     "RigidBody.thresholds": (BODY.thresholds, [{"motion": "sine", "period": 0.5, "highest": 9.0}]),
 }  # fmt: skip
 
-RESULTS = {"PulseFit", "orientation.Quantity", "Block.top_displacement", "EquivalentBlock.top_displacement"}
+RESULTS = {"PulseFit", "paper.Quantity", "Block.top_displacement", "EquivalentBlock.top_displacement"}
 """What the package makes itself, and functions of its results, which may be nan."""
 
 OPTIONAL = {
@@ -181,7 +185,7 @@ def public_functions(module: ModuleType, prefix: str = "") -> Iterator[tuple[str
     """Yield public functions, classes and methods with arguments that are numbers."""
     for name in getattr(module, "__all__", [key for key in vars(module) if not key.startswith("_")]):
         value = getattr(module, name)
-        if value in (closed_form, groups, orientation):
+        if value is paper:
             yield from public_functions(value, f"{name}.")
         if not (getattr(value, "__module__", None) or "").startswith(module.__name__) or value in EXCEPTIONS:
             continue

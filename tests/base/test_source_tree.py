@@ -10,15 +10,22 @@ from rocking._base.source_tree import SourceTree
 
 TREE = {
     "rocking/__init__.py": "import lazy_loader",
+    "rocking/__init__.pyi": "",
     "rocking/a.py": "import math\nfrom rocking.b import x",
     "rocking/b.py": "from rocking.group import y",
     "rocking/c.py": "",
     "rocking/group/__init__.py": "from rocking.group.inner import y",
     "rocking/group/inner.py": "y = 1",
     "rocking/group/other.py": "",
+    "rocking/lazy/__init__.py": "import lazy_loader",
+    "rocking/lazy/__init__.pyi": "from .one import name as name",
+    "rocking/lazy/one.py": "name = 1",
+    "rocking/lazy/two.py": "",
     "script.py": "from rocking import a",
     "lazy.py": "from rocking import peak_response",
     "nested.py": "import rocking.group.other",
+    "lazy_name.py": "from rocking.lazy import name",
+    "lazy_module.py": "from rocking.lazy.one import name",
 }
 
 GROUP = {"rocking/group/__init__.py", "rocking/group/inner.py"}
@@ -37,7 +44,9 @@ def tree(tmp_path: Path) -> Path:
     [
         ("script.py", {"script.py", "rocking/a.py", "rocking/b.py", *GROUP}),
         ("nested.py", {"nested.py", "rocking/group/other.py", *GROUP}),
-        ("lazy.py", {"lazy.py", *(name for name in TREE if name.startswith("rocking/"))}),
+        ("lazy.py", {"lazy.py", *(name for name in TREE if name.startswith("rocking/") and name.endswith(".py"))}),
+        ("lazy_name.py", {"lazy_name.py", *(f"rocking/lazy/{name}.py" for name in ("__init__", "one", "two"))}),
+        ("lazy_module.py", {"lazy_module.py", *(f"rocking/lazy/{name}.py" for name in ("__init__", "one"))}),
     ],
 )  # fmt: skip
 def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import Outcome, closed_form
+from rocking import Outcome, paper
 from rocking._boundary.search import ELASTIC_RESOLUTION, MANY_IMPACTS, MOST_COUNTED, RESOLUTION, UNCOUNTED, region_code
 from rocking._boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD
 from rocking._model.outcome_code import outcome_codes
@@ -64,7 +64,7 @@ def test_sine_against_the_closed_forms():
         "sine", restitution=0.9, frequency_ratio=(1.5, 8.0), slenderness=(0.05, 0.95), nodes=81
     )
     s, omega, own, neighbour = curves(boundary)
-    closed = closed_form.overturning_amplitudes(omega, 0.9)
+    closed = paper.overturning_amplitudes(omega, 0.9)
     directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
     assert directly.sum() > 40
     np.testing.assert_allclose(s[directly], 1 / closed.direct[directly], rtol=0, atol=1e-10)
@@ -92,7 +92,7 @@ def test_the_thin_safe_band_between_two_ways_of_overturning_is_seen(alpha):
     assert directly.sum() > 20
     assert after_one.sum() > 20
     if alpha is None:
-        closed = closed_form.overturning_amplitudes(omega, 0.85)
+        closed = paper.overturning_amplitudes(omega, 0.85)
         np.testing.assert_allclose(s[directly], 1 / closed.direct[directly], rtol=0, atol=1e-10)
         width = 1 / closed.safe_again - 1 / closed.direct
         assert 0 < np.nanmin(width) < 1e-4
@@ -170,7 +170,7 @@ def test_a_curve_goes_on_to_the_edge_of_the_window():
     directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
     edge = omega[directly][np.argmin(s[directly])]
     assert 0.3 <= s[directly].min() < 0.3 + 1e-3
-    closed = closed_form.overturning_amplitudes(edge * math.exp(2 * END), 0.85)
+    closed = paper.overturning_amplitudes(edge * math.exp(2 * END), 0.85)
     assert 1 / closed.direct < 0.3
 
 

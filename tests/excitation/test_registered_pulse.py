@@ -60,7 +60,7 @@ def test_response_is_that_of_direct_integration(pulse):
         GROUPS["frequency_ratio"],
         GROUPS["restitution"],
         shape=pulse.shape,
-        start=rocking.closed_form.first_uplift_phase(pulse, amplitude),
+        start=rocking.paper.first_uplift_phase(pulse, amplitude),
         end=pulse.end,
     )
     assert len(motion.impact_times) == found.impacts > 0

@@ -91,7 +91,7 @@ def test_one_row_for_each_slip():
     for _, where, printed, right, test in SLIPS:
         assert where
         assert printed != right
-        assert "`tests/closed_form/test_errata.py::" in test
+        assert "`tests/paper/test_errata.py::" in test
 
 
 def test_each_slip_is_remarked_in_the_ledger():

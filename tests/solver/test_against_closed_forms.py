@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import PULSE_NAMES, Outcome, closed_form
+from rocking import PULSE_NAMES, Outcome, paper
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
@@ -28,31 +28,31 @@ def test_first_impact_within_the_pulse(sine_cells):
     a, omega, _, found = sine_cells
     during = np.isfinite(found.first_impact_time)
     assert during.sum() > 500
-    early = closed_form.limit_margin(a, omega) < 0  # (3.31)
-    clear = np.abs(closed_form.limit_margin(a, omega)) > 1e-9
+    early = paper.limit_margin(a, omega) < 0  # (3.31)
+    clear = np.abs(paper.limit_margin(a, omega)) > 1e-9
     np.testing.assert_array_equal(during[clear], early[clear])
-    h = closed_form.case_1_1_impact_time(a, omega)[during]
+    h = paper.case_1_1_impact_time(a, omega)[during]
     np.testing.assert_allclose(found.first_impact_time[during], h, rtol=1e-10)
-    v = closed_form.case_1_1_impact_velocity(a, omega)[during]
+    v = paper.case_1_1_impact_velocity(a, omega)[during]
     np.testing.assert_allclose(found.first_impact_velocity[during], v, rtol=1e-8)
 
 
 def test_peak_above_the_limit_curve(sine_cells):
     a, omega, eta, found = sine_cells
-    late = (closed_form.limit_margin(a, omega) > 1e-9) & (found.outcome == Outcome.SAFE)
+    late = (paper.limit_margin(a, omega) > 1e-9) & (found.outcome == Outcome.SAFE)
     after = late & (found.peak_mode == 3)  # in free rocking after the first impact
     assert after.sum() > 80
     np.testing.assert_allclose(
-        found.peak_rotation[after], closed_form.case_1_2_peak(a, omega, eta)[after], rtol=1e-9
+        found.peak_rotation[after], paper.case_1_2_peak(a, omega, eta)[after], rtol=1e-9
     )  # (4.13)
     before = late & (found.peak_mode <= 1)
-    closed = np.nan_to_num(closed_form.case_1_2_peak(a, omega, eta)[before])
+    closed = np.nan_to_num(paper.case_1_2_peak(a, omega, eta)[before])
     assert (found.peak_rotation[before] >= closed * (1 - 1e-12)).all()
 
 
 def test_outcomes_of_the_sine(sine_cells):
     a, omega, eta, found = sine_cells
-    closed = closed_form.overturning_amplitudes(omega, eta)
+    closed = paper.overturning_amplitudes(omega, eta)
     falls = (a >= closed.direct) | ((a > closed.falls_from) & (a < closed.safe_again))
     islands = (a < 1 / 0.89) & (
         omega < 1.2
@@ -71,7 +71,7 @@ def test_overturning_without_a_further_impact_for_every_pulse(name):
     found = rocking.peak_response(pulse, slenderness=1 / a, frequency_ratio=omega, restitution=0.85)
     compared = 0
     for i in range(n):
-        margin = closed_form.margin_without_impact(pulse, a[i], omega[i])
+        margin = paper.margin_without_impact(pulse, a[i], omega[i])
         if found.outcome[i] == Outcome.OVERTURNED_DIRECTLY:
             assert margin > -1e-9
         elif np.isnan(
@@ -82,7 +82,7 @@ def test_overturning_without_a_further_impact_for_every_pulse(name):
         elif found.impacts[i] == 1:
             compared += 1
             phase = pulse.start + omega[i] * (found.uplift_time[i] + found.first_impact_time[i])
-            after = closed_form.margin_after_impact(pulse, a[i], omega[i], 0.85, phase, found.first_impact_velocity[i])
+            after = paper.margin_after_impact(pulse, a[i], omega[i], 0.85, phase, found.first_impact_velocity[i])
             assert (after > -1e-9) or not found.overturned[i]
     assert compared > 0
 

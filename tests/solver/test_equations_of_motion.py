@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import closed_form as cf
-from rocking import groups
+from rocking import paper
+from rocking import paper as cf
 from rocking._model.block import Block
 from tests.direct_integration import integrate
 
@@ -62,11 +62,11 @@ def test_solver_follows_the_equation_of_motion_and_the_law_of_impact(a, omega, e
 
 
 def test_response_depends_on_the_groups_only():
-    wanted = groups.Groups(frequency_ratio=3.3, slenderness=0.45)  # (3.6)
+    wanted = paper.Groups(frequency_ratio=3.3, slenderness=0.45)  # (3.6)
     peaks = []
     for alpha, p in ((0.1, 2.0), (0.2, 1.1)):
-        problem = groups.problem_of_block(
-            wanted, groups.GroupSet.SLENDER_BY_BLOCK, alpha=alpha, frequency_parameter=p, gravity=G
+        problem = paper.problem_of_block(
+            wanted, paper.GroupSet.SLENDER_BY_BLOCK, alpha=alpha, frequency_parameter=p, gravity=G
         )
         a = float(problem.peak_acceleration) / (G * alpha)
         omega = float(problem.pulse_frequency) / p

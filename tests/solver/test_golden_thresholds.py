@@ -8,7 +8,7 @@ import pytest
 import rocking
 from reference.exact_response import working_precision
 from reference.multiprecision import integrate
-from rocking import Outcome, closed_form
+from rocking import Outcome, paper
 
 # omega: amplitude from which the block overturns without impact, whatever eta
 DIRECT = {1: 1.418315, 2: 2.349903, 3: 3.631150, 4: 5.238964, 5: 7.168129, 6: 9.416966}
@@ -59,7 +59,7 @@ def test_slender_full_sine_to_the_last_digit(omega, eta):
 @pytest.mark.parametrize("omega", [0.7, 1.0, 2.5, 4.0, 5.5])
 @pytest.mark.parametrize("eta", [0.8, 0.9, 0.97])
 def test_slender_full_sine_against_closed_forms(omega, eta):
-    closed = closed_form.overturning_amplitudes(omega, eta)
+    closed = paper.overturning_amplitudes(omega, eta)
     found = rocking.thresholds("sine", frequency_ratio=omega, restitution=eta)
     for amplitude in closed:
         if not np.isnan(amplitude):
@@ -69,10 +69,10 @@ def test_slender_full_sine_against_closed_forms(omega, eta):
 @pytest.mark.parametrize(
     ("pulse", "formula"),
     [
-        ("half_sine", closed_form.half_sine_amplitude),
-        ("rectangular", closed_form.rectangular_amplitude),
-        ("cosine", closed_form.cosine_amplitude),
-        ("sine", closed_form.case_2_amplitude),
+        ("half_sine", paper.half_sine_amplitude),
+        ("rectangular", paper.rectangular_amplitude),
+        ("cosine", paper.cosine_amplitude),
+        ("sine", paper.case_2_amplitude),
     ],
 )
 @pytest.mark.parametrize("omega", [1.0, 2.0, 3.0, 7.0])
@@ -156,5 +156,5 @@ def test_island_of_overturning_after_three_impacts():
     found = rocking.peak_response("sine", slenderness=0.90, frequency_ratio=omega, restitution=0.9)
     np.testing.assert_array_equal(found.overturned, [False, True, True, True, False])
     np.testing.assert_array_equal(found.impacts[1:4], 3)
-    closed = closed_form.overturning_amplitudes(omega, 0.9)
+    closed = paper.overturning_amplitudes(omega, 0.9)
     assert not ((closed.falls_from < 1 / 0.9) & (closed.safe_again > 1 / 0.9)).any()  # not covered by the closed forms

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking import PULSE_NAMES, Outcome, closed_form
+from rocking import PULSE_NAMES, Outcome, paper
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 
@@ -21,7 +21,7 @@ def test_an_impulse_is_an_initial_velocity_of_free_rocking(name):
     omega, slenderness = 1e4, np.array([1e-2, 1e-3, 5e-4])
     speed = velocity_given(name, slenderness) / omega
     found = rocking.peak_response(name, slenderness=slenderness, frequency_ratio=omega, restitution=0.9)
-    error = found.peak_rotation / closed_form.peak_of_velocity(speed) - 1
+    error = found.peak_rotation / paper.peak_of_velocity(speed) - 1
     assert (np.abs(error) < 1.3 * np.pi / omega / speed).all()  # the distance moved during the pulse
     assert (found.outcome == Outcome.SAFE).all()
     # overturns when the velocity reaches 1, (3.8), up to the distance moved during the pulse, of the order of 1/omega

@@ -20,7 +20,7 @@ from rocking import precompile
 from rocking._base.errors import InvalidArgumentError
 from rocking._cli.app import app
 from rocking._excitation import pulses
-from rocking.closed_form import margin_without_impact
+from rocking.paper import margin_without_impact
 from tests.excitation.test_smooth_pulse import CHIRP, Given
 
 SINE = Given("own_sine", 0.0, 2.0 * math.pi, np.sin)

@@ -11,8 +11,7 @@ import xarray as xr
 
 from rocking._boundary.amplitude import Thresholds
 from rocking._model.response import Outcome
-from rocking.closed_form import limit_amplitude, overturning_amplitudes
-from rocking.orientation import Scaling
+from rocking.paper import Scaling, limit_amplitude, overturning_amplitudes
 from workflow.claims import boundaries, impact_times, non_slender, similarity, small_rotations, spectra
 from workflow.claims.area import node_areas, share_of_area
 from workflow.claims.claim import FAILS, HOLDS, IN_RANGE, VERDICTS, Claim, percent, verdict_of

@@ -17,7 +17,7 @@ from rocking._datasets.cube import read_dataset, write_dataset
 from rocking._model.block import Block
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
-from rocking.closed_form import overturning_amplitudes
+from rocking.paper import overturning_amplitudes
 from rocking.plot.boundary_lines import Lines
 from rocking.plot.output import style
 from tests.workflow_fixtures import PROJECT, SMOKE

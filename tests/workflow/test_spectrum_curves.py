@@ -10,7 +10,7 @@ import yaml
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._datasets.cube import read_spectrum
 from rocking._solver.peak_response import peak_response
-from rocking.closed_form import overturning_amplitudes
+from rocking.paper import overturning_amplitudes
 from tests.workflow_fixtures import PROJECT
 from workflow.figures import figure_08, figure_13
 from workflow.figures.spectrum_curves import STRAIGHT, Block, branches, peaks, rows_of

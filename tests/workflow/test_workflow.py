@@ -93,8 +93,8 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
     assert rules_to_run(unchanged.stdout) <= report, unchanged.stdout
 
     for module, rules in {
-        "rocking/orientation.py": {"table_1", "claims"},
-        "rocking/groups/scale_law.py": {"figure_scale_law", "claims"},
+        "rocking/paper/orientation.py": {"table_1", "claims"},
+        "rocking/paper/scale_law.py": {"figure_scale_law", "claims"},
         "workflow/figures/figure_07.py": {"figure_07"},
         "workflow/scripts/spectra.py": {"spectrum_tile", "spectra", "check_data_sets", "figure_scale_law", "claims"},
     }.items():

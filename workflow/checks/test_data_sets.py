@@ -19,7 +19,7 @@ from rocking._datasets.cube import read_dataset, read_spectrum, stored_pulse
 from rocking._model.outcome_code import outcome_codes
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
-from rocking.closed_form import case_1_1_margin, case_1_2_margin, overturning_amplitudes
+from rocking.paper.overturning import case_1_1_margin, case_1_2_margin, overturning_amplitudes
 
 RESULTS = Path(os.environ["ROCKING_RESULTS"])
 STEPS = (1e-6, 3e-6, 1e-7, 1e-8, 1e-10, 2 * RESOLUTION)

@@ -10,7 +10,7 @@ import xarray as xr
 from rocking._history.time_history import time_history
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
-from rocking.closed_form import limit_amplitude, overturning_amplitudes
+from rocking.paper.overturning import limit_amplitude, overturning_amplitudes
 from workflow.claims.area import MEASURE, Flags, Floats, node_areas, share_of_area
 from workflow.claims.claim import SAME, SMALL, Claim, percent, verdict_of
 

@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking._history.time_history import time_history
-from rocking.closed_form import (
-    ad_hoc_impact_time,
-    ad_hoc_sine,
-    after_pulse_coefficients,
+from rocking.paper.approximation import ad_hoc_impact_time, ad_hoc_sine, semi_analytical_amplitudes, within_pulse
+from rocking.paper.motion import after_pulse_coefficients, uplift_phase
+from rocking.paper.overturning import (
     case_1_1_amplitudes,
     case_1_1_end,
     case_1_1_impact_time,
@@ -19,9 +18,6 @@ from rocking.closed_form import (
     case_1_2_impact_velocity,
     case_2_amplitude,
     limit_amplitude,
-    semi_analytical_amplitudes,
-    uplift_phase,
-    within_pulse,
 )
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import ABOUT, CLOSE, FAIR, SAME, SMALL, Claim, percent, verdict_of

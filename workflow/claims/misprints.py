@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-TESTS = "tests/closed_form/test_errata.py"
+TESTS = "tests/paper/test_errata.py"
 """The file of the tests that show the misprints."""
 
 

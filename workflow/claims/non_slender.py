@@ -12,7 +12,7 @@ from rocking._boundary.amplitude import Thresholds, thresholds
 from rocking._model.block import STANDARD_GRAVITY, Block
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
-from rocking.closed_form import overturning_amplitudes
+from rocking.paper.overturning import overturning_amplitudes
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import SMALL, Claim, percent, verdict_of
 

@@ -10,7 +10,7 @@ import xarray as xr
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._history.time_history import time_history
 from rocking._model.block import Block
-from rocking.orientation import (
+from rocking.paper.orientation import (
     Orientation,
     Scaling,
     admissible_exponents,

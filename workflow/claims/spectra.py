@@ -11,8 +11,9 @@ import xarray as xr
 from rocking._history.time_history import time_history
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
-from rocking.closed_form import case_1_2_impact_velocity, case_1_2_peak, case_2_amplitude, limit_amplitude, small_peak
-from rocking.groups.scale_law import largest_deviation, restitution_exponent
+from rocking.paper.overturning import case_1_2_impact_velocity, case_2_amplitude, limit_amplitude
+from rocking.paper.peak import case_1_2_peak, small_peak
+from rocking.paper.scale_law import largest_deviation, restitution_exponent
 from workflow.claims.area import MEASURE, Flags, Floats, node_areas, share_of_area
 from workflow.claims.claim import SAME, SMALL, Claim, percent, verdict_of
 

@@ -8,16 +8,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.closed_form import (
-    amplitude_of_impact_time,
-    angular_velocity,
-    case_1_1_amplitudes,
-    case_1_1_end,
-    overturning_condition,
-    pulse_end,
-    semi_analytical_amplitudes,
-    within_pulse,
-)
+from rocking.paper.approximation import semi_analytical_amplitudes, within_pulse
+from rocking.paper.motion import angular_velocity, pulse_end
+from rocking.paper.overturning import amplitude_of_impact_time, case_1_1_amplitudes, case_1_1_end, overturning_condition
 from rocking.plot.style import GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from rocking._boundary.curves import curves_at
 from rocking._datasets.cube import read_dataset
-from rocking.closed_form import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
+from rocking.paper.overturning import case_1_1_end, case_1_2_amplitudes, limit_amplitude, overturning_amplitudes
 from rocking.plot.boundary_lines import Lines, outcome_lines
 from rocking.plot.style import BLACK, GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted

@@ -10,7 +10,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
-from rocking.closed_form import case_1_2_peak_by_pulse, limit_amplitude
+from rocking.paper.overturning import limit_amplitude
+from rocking.paper.peak import case_1_2_peak_by_pulse
 from rocking.plot.style import WIDTH, shades
 from workflow.figures.spectrum_curves import Block, curve_variables, rows_of
 from workflow.figures.style import panel_letters, plotted

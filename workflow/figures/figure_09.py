@@ -16,7 +16,7 @@ from rocking._boundary.amplitude import thresholds
 from rocking._datasets.cube import read_dataset
 from rocking._model.block import STANDARD_GRAVITY, Block
 from rocking._solver.peak_response import peak_response
-from rocking.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
+from rocking.paper.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
 from rocking.plot.boundary_lines import Lines, draw_lines
 from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files

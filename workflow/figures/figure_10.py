@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking.closed_form import overturning_amplitudes
+from rocking.paper.overturning import overturning_amplitudes
 from rocking.plot.boundary_lines import draw_lines
 from rocking.plot.style import BLACK, GREY, WIDTH, shades
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files

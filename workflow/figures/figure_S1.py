@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.closed_form import EXPANSION_TIME, ad_hoc_sine, pulse_end, uplift_phase
+from rocking.paper.approximation import EXPANSION_TIME, ad_hoc_sine
+from rocking.paper.motion import pulse_end, uplift_phase
 from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.style import panel_letters, plotted
 

@@ -12,8 +12,9 @@ from matplotlib.colors import LogNorm, Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from rocking._datasets.cube import read_spectrum
-from rocking.closed_form import limit_amplitude, overturning_amplitudes, small_peak
-from rocking.groups.scale_law import largest_deviation, restitution_exponent
+from rocking.paper.overturning import limit_amplitude, overturning_amplitudes
+from rocking.paper.peak import small_peak
+from rocking.paper.scale_law import largest_deviation, restitution_exponent
 from rocking.plot.style import WIDTH
 from workflow.figures.style import panel_letters, plotted
 

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rocking._history.time_history import time_history
-from rocking.groups import Groups, GroupSet, groups_of, problem_of_block, scaled_rotation
+from rocking.paper.groups import Groups, GroupSet, groups_of, problem_of_block, scaled_rotation
 from rocking.plot.style import GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted
 

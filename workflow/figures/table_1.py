@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking.orientation import Orientation, multiplication_table
+from rocking.paper.orientation import Orientation, multiplication_table
 from workflow.figures.style import plotted
 
 

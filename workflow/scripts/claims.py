@@ -10,7 +10,7 @@ import xarray as xr
 
 from rocking._boundary.curves import curves_at
 from rocking._datasets.cube import read_dataset, read_spectrum
-from rocking.closed_form import limit_amplitude
+from rocking.paper.overturning import limit_amplitude
 from workflow.claims import boundaries as curves
 from workflow.claims import impact_times, non_slender, similarity, small_rotations, spectra
 from workflow.claims.claim import ABOUT, CLOSE, FAIR, PART, SAME, SMALL, VERDICTS, Claim, percent

@@ -88,7 +88,7 @@ def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> d
     s, omega = traced.slenderness.values, traced.frequency_ratio.values
     expected = np.full(s.size, np.nan)
     if slender:
-        from rocking.closed_form import overturning_amplitudes  # noqa: PLC0415  # 0.3 s, only for this block
+        from rocking.paper.overturning import overturning_amplitudes  # noqa: PLC0415  # 0.3 s, only for this block
 
         closed = overturning_amplitudes(omega, restitution)
         once = [1 / closed.falls_from, 1 / closed.safe_again]  # one impact: a curve of two branches, the nearer one

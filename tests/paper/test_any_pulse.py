@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import simpson
 
 import rocking
-from rocking import closed_form as cf
+from rocking import paper as cf
 from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse
 from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate

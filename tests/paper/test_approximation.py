@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rocking import closed_form as cf
+from rocking import paper as cf
 from tests.direct_integration import integrate
 
 finite = st.floats(-5, 5)

@@ -19,8 +19,8 @@ from rocking._base.errors import InvalidArgumentError, integer
 from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
 from rocking._model.checks import check_number, check_window
 from rocking._model.parameters import RESTITUTION
-from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
-from rocking.closed_form.no_impact import first_uplift_phase, margin_after_impact
+from rocking.paper.any_pulse import first_uplift_phase, margin_after_impact
+from rocking.paper.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
 
 _SAMPLES = 48
 """Points per radian of the pulse at which a change of sign of theta is looked for [-]: no two impacts are closer."""
@@ -50,10 +50,6 @@ def impacts_in_pulse(
         A sum of sinusoids: sine, cosine, C1, ...
     amplitude : float
         a [-], (1, 1e12].
-    frequency_ratio : float
-        omega [-], [1e-12, 1e12].
-    restitution : float
-        eta [-], [0, 1].
     most : int
         Number of impacts after which the motion is no longer followed, 1 to 1000.
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking.closed_form.arguments import Array, checked
-from rocking.closed_form.case_1_1 import overturning_condition
-from rocking.closed_form.case_2 import case_2_amplitude
-from rocking.closed_form.coefficients import coefficients, cot_psi, pulse_end, uplift_phase
-from rocking.closed_form.interval import AmplitudeInterval
-from rocking.closed_form.roots import find_root
-from rocking.closed_form.transcendental import residual, rising_root
+from rocking.paper.arguments import Array, checked
+from rocking.paper.motion import coefficients, cot_psi, pulse_end, uplift_phase
+from rocking.paper.overturning import AmplitudeInterval, case_2_amplitude, overturning_condition
+from rocking.paper.roots import find_root, residual, rising_root
 
 EXPANSION_TIME = 1.0
 """tau_i1^0 = p t_i1^0 [-], (3.23): the initial guess of the impact time, about which (3.24) and (3.25) expand."""
@@ -21,15 +18,7 @@ _LOG_START = np.log(1e-6)  # smallest log(a - 1) of that search
 
 
 def kappa_lambda(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Array, Array]:
-    """Coefficients kappa of e^-tau and lambda of e^tau [-], (3.26), which make (3.24) and (3.25) equal.
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    """
+    """Coefficients kappa of e^-tau and lambda of e^tau [-], (3.26), which make (3.24) and (3.25) equal."""
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     phi = omega * EXPANSION_TIME + uplift_phase(a)
     kappa = -np.e * omega / 2 * (np.cos(phi) + omega * np.sin(phi))  # (3.26)
@@ -38,17 +27,7 @@ def kappa_lambda(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Arra
 
 
 def sine_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """sin(omega tau + psi) [-] to second order about tau = 1, (3.24).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    time : array_like
-        tau since uplift [-].
-    """
+    """sin(omega tau + psi) [-] to second order about tau = 1, (3.24)."""
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     phi, step = omega * EXPANSION_TIME + uplift_phase(a), tau - EXPANSION_TIME
     with np.errstate(over="ignore", invalid="ignore"):
@@ -56,17 +35,7 @@ def sine_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLik
 
 
 def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """kappa e^-tau + lambda e^tau [-] to second order about tau = 1, (3.25).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    time : array_like
-        tau since uplift [-].
-    """
+    """kappa e^-tau + lambda e^tau [-] to second order about tau = 1, (3.25)."""
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     kappa, lambda_ = kappa_lambda(a, omega)
     decaying, growing, step = kappa / np.e, lambda_ * np.e, tau - EXPANSION_TIME
@@ -75,17 +44,7 @@ def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: A
 
 
 def ad_hoc_sine(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """Approximation of sin(omega tau + psi) [-] around tau = 1, (3.27) (figure S1).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    time : array_like
-        tau since uplift [-].
-    """
+    """Approximation of sin(omega tau + psi) [-] around tau = 1, (3.27) (figure S1)."""
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     kappa, lambda_ = kappa_lambda(a, omega)
     constant = (omega**2 + 1) * np.sin(omega * EXPANSION_TIME + uplift_phase(a))
@@ -102,30 +61,13 @@ def _exponential_terms(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tupl
 
 
 def ad_hoc_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
-    """2 theta/alpha [-] before any impact with the sine replaced by (3.27): the left side of (3.28).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    time : array_like
-        tau since uplift [-].
-    """
+    """2 theta/alpha [-] before any impact with the sine replaced by (3.27): the left side of (3.28)."""
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     return residual(*_exponential_terms(a, omega), tau)  # (3.28)
 
 
 def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Approximate time from uplift to the first impact inside the pulse, (3.29).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -138,15 +80,6 @@ def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arra
 
 def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Left side minus right side of the semi-analytical overturning condition (3.30).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    restitution : array_like
-        eta [-], [0, 1].
 
     Returns
     -------
@@ -163,13 +96,6 @@ def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
 
 def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -> AmplitudeInterval:
     """Amplitudes between which (3.30) predicts overturning after an impact within the pulse.
-
-    Parameters
-    ----------
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    restitution : array_like
-        eta [-], [0, 1].
 
     Returns
     -------

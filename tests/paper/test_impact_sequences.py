@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rocking import closed_form as cf
+from rocking import paper as cf
 from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.amplitude import thresholds
 from rocking._solver.peak_response import peak_response

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rocking import closed_form as cf
+from rocking import paper as cf
 from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 

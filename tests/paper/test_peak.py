@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rocking import closed_form as cf
+from rocking import paper as cf
 from rocking._base.errors import InvalidArgumentError
 from rocking._solver.peak_response import peak_response
-from rocking.groups.scale_law import largest_deviation, restitution_exponent, scale_law_deviation
+from rocking.paper import largest_deviation, restitution_exponent, scale_law_deviation
 from tests.direct_integration import peak_of_free_rocking
 
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking._base.errors import InvalidArgumentError
-from rocking.orientation import (
+from rocking.paper import (
     VARIABLES,
     Orientation,
     admissible_exponents,

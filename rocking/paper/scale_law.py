@@ -8,13 +8,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from rocking._base.errors import InvalidArgumentError, float_array
+from rocking._base.errors import InvalidArgumentError, float_array, integer
 from rocking._model.checks import check, check_number
 from rocking._model.parameters import RESTITUTION
-
-Array = NDArray[np.float64]
+from rocking.paper.arguments import Array
 
 
 def scale_law_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, reference: float, axis: int = 0) -> Array:
@@ -102,7 +101,8 @@ def restitution_exponent(peak_rotation: ArrayLike, restitution: ArrayLike, *, ax
 
 def _aligned(peak_rotation: ArrayLike, restitution: ArrayLike, axis: int) -> tuple[Array, Array]:
     """Peaks with restitution as the last axis, and the restitutions."""
-    peak = np.moveaxis(float_array("peak_rotation", peak_rotation), axis, -1)
+    peak = float_array("peak_rotation", peak_rotation)
+    peak = np.moveaxis(peak, integer("axis", axis, -peak.ndim, peak.ndim - 1), -1)
     eta = check(replace(RESTITUTION, closed="right"), restitution)
     if eta.shape != peak.shape[-1:]:
         raise InvalidArgumentError("restitution", eta.shape, f"one value for each of {peak.shape[-1]} peaks")

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import in_range
-from rocking.closed_form.arguments import Array, checked
-from rocking.closed_form.case_1_2 import impact_velocity_squared
-from rocking.closed_form.case_2 import case_2_margin
+from rocking.paper.arguments import Array, checked
+from rocking.paper.overturning import case_2_margin, impact_velocity_squared
 
 
 def peak_of_velocity(velocity: ArrayLike) -> Array:
@@ -44,15 +43,6 @@ def _peak(squared: Array) -> Array:
 def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Peak rotation theta_m/alpha after the first impact, (4.13): closed-form rocking spectrum of the sine.
 
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    restitution : array_like
-        eta [-], [0, 1].
-
     Returns
     -------
     ndarray
@@ -67,15 +57,6 @@ def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
 def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Peak rotation g theta_m/a_g after the first impact [-], second form of (4.13), as in figure 8.
 
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    restitution : array_like
-        eta [-], [0, 1].
-
     Returns
     -------
     ndarray
@@ -87,13 +68,6 @@ def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, res
 
 def scale_function(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """f(a, omega) of the scale law (4.16) [-] in case 1.2: 1 - D0*.
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -114,32 +88,13 @@ def small_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: Ar
     """Leading term of the peak rotation theta_m/alpha [-] for small eta v_i2, (4.14) corrected, scale law (4.16).
 
     nan above (3.10), as `scale_function`.
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    restitution : array_like
-        eta [-], [0, 1].
     """
     a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
     return np.asarray(eta**2 / 2 * scale_function(a, omega))  # (4.14), (4.16), with 1 - D0*, not its square root
 
 
 def small_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
-    """Leading term of g theta_m/a_g [-] for small eta v_i2, (4.15) corrected; nan above (3.10).
-
-    Parameters
-    ----------
-    amplitude : array_like
-        a [-], [1, 1e12].
-    frequency_ratio : array_like
-        omega [-], [1e-12, 1e12].
-    restitution : array_like
-        eta [-], [0, 1].
-    """
+    """Leading term of g theta_m/a_g [-] for small eta v_i2, (4.15) corrected; nan above (3.10)."""
     return np.asarray(small_peak(amplitude, frequency_ratio, restitution) / np.asarray(amplitude))  # (4.15)
 
 

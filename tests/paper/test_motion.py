@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rocking import closed_form as cf
+from rocking import paper as cf
 from rocking._base.errors import InvalidArgumentError
 from tests.direct_integration import integrate
 

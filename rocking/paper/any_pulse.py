@@ -2,7 +2,8 @@
 
 Between impacts the growing part of the motion, E = theta/alpha + velocity -+ 1, obeys E' = E - a f. The block overturns
 after the pulse if E then has the sign of the rotation. This condition is one integral over the pulse, from uplift or
-from an impact on. It contains (3.10), (3.18) and (3.20) and is an independent check of the solver for every pulse.
+from an impact on. It contains (3.10), (3.18) and (3.20) and is an independent check of the solver for every pulse. At
+the end, published conditions of overturning without impact for three simple pulses.
 """
 
 from __future__ import annotations
@@ -11,13 +12,15 @@ import cmath
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from rocking._base.errors import number, positive
 from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking._model.checks import check_number
+from rocking._model.checks import check, check_number
 from rocking._model.parameters import RESTITUTION
-from rocking.closed_form.arguments import ANY_FREQUENCY_RATIO
+from rocking.paper.arguments import ANY_FREQUENCY_RATIO, Array
+from rocking.paper.roots import find_root
 
 _NEGLIGIBLE = 50.0  # time s beyond which e^-s < 2e-22 is neglected
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
@@ -25,13 +28,6 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
     """Phase of the pulse at which |a f| first reaches 1.
-
-    Parameters
-    ----------
-    pulse : str or AbstractPulse
-        Pulse.
-    amplitude : float
-        a [-], (0, inf).
 
     Returns
     -------
@@ -55,8 +51,6 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
     ----------
     pulse : str or AbstractPulse
         Closed form for sums of sinusoids, composite Gauss quadrature for others.
-    frequency_ratio : float
-        omega [-], [1e-12, 1e12].
     start_phase : float
         phi at tau_0 [rad], within the pulse.
     """
@@ -83,15 +77,6 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
 
 def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequency_ratio: float) -> float:
     """Margin of overturning without impact, for any pulse.
-
-    Parameters
-    ----------
-    pulse : str or AbstractPulse
-        Pulse.
-    amplitude : float
-        a [-], (0, inf).
-    frequency_ratio : float
-        omega [-], [1e-12, 1e12].
 
     Returns
     -------
@@ -121,14 +106,6 @@ def margin_after_impact(
 
     Parameters
     ----------
-    pulse : str or AbstractPulse
-        Pulse.
-    amplitude : float
-        a [-], (0, inf).
-    frequency_ratio : float
-        omega [-], [1e-12, 1e12].
-    restitution : float
-        eta [-], [0, 1].
     impact_phase : float
         phi of the impact [rad]; the forcing is zero from the end of the pulse on.
     impact_velocity : float
@@ -146,3 +123,49 @@ def margin_after_impact(
     velocity = number("impact_velocity", impact_velocity, -math.inf, math.inf)
     forced = discounted_integral(shape, frequency_ratio, phase) if phase < shape.end else 0.0
     return eta * abs(velocity) - math.copysign(a, velocity) * forced - 1
+
+
+def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Smallest amplitude at which a rectangular pulse of duration T_p/2 overturns the block (Housner 1963).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        omega [-], [1e-12, 1e12]; the pulse lasts p t_1 = pi/omega.
+
+    Returns
+    -------
+    ndarray
+        a = 1/(1 - exp(-p t_1)) [-].
+    """
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    return np.asarray(-1 / np.expm1(-np.pi / omega))
+
+
+def half_sine_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Smallest amplitude at which half a sine overturns the block (Shi et al. 1996).
+
+    Returns
+    -------
+    ndarray
+        a = 1/sin(psi) [-] with omega sin(psi) - cos(psi) = exp(-(pi - psi)/omega).
+    """
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    psi = find_root(_half_sine, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
+    return np.asarray(1 / np.sin(psi))
+
+
+def _half_sine(psi: Array, omega: Array) -> Array:
+    return np.asarray(omega * np.sin(psi) - np.cos(psi) - np.exp(-(np.pi - psi) / omega))
+
+
+def cosine_amplitude(frequency_ratio: ArrayLike) -> Array:
+    """Smallest amplitude at which one full cosine overturns the block, if no impact occurs within the pulse.
+
+    Returns
+    -------
+    ndarray
+        a = (1 + omega^2)/(1 - exp(-2 pi/omega)) [-].
+    """
+    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    return np.asarray(-(1 + omega**2) / np.expm1(-2 * np.pi / omega))

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rocking import groups
+from rocking import paper
 from rocking._base.errors import InvalidArgumentError
 from rocking._model.block import Block
 from rocking._solver.peak_response import peak_response
-from rocking.groups import Groups, GroupSet, Problem
+from rocking.paper import Groups, GroupSet, Problem
 
 problems = st.builds(
     Problem,
@@ -29,8 +29,8 @@ def assert_same(left: Problem, right: Problem) -> None:
 
 @given(problem=problems, group_set=sets)
 def test_problem_of_block_inverts_groups_of(problem, group_set):
-    found = groups.groups_of(problem, group_set)
-    again = groups.problem_of_block(
+    found = paper.groups_of(problem, group_set)
+    again = paper.problem_of_block(
         found,
         group_set,
         alpha=problem.alpha,
@@ -42,8 +42,8 @@ def test_problem_of_block_inverts_groups_of(problem, group_set):
 
 @given(problem=problems, group_set=sets)
 def test_problem_of_pulse_inverts_groups_of(problem, group_set):
-    found = groups.groups_of(problem, group_set)
-    again = groups.problem_of_pulse(
+    found = paper.groups_of(problem, group_set)
+    again = paper.problem_of_pulse(
         found,
         group_set,
         peak_acceleration=problem.peak_acceleration,
@@ -55,29 +55,29 @@ def test_problem_of_pulse_inverts_groups_of(problem, group_set):
 
 @given(problem=problems, group_set=sets, rotation=st.floats(-1, 1), time=st.floats(0, 10), velocity=st.floats(-5, 5))
 def test_scaling_of_responses_is_inverted(problem, group_set, rotation, time, velocity):
-    there = groups.scaled_rotation(rotation, problem, group_set)
-    assert groups.rotation_of_scaled(there, problem, group_set) == pytest.approx(rotation, rel=1e-14)
-    assert groups.time_of_scaled(groups.scaled_time(time, problem), problem) == pytest.approx(time, rel=1e-14)
-    there = groups.scaled_angular_velocity(velocity, problem, group_set)
-    assert groups.angular_velocity_of_scaled(there, problem, group_set) == pytest.approx(velocity, rel=1e-14)
+    there = paper.scaled_rotation(rotation, problem, group_set)
+    assert paper.rotation_of_scaled(there, problem, group_set) == pytest.approx(rotation, rel=1e-14)
+    assert paper.time_of_scaled(paper.scaled_time(time, problem), problem) == pytest.approx(time, rel=1e-14)
+    there = paper.scaled_angular_velocity(velocity, problem, group_set)
+    assert paper.angular_velocity_of_scaled(there, problem, group_set) == pytest.approx(velocity, rel=1e-14)
 
 
 def test_groups_have_the_values_defined_in_the_paper():
     problem = Problem(alpha=0.2, frequency_parameter=2.0, peak_acceleration=4.0, pulse_frequency=8.0, gravity=10.0)
-    slender = groups.groups_of(problem, GroupSet.SLENDER_BY_BLOCK)
+    slender = paper.groups_of(problem, GroupSet.SLENDER_BY_BLOCK)
     assert slender.frequency_ratio == 4  # (3.6)
     assert slender.slenderness == pytest.approx(10 * 0.2 / 4)  # (4.11)
     assert slender.amplitude == pytest.approx(4 / (10 * 0.2))  # (3.6)
-    assert groups.scaled_time(3.0, problem) == 6  # (3.6)
-    rigid = groups.groups_of(problem, GroupSet.RIGID)
+    assert paper.scaled_time(3.0, problem) == 6  # (3.6)
+    rigid = paper.groups_of(problem, GroupSet.RIGID)
     assert rigid.slenderness == pytest.approx(10 * np.tan(0.2) / 4)  # (5.3), (6.1)
     assert rigid.cos_alpha == pytest.approx(np.cos(0.2))
-    scaled = {s: float(groups.scaled_rotation(0.05, problem, s)) for s in GroupSet}
+    scaled = {s: float(paper.scaled_rotation(0.05, problem, s)) for s in GroupSet}
     assert scaled[GroupSet.SLENDER_BY_BLOCK] == pytest.approx(0.05 / 0.2)  # (4.10)
     assert scaled[GroupSet.SLENDER_BY_PULSE] == pytest.approx(0.05 * 10 / 4)  # (4.11), (4.1)
     assert scaled[GroupSet.RIGID] == pytest.approx(0.05 * 10 / 4)  # (5.3)
     assert scaled[GroupSet.RIGID_SMALL_ROTATION] == pytest.approx(0.05 * 10 / (4 * np.cos(0.2)))  # (6.1)
-    velocity = groups.scaled_angular_velocity(0.1, problem, GroupSet.SLENDER_BY_PULSE)
+    velocity = paper.scaled_angular_velocity(0.1, problem, GroupSet.SLENDER_BY_PULSE)
     assert velocity == pytest.approx(10 * 0.1 / (2 * 4))  # (4.1)
 
 
@@ -85,15 +85,15 @@ def test_two_blocks_of_equal_groups_have_equal_scaled_responses():
     eta, wanted = 0.85, Groups(frequency_ratio=4.0, slenderness=0.5)
     peaks = []
     for block in (Block.from_slenderness_angle(0.12, 1.0), Block.from_slenderness_angle(0.24, 3.0)):
-        problem = groups.problem_of_block(
+        problem = paper.problem_of_block(
             wanted, GroupSet.SLENDER_BY_PULSE, alpha=block.alpha, frequency_parameter=block.frequency_parameter
         )
-        found = groups.groups_of(problem, GroupSet.SLENDER_BY_PULSE)
+        found = paper.groups_of(problem, GroupSet.SLENDER_BY_PULSE)
         peak = peak_response(
             "cosine", slenderness=found.slenderness, frequency_ratio=found.frequency_ratio, restitution=eta
         ).peak_rotation
-        rotation = groups.rotation_of_scaled(peak, problem, GroupSet.SLENDER_BY_BLOCK)
-        peaks.append((float(rotation), float(groups.scaled_rotation(rotation, problem, GroupSet.SLENDER_BY_PULSE))))
+        rotation = paper.rotation_of_scaled(peak, problem, GroupSet.SLENDER_BY_BLOCK)
+        peaks.append((float(rotation), float(paper.scaled_rotation(rotation, problem, GroupSet.SLENDER_BY_PULSE))))
     (first, first_scaled), (second, second_scaled) = peaks
     assert first != pytest.approx(second, rel=0.1)
     assert first_scaled == pytest.approx(second_scaled, rel=1e-12)
@@ -101,8 +101,8 @@ def test_two_blocks_of_equal_groups_have_equal_scaled_responses():
 
 def test_problem_arrays_broadcast():
     problem = Problem(0.2, np.array([[1.0], [2.0]]), np.array([3.0, 4.0, 5.0]), 8.0)
-    assert groups.groups_of(problem, GroupSet.RIGID).frequency_ratio.shape == (2, 1)
-    assert groups.scaled_angular_velocity(0.1, problem, GroupSet.RIGID).shape == (2, 3)
+    assert paper.groups_of(problem, GroupSet.RIGID).frequency_ratio.shape == (2, 1)
+    assert paper.scaled_angular_velocity(0.1, problem, GroupSet.RIGID).shape == (2, 3)
 
 
 @pytest.mark.parametrize("name", ["alpha", "frequency_parameter", "peak_acceleration", "pulse_frequency", "gravity"])
@@ -121,11 +121,11 @@ def test_groups_refuse_values_out_of_range():
 
 
 def test_blocks_with_other_cos_alpha_are_refused():
-    found = groups.groups_of(Problem(0.3, 2.0, 4.0, 8.0), GroupSet.RIGID)
+    found = paper.groups_of(Problem(0.3, 2.0, 4.0, 8.0), GroupSet.RIGID)
     with pytest.raises(InvalidArgumentError, match="`cos_alpha`"):
-        groups.problem_of_block(found, GroupSet.RIGID, alpha=0.2, frequency_parameter=2.0)
+        paper.problem_of_block(found, GroupSet.RIGID, alpha=0.2, frequency_parameter=2.0)
     with pytest.raises(InvalidArgumentError, match="`cos_alpha`"):
-        groups.problem_of_pulse(found, GroupSet.RIGID, peak_acceleration=8.0, pulse_frequency=8.0)
+        paper.problem_of_pulse(found, GroupSet.RIGID, peak_acceleration=8.0, pulse_frequency=8.0)
     slender = Groups(frequency_ratio=1.0, slenderness=3.0)
     with pytest.raises(InvalidArgumentError, match="`alpha`"):
-        groups.problem_of_pulse(slender, GroupSet.SLENDER_BY_PULSE, peak_acceleration=9.0, pulse_frequency=8.0)
+        paper.problem_of_pulse(slender, GroupSet.SLENDER_BY_PULSE, peak_acceleration=9.0, pulse_frequency=8.0)

@@ -9,9 +9,9 @@ import pytest
 import yaml
 
 import rocking
-from rocking import closed_form as cf
+from rocking import paper as cf
 from rocking._base.errors import InvalidArgumentError
-from rocking.orientation import Orientation, quantity_of
+from rocking.paper import Orientation, quantity_of
 from tests.direct_integration import integrate, peak_of_free_rocking
 
 CONFIG = Path(__file__).parents[2] / "workflow" / "config" / "paper.yaml"

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking import closed_form
+from rocking import paper
 from rocking._base.errors import InvalidArgumentError
-from rocking.closed_form.arguments import checked
+from rocking.paper.arguments import checked
 
 VALUES = {
     "amplitude": [2.0, 3.0],
@@ -25,7 +25,7 @@ VALUES = {
 
 def functions_of_arrays():
     """The closed forms with two array arguments or more."""
-    for name, function in inspect.getmembers(closed_form, inspect.isfunction):
+    for name, function in inspect.getmembers(paper, inspect.isfunction):
         arguments = [str(one) for one in inspect.signature(function).parameters]
         if len(arguments) > 1 and set(arguments) <= VALUES.keys():
             yield pytest.param(function, arguments, id=name)
