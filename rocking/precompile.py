@@ -13,8 +13,7 @@ import numpy as np
 from rocking._boundary.trends import load_entries
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse
 from rocking._excitation.records.record import Record
-from rocking._history.record_history import record_history
-from rocking._history.time_history import time_history
+from rocking._history.time_history import record_history, time_history
 from rocking._lookup.cube import Cube
 from rocking._lookup.cube_slice import slice_of
 from rocking._numba.kernel_cache import NOT_KEPT, cache_folder

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from benchmarks.ablations.ablation import Ablation, measure_both
 from rocking._excitation.pulses import as_pulse
-from rocking._history.body_motion import MAX_FREE_IMPACTS, MAX_ROTATION
+from rocking._history.motion import MAX_FREE_IMPACTS, MAX_ROTATION
 from rocking._history.sampling import REST_VELOCITY, sample_free_rocking
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
@@ -83,6 +83,7 @@ def follow_block(
     body: Record,
     steps: Record,
     followed: int,
+    history: FloatArray,
     impact_times: FloatArray,
     stop: FloatArray,
     counts: FloatArray,
@@ -106,7 +107,6 @@ def follow_block(
     if before_end and followed & BEYOND:
         counts[FARTHER] += continue_beyond_return(flight, steps, phase)
     if not before_end and followed & FREE:
-        nothing = impact_times[:0]
         set_block(body, slenderness, eta, alpha)
         farthest = min(MAX_ROTATION, 0.5 * math.pi / alpha) if alpha > 0.0 else MAX_ROTATION
         counts[IMPACTS] += sample_free_rocking(
@@ -118,9 +118,7 @@ def follow_block(
             0.0,
             LONG_DURATION,
             farthest,
-            nothing,
-            nothing,
-            nothing,
+            history,
             impact_times,
             stop,
         )
@@ -137,6 +135,7 @@ def follow_blocks(
     body: Record,
     steps: Record,
     followed: int,
+    history: FloatArray,
     impact_times: FloatArray,
     stop: FloatArray,
     counts: FloatArray,
@@ -144,7 +143,9 @@ def follow_blocks(
 ) -> None:
     """Solve blocks one after another; fills `peaks` (cells,)."""
     for i in range(len(slenderness)):
-        follow_block(slenderness[i], omega[i], eta, alpha, flight, body, steps, followed, impact_times, stop, counts)
+        follow_block(
+            slenderness[i], omega[i], eta, alpha, flight, body, steps, followed, history, impact_times, stop, counts
+        )
         peaks[i] = flight.peak_rotation
 
 
@@ -167,6 +168,7 @@ def followed(alpha: float, side: int, what: int) -> tuple[NDArray[np.float64], N
         np.zeros(1, BLOCK_STATE)[0],
         step_state(flight),
         what,
+        np.empty((3, 0)),
         np.empty(MAX_FREE_IMPACTS),
         NEVER_STOPPED,
         counts,

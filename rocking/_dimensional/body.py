@@ -21,8 +21,8 @@ from rocking._dimensional.record_groups import HIGHEST_SCALE
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, reactions_of
-from rocking._history.record_history import MAX_SAMPLES, default_times
-from rocking._history.record_motion import SamplesMotion
+from rocking._history.motion import SamplesMotion
+from rocking._history.time_history import MAX_SAMPLES, default_times
 from rocking._model.body import AbstractBody
 from rocking._model.checks import check, check_number
 from rocking._model.outcome import Outcome

@@ -16,9 +16,7 @@ from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import reject_flight
-from rocking._history.body_motion import FREE_DURATION, BodyMotion
-from rocking._history.motion import PulseMotion
-from rocking._history.record_motion import SamplesMotion
+from rocking._history.motion import FREE_DURATION, BodyMotion, PulseMotion, SamplesMotion
 from rocking._model.body import AbstractBody
 from rocking._model.checks import check
 from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SMALLEST_ALPHA

@@ -16,8 +16,7 @@ from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, perio
 from rocking._dimensional.record_groups import checked_scale, record_groups
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
-from rocking._history.record_history import record_history
-from rocking._history.time_history import time_history
+from rocking._history.time_history import record_history, time_history
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._numba.cancellation import StopFlag

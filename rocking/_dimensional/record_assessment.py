@@ -13,7 +13,7 @@ from rocking._dimensional.record_scales import ScaleThresholds, scale_thresholds
 from rocking._excitation.records.record import TIME_STEP, Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._history.contact import ContactExtremes, contact_extremes
-from rocking._history.record_motion import build_record_motion
+from rocking._history.motion import build_record_motion
 from rocking._model.outcome import Outcome
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag, run_with_timeout

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking._history.body_motion import BodyMotion, overturned
+from rocking._history.motion import BodyMotion, overturned
 from rocking._model.reactions import Floats, Reactions, impulse_ratio, reactions
 from rocking._model.response import Outcome
 from rocking._numba.compilation import Record

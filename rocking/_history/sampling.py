@@ -1,95 +1,130 @@
-"""Time histories from the flights of the solver: samples of each flight, then of free rocking, impact by impact."""
+"""Time histories from the flights of the solver: samples of each flight, then of free rocking, impact by impact.
+
+The event loop of the solver, for a pulse or for samples of the ground motion, follows one flight after the other; each
+is then repeated from its start, by the same arcs, pieces or Taylor steps, and evaluated at the times inside it. So a
+history has the events of the response, and samples do not change them.
+
+In all functions `history` is a float array (3, times): the rows `TAU`, ascending times from the start of the ground
+motion [-], `ROTATION` theta/alpha and `VELOCITY` theta'/(p alpha), the last two zero on entry. `filled` is the number
+of times that are passed. `impact_times` is filled with the times of the impacts, as many as fit; `max_rotation` is the
+|theta|/alpha at which the history of a body that overturns may stop [-]. Once another thread sets `stop`, a uint8 array
+(1,), to 1, a function returns within a flight; samples are missing.
+"""
 
 from __future__ import annotations
 
 import math
 
+from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._solver.arcs.flight import set_angles, state_at
 from rocking._solver.kernels.event_loop import advance, advance_by_arc, init_state
+from rocking._solver.records import taylor_flight as pieces
+from rocking._solver.records.arc_flight import flight_by_arcs
+from rocking._solver.records.batch import end_flight
+from rocking._solver.records.event_loop import init_body_state, restoring_at, start_flight
+from rocking._solver.records.piece import piece_state
+from rocking._solver.records.samples import SHAPE, TIME, interval_length
+from rocking._solver.records.taylor_step import take_step as take_piece_step
 from rocking._solver.rules import set_body, set_sign
+from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 from rocking._solver.taylor.events import evaluate_series
-from rocking._solver.taylor.flight import impact_in_step, start_steps
+from rocking._solver.taylor.flight import MAX_STEPS, impact_in_step, start_steps
 from rocking._solver.taylor.step import set_edge_lane, take_step
+
+TAU, ROTATION, VELOCITY = range(3)
+"""Rows of a history."""
 
 REST_VELOCITY = 1e-7
 """Velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha."""
 
 
-@kernel
-def sample_step(
-    steps: Record,
-    sign: float,
-    start: float,
-    end: float,
-    tau: FloatArray,
-    filled: int,
-    rotation: FloatArray,
-    velocity: FloatArray,
-) -> int:
-    """Evaluate the Taylor step that starts at time `start` at the samples before `end`; returns the samples passed."""
-    order = steps.order
-    while filled < len(tau) and tau[filled] < end:
-        h = max(tau[filled] - start, 0.0)  # sums of steps are rounded differently
-        rotation[filled] = sign * evaluate_series(steps.z, 0, order, h)
-        velocity[filled] = sign * evaluate_series(steps.rate, 0, order - 1, h)
-        filled += 1
-    return filled
-
-
-@kernel
-def sample_steps(
+@entry
+def solve_and_sample(
+    cell: Record,
     flight: Record,
     steps: Record,
-    start: float,
-    end: float,
     max_rotation: float,
-    tau: FloatArray,
-    filled: int,
-    rotation: FloatArray,
-    velocity: FloatArray,
-) -> tuple[int, float, float]:
-    """Repeat the last flight of `advance`, at most to z = `max_rotation`; returns the samples passed, last z, w."""
-    steps.omega[0] = flight.omega
-    start_steps(flight, steps, 0)
-    elapsed, z, w = 0.0, 0.0, flight.w0
-    while elapsed < flight.length and z < max_rotation:
-        steps.limit[0] = flight.length - elapsed
-        take_step(steps)
-        h = steps.h[0]
-        last = elapsed + h >= flight.length
-        filled = sample_step(
-            steps,
-            flight.sign,
-            start + elapsed,
-            end if last else start + (elapsed + h),
-            tau,
-            filled,
-            rotation,
-            velocity,
-        )
-        elapsed += h
-        z, w = steps.z1[0], steps.w1[0]
-        steps.z0[0], steps.w0[0], steps.starts_at_uplift[0] = z, w, 0.0
-        steps.phase[0] += flight.omega * h
-    return filled, z, w
+    history: FloatArray,
+    impact_times: FloatArray,
+    stop: FloatArray,
+) -> int:
+    """One body under a pulse from rest to its final outcome, sampled during the pulse; returns the impacts written.
+
+    Parameters
+    ----------
+    cell
+        A record `BODY_CELL`.
+    flight, steps
+        Solver state, records of `pulse_state` and `step_state`; `flight` holds the response on return.
+    """
+    return sample_pulse(cell, flight, steps, max_rotation, history, impact_times, stop)
 
 
-@kernel
-def sample_arc(
-    flight: Record, start: float, end: float, tau: FloatArray, filled: int, rotation: FloatArray, velocity: FloatArray
-) -> tuple[int, float, float]:
-    """Evaluate the arc of the last flight of `advance`; returns the samples passed, last z, w."""
-    while filled < len(tau) and tau[filled] < end:
-        h = max(tau[filled] - start, 0.0)
-        set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
-        z, w = state_at(flight, h, flight.cosine1, flight.sine1)
-        rotation[filled], velocity[filled] = flight.sign * z, flight.sign * w
-        filled += 1
-    set_angles(flight, flight.phase + flight.omega * flight.length, flight.cosine1, flight.sine1)
-    z, w = state_at(flight, flight.length, flight.cosine1, flight.sine1)
-    return filled, z, w
+@entry
+def sample_arcs(
+    cell: Record,
+    flight: Record,
+    max_rotation: float,
+    history: FloatArray,
+    impact_times: FloatArray,
+    stop: FloatArray,
+) -> int:
+    """`solve_and_sample` for a slender block under sinusoids, compiled without Taylor steps."""
+    return sample_pulse(cell, flight, None, max_rotation, history, impact_times, stop)
+
+
+@entry
+def sample_record(
+    samples: FloatArray,
+    cell: Record,
+    block: Record,
+    start: Record,
+    steps: Record,
+    max_rotation: float,
+    history: FloatArray,
+    impact_times: FloatArray,
+    stop: FloatArray,
+) -> int:
+    """One body under samples from rest to its final outcome, sampled during the motion; returns the impacts written.
+
+    Parameters
+    ----------
+    samples
+        As for `rocking._solver.records.batch.solve_by_steps`.
+    cell
+        A record `BODY_CELL`.
+    block, start, steps
+        Solver state: two records `BLOCK_STATE`, and `step_state`; `block` holds the response on return, with z, w and
+        sgn(theta) at the last sample of the motion, 0 at rest.
+    """
+    init_body_state(block, cell, False)
+    by_pieces = cell.alpha == 0.0 and cell.vertical == 0.0
+    last = cell.rate * samples[TIME, len(samples[SHAPE]) - 1]
+    filled, written = 0, 0
+    while start_flight(block, samples) and not is_stopped(stop):
+        copy_start(block, start)
+        begin = cell.rate * samples[TIME, block.interval] + block.s
+        filled = pass_times(history, filled, begin)  # at rest
+        if by_pieces:
+            ended, k, s, z, w = flight_by_arcs(block, samples)
+        else:
+            ended, k, s, z, w = flight_by_taylor_steps(block, samples, steps)
+        going = end_flight(block, samples, ended, k, s, z, w)
+        end = cell.rate * samples[TIME, k] + s if ended == IMPACT else last
+        if ended == IMPACT and written < len(impact_times):
+            impact_times[written] = end
+            written += 1
+        limit = max_rotation if ended != IMPACT else math.inf
+        if by_pieces:
+            filled, z, w = sample_pieces(start, samples, end, limit, history, filled)
+        else:
+            filled, z, w = sample_piece_steps(start, samples, steps, end, limit, history, filled)
+        if not going:
+            block.end_rotation, block.end_velocity = z, w
+            break
+    return written
 
 
 @kernel
@@ -98,22 +133,16 @@ def sample_pulse(
     flight: Record,
     steps: Record | None,
     max_rotation: float,
-    tau: FloatArray,
-    rotation: FloatArray,
-    velocity: FloatArray,
+    history: FloatArray,
     impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps.
-
-    The event loop of the solver follows one flight after the other; each is then repeated from its start and evaluated
-    at the times inside it. So a history has the events of the response, and samples do not change them.
-    """
+    """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
     set_body(flight, cell, False)
     omega = cell.rate
     init_state(flight, omega)
     pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
-    filled, written = 0, 0  # times that lie before the end of the flight, impacts
+    filled, written = 0, 0
     going = flight.interval_count > 0  # whether the last flight ended in an impact
     while going and not is_stopped(stop):
         flight.length = math.nan
@@ -129,15 +158,14 @@ def sample_pulse(
                 written += 1
         elif end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
             flight.length, end = pulse_end - start, pulse_end
-        while filled < len(tau) and tau[filled] < start:
-            filled += 1  # at rest
+        filled = pass_times(history, filled, start)  # at rest
         # `advance` has set the angles of the next flight: restore those of this one
         set_angles(flight, flight.phase, flight.cosine0, flight.sine0)
         if steps is None or flight.by_arcs == 1:
-            filled, z, w = sample_arc(flight, start, end, tau, filled, rotation, velocity)
+            filled, z, w = sample_arc(flight, start, end, history, filled)
         else:
             limit = math.inf if going else max_rotation
-            filled, z, w = sample_steps(flight, steps, start, end, limit, tau, filled, rotation, velocity)
+            filled, z, w = sample_steps(flight, steps, start, end, limit, history, filled)
         if going:
             set_angles(flight, flight.next_phase, flight.cosine0, flight.sine0)
         else:
@@ -145,58 +173,151 @@ def sample_pulse(
     return written
 
 
-@entry
-def solve_and_sample(
-    cell: Record,
+@kernel
+def pass_times(history: FloatArray, filled: int, start: float) -> int:
+    """Pass the times before `start`; returns the number of times passed."""
+    while filled < history.shape[1] and history[TAU, filled] < start:
+        filled += 1
+    return filled
+
+
+@kernel
+def sample_step(steps: Record, sign: float, start: float, end: float, history: FloatArray, filled: int) -> int:
+    """Evaluate the Taylor step that starts at time `start` at the times before `end`; returns the times passed."""
+    order = steps.order
+    while filled < history.shape[1] and history[TAU, filled] < end:
+        h = max(history[TAU, filled] - start, 0.0)  # sums of steps are rounded differently
+        history[ROTATION, filled] = sign * evaluate_series(steps.z, 0, order, h)
+        history[VELOCITY, filled] = sign * evaluate_series(steps.rate, 0, order - 1, h)
+        filled += 1
+    return filled
+
+
+@kernel
+def sample_arc(flight: Record, start: float, end: float, history: FloatArray, filled: int) -> tuple[int, float, float]:
+    """Evaluate the arc of the last flight of `advance`; returns the times passed, last z, w."""
+    while filled < history.shape[1] and history[TAU, filled] < end:
+        h = max(history[TAU, filled] - start, 0.0)
+        set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
+        z, w = state_at(flight, h, flight.cosine1, flight.sine1)
+        history[ROTATION, filled], history[VELOCITY, filled] = flight.sign * z, flight.sign * w
+        filled += 1
+    set_angles(flight, flight.phase + flight.omega * flight.length, flight.cosine1, flight.sine1)
+    z, w = state_at(flight, flight.length, flight.cosine1, flight.sine1)
+    return filled, z, w
+
+
+@kernel
+def sample_steps(
     flight: Record,
     steps: Record,
+    start: float,
+    end: float,
     max_rotation: float,
-    tau: FloatArray,
-    rotation: FloatArray,
-    velocity: FloatArray,
-    impact_times: FloatArray,
-    stop: FloatArray,
-) -> int:
-    """One block from rest to its final outcome, sampled at the times `tau` during the pulse.
+    history: FloatArray,
+    filled: int,
+) -> tuple[int, float, float]:
+    """Repeat the last flight of `advance`, at most to z = `max_rotation`; returns the times passed, last z, w."""
+    steps.omega[0] = flight.omega
+    start_steps(flight, steps, 0)
+    elapsed, z, w = 0.0, 0.0, flight.w0
+    while elapsed < flight.length and z < max_rotation:
+        steps.limit[0] = flight.length - elapsed
+        take_step(steps)
+        h = steps.h[0]
+        until = end if elapsed + h >= flight.length else start + (elapsed + h)
+        filled = sample_step(steps, flight.sign, start + elapsed, until, history, filled)
+        elapsed += h
+        z, w = steps.z1[0], steps.w1[0]
+        steps.z0[0], steps.w0[0], steps.starts_at_uplift[0] = z, w, 0.0
+        steps.phase[0] += flight.omega * h
+    return filled, z, w
 
-    Fills `rotation` theta/alpha and `velocity` theta'/(p alpha).
 
-    Parameters
-    ----------
-    cell
-        A record `BODY_CELL`.
-    flight, steps
-        Solver state, records of `pulse_state` and `step_state`; `flight` holds the response on return.
-    max_rotation : float
-        |theta|/alpha at which the history of a block that overturns may stop [-].
-    tau : float array (samples,)
-        Times from the pulse's start [-], ascending; `rotation` and `velocity` (samples,) are zero on entry.
-    impact_times : float array
-        Filled with the times of the impacts, as many as fit.
-    stop : uint8 array (1,)
-        Once another thread sets it to 1, the function returns within a flight; samples are missing.
+@kernel
+def flight_by_taylor_steps(block: Record, samples: FloatArray, steps: Record) -> tuple[int, int, float, float, float]:
+    """Follow one flight in the first lane; returns the same as `flight_by_arcs`."""
+    pieces.start_steps(block, samples, steps, 0)
+    for _ in range(MAX_STEPS + 8 * len(samples[SHAPE])):
+        take_piece_step(steps)
+        ended, s, z, w = pieces.process_step(block, samples, steps, 0)
+        if ended != IN_FLIGHT:
+            return ended, block.interval, s, z, w
+    raise SearchError("a flight does not end")
 
-    Returns
-    -------
-    int
-        Number of impacts written.
+
+@kernel
+def sample_pieces(
+    start: Record,
+    samples: FloatArray,
+    end: float,
+    max_rotation: float,
+    history: FloatArray,
+    filled: int,
+) -> tuple[int, float, float]:
+    """Repeat a flight of the slender block, piece by piece, from the state at its start.
+
+    Returns the times passed, z and w at `end` or at the last sample of the motion.
     """
-    return sample_pulse(cell, flight, steps, max_rotation, tau, rotation, velocity, impact_times, stop)
+    k, s = start.interval, start.s
+    z, w = 0.0, start.w0
+    count = len(samples[SHAPE]) - 1
+    while k < count and z < max_rotation:
+        left, h = start.h * samples[TIME, k], interval_length(start, samples, k)
+        q0, q1 = restoring_at(start, samples, k), restoring_at(start, samples, k + 1)
+        r = (q1 - q0) / h
+        at = 0.0 if start.starts_at_uplift == 1 and k == start.interval else q0 + r * s
+        right = min(end, start.h * samples[TIME, k + 1])
+        while filled < history.shape[1] and history[TAU, filled] < right:
+            at_sample, rate = piece_state(z, w, at, r, max(history[TAU, filled] - (left + s), 0.0))
+            history[ROTATION, filled], history[VELOCITY, filled] = start.sign * at_sample, start.sign * rate
+            filled += 1
+        z, w = piece_state(z, w, at, r, max(right - (left + s), 0.0))
+        if right == end:
+            break
+        k, s = k + 1, 0.0
+    return filled, z, w
 
 
-@entry
-def sample_arcs(
-    cell: Record,
-    flight: Record,
+@kernel
+def sample_piece_steps(
+    start: Record,
+    samples: FloatArray,
+    steps: Record,
+    end: float,
     max_rotation: float,
-    tau: FloatArray,
-    rotation: FloatArray,
-    velocity: FloatArray,
-    impact_times: FloatArray,
-    stop: FloatArray,
-) -> int:
-    """`solve_and_sample` for a slender block under sinusoids, compiled without Taylor steps."""
-    return sample_pulse(cell, flight, None, max_rotation, tau, rotation, velocity, impact_times, stop)
+    history: FloatArray,
+    filled: int,
+) -> tuple[int, float, float]:
+    """`sample_pieces` for any body by Taylor steps; `start` is changed."""
+    pieces.start_steps(start, samples, steps, 0)
+    sign, ended = start.sign, IN_FLIGHT
+    z, w = 0.0, start.w0
+    for _ in range(MAX_STEPS + 8 * len(samples[SHAPE])):
+        left = start.h * samples[TIME, start.interval] + start.s
+        take_piece_step(steps)
+        right = min(end, left + steps.h[0])
+        filled = sample_step(steps, sign, left, right, history, filled)
+        z, w = steps.z1[0], steps.w1[0]
+        ended, _, _, _ = pieces.process_step(start, samples, steps, 0)
+        if right == end or z >= max_rotation or ended == PULSE_END:
+            break
+        if ended != IN_FLIGHT:  # overturning is certain, the flight continues
+            pieces.start_piece(start, samples, steps, 0, False)
+    return filled, z, w
+
+
+@kernel
+def copy_start(block: Record, start: Record) -> None:
+    """Copy what describes the start of a flight."""
+    for side in range(2):
+        start.a[side], start.ratio[side] = block.a[side], block.ratio[side]
+        start.stiffness[side] = block.stiffness[side]
+    start.alpha, start.h, start.vertical, start.each_side = block.alpha, block.h, block.vertical, 0
+    start.interval, start.s, start.w0 = block.interval, block.s, block.w0
+    set_sign(start, block.sign)
+    start.starts_at_uplift, start.at_rest = block.starts_at_uplift, 0
+    start.peak_rotation, start.largest_z = 1e300, 0.0  # no peak exceeds it: none is searched for
 
 
 @entry
@@ -209,13 +330,11 @@ def sample_free_rocking(
     start: float,
     horizon: float,
     max_rotation: float,
-    tau: FloatArray,
-    rotation: FloatArray,
-    velocity: FloatArray,
+    history: FloatArray,
     impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """Continue from the state that the solver left at the end of the pulse.
+    """Continue from the state that the solver left at the end of the ground motion; returns the impacts written.
 
     Without ground motion z has one maximum in a flight, after which it falls to the next impact: each Taylor step holds
     at most one impact, which `impact_in_step` finds. The restitution ends the motion at `REST_VELOCITY`.
@@ -229,28 +348,13 @@ def sample_free_rocking(
     steps
         Solver state of `step_state`.
     start, horizon : float
-        Times from the pulse's start at which free rocking begins and at which to stop [-].
-    max_rotation : float
-        |theta|/alpha at which to stop [-].
-    tau, rotation, velocity : float arrays (samples,)
-        Filled for times from `start` on.
-    impact_times : float array
-        Filled with the times of the impacts, as many as fit.
-    stop : uint8 array (1,)
-        Once another thread sets it to 1, the function returns within a flight; samples are missing.
-
-    Returns
-    -------
-    int
-        Number of impacts written.
+        Times from the start of the ground motion at which free rocking begins and at which to stop [-].
     """
     set_sign(body, sign)
     set_edge_lane(steps, 0, body, body.side)
     steps.omega[0] = 1.0
     steps.strength[0], steps.starts_at_uplift[0], steps.phase[0] = 0.0, 0.0, 0.0
-    filled, written = 0, 0
-    while filled < len(tau) and tau[filled] < start:
-        filled += 1
+    filled, written = pass_times(history, 0, start), 0
     time = start
     steps.z0[0], steps.w0[0] = z, w
     starts_at_ground = False
@@ -259,7 +363,7 @@ def sample_free_rocking(
         take_step(steps)
         impact = impact_in_step(steps, 0, False, starts_at_ground)
         h = steps.h[0] if impact < 0.0 else impact
-        filled = sample_step(steps, sign, time, time + h, tau, filled, rotation, velocity)
+        filled = sample_step(steps, sign, time, time + h, history, filled)
         time += h
         starts_at_ground = impact >= 0.0
         if not starts_at_ground:

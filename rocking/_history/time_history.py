@@ -1,24 +1,38 @@
-"""Time histories of one block, from the start of the pulse through free rocking, as labelled data sets."""
+"""Time histories of one block, from the start of the ground motion through free rocking, as labelled data sets."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking._base.errors import integer
+from rocking._base.errors import integer, number
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._history.body_motion import overturned
+from rocking._excitation.records.record import Record
 from rocking._history.contact import add_contact
-from rocking._history.motion import build_motion
+from rocking._history.motion import (
+    BodyMotion,
+    Floats,
+    SamplesMotion,
+    build_motion,
+    build_record_motion,
+    overturned,
+)
 from rocking._model.checks import check_number
 from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
+from rocking._solver.records.record_response import frequency_parameter_range
 
 if TYPE_CHECKING:
     import xarray as xr
+
+MAX_SAMPLES = 1_000_000
+"""Largest number of uniform samples of a history."""
+
+MIN_CONTINUED = 10_000
+"""Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""
 
 
 def time_history(
@@ -64,35 +78,135 @@ def time_history(
     StoppedError
         If `stop` was set.
     """
-    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
-
-    samples = integer("samples", samples, 2, 1_000_000)
+    samples = integer("samples", samples, 2, MAX_SAMPLES)
     groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
     motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
-    record, tau, rotation, velocity, impact_times = motion.history(np.linspace(0.0, motion.horizon, samples))
-    history = xr.Dataset(
-        {
-            "rotation": ("tau", rotation, {"long_name": "rotation theta/alpha (3.4)", "units": "1"}),
-            "angular_velocity": ("tau", velocity, {"long_name": "velocity theta'/(p alpha) (3.4)", "units": "1"}),
-            "ground_acceleration": (
-                "tau",
-                motion.ground_acceleration(tau),
-                {"long_name": "ground acceleration a f = u/(g tan alpha) (3.2)", "units": "1"},
-            ),
-            "impact_time": ("impact", impact_times, {"long_name": "time of impact p t", "units": "1"}),
-        },
-        coords={"tau": ("tau", tau, {"long_name": "time p t from pulse start", "units": "1"})},
-        attrs={
-            "pulse": as_pulse(pulse).name,
-            "slenderness": float(motion.cell["slenderness"][0]),
-            "frequency_ratio": check_number(FREQUENCY_RATIO, frequency_ratio),
-            "restitution": motion.restitution,
-            "alpha": motion.alpha,
-            "outcome": Outcome(int(record["outcome"])).name,
-            "overturned": int(overturned(record)),
-            "peak_rotation": float(record["peak_rotation"]),
-            "impacts": int(record["impacts"]),
-            "pulse_end": motion.pulse_end,
-        },
+    history, tau, impact_times = _sampled(
+        motion, np.linspace(0.0, motion.horizon, samples), (" (3.4)", "a f = ", " (3.2)")
     )
+    history["impact_time"] = "impact", impact_times, {"long_name": "time of impact p t", "units": "1"}
+    history = history.assign_coords(tau=("tau", tau, {"long_name": "time p t from pulse start", "units": "1"}))
+    history.attrs |= {
+        "pulse": as_pulse(pulse).name,
+        "frequency_ratio": check_number(FREQUENCY_RATIO, frequency_ratio),
+        "pulse_end": motion.pulse_end,
+    }
     return add_contact(history, motion, impact_times) if contact else history
+
+
+def record_history(
+    motion: Record,
+    *,
+    frequency_parameter: Scalar,
+    slenderness: Scalar,
+    restitution: Scalar,
+    alpha: Scalar | None = None,
+    vertical_scale: Scalar | None = 1.0,
+    duration: Scalar | None = None,
+    samples: int | None = None,
+    contact: bool = False,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """Rotation and angular velocity of one block under a recorded motion against time, exact to rounding.
+
+    Parameters
+    ----------
+    motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale
+        As for `record_response`; numbers.
+    duration : float, optional
+        Duration [s], > 0. By default the motion and 8/p after it; if the block overturns, until |theta|/alpha = 4 or
+        |theta| = pi/2.
+    samples : int, optional
+        Number of uniform samples, 2 to 1,000,000; by default the samples of the motion, continued after its end by at
+        most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of the motion
+        are added.
+    contact : bool
+        Whether to add the reactions of the ground and the friction demand (docs/contact.md).
+    stop : StopFlag, optional
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
+
+    Returns
+    -------
+    xarray.Dataset
+        time(time) [s] from the first sample, and tau(time) = p t [-]; rotation(time): theta/alpha [-];
+        angular_velocity(time): theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(time): u [-],
+        over g tan(alpha); vertical_acceleration(time) [-], over g and upwards, for a record that has it;
+        impact_time(impact) [s]. Attributes: the arguments, outcome, overturned, peak_rotation,
+        impacts. With `contact`, the variables and attributes of `rocking._history.contact.add_contact`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    StoppedError
+        If `stop` was set.
+    """
+    if samples is not None:
+        samples = integer("samples", samples, 2, MAX_SAMPLES)
+    groups = {
+        "frequency_parameter": frequency_parameter,
+        "slenderness": slenderness,
+        "restitution": restitution,
+        "alpha": alpha,
+        "vertical_scale": vertical_scale,
+    }
+    block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
+    grid = default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
+    history, tau, impact_times = _sampled(block, grid)
+    p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
+    history["impact_time"] = "impact", impact_times / p, {"long_name": "time of impact", "units": "s"}
+    history = history.assign_coords(
+        tau=("tau", tau, {"long_name": "p t from the first sample", "units": "1"}),
+        time=("tau", tau / p, {"long_name": "time from the first sample", "units": "s"}),
+    )
+    history.attrs |= {
+        "record": motion.name,
+        "record_digest": motion.digest,
+        "frequency_parameter": p,
+        "motion_end": motion.duration,
+    }
+    if motion.vertical is not None:
+        upwards = {"long_name": "vertical ground acceleration over g, upwards", "units": "1"}
+        history["vertical_acceleration"] = "tau", block.vertical_acceleration(tau), upwards
+        history.attrs["vertical_scale"] = float(block.cell["vertical"])
+    if contact:
+        history = add_contact(history, block, impact_times)
+    return history.swap_dims(tau="time")
+
+
+def default_times(block: SamplesMotion) -> Floats:
+    """Times of the samples of the motion [tau], continued to the horizon at their step or a larger one."""
+    count, interval = block.times.size, float(block.cell["rate"])
+    most = max(count, MIN_CONTINUED)
+    wanted = min(block.horizon / interval * (1.0 + 1e-12), count + most)
+    if wanted < count + most:
+        return interval * np.arange(int(wanted) + 1, dtype=np.float64)
+    return np.concatenate([block.times, np.linspace(block.pulse_end, block.horizon, most + 1)[1:]])
+
+
+def _sampled(
+    motion: BodyMotion, grid: Floats, equations: tuple[str, str, str] = ("", "", "")
+) -> tuple[xr.Dataset, Floats, Floats]:
+    """What all histories hold, with `equations` in the names; tau, and the times of the impacts [tau]."""
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+    record, tau, rotation, velocity, impact_times = motion.history(grid)
+    moves, of_ground, forced = equations
+    named = {
+        "rotation": (rotation, f"rotation theta/alpha{moves}"),
+        "angular_velocity": (velocity, f"velocity theta'/(p alpha){moves}"),
+        "ground_acceleration": (
+            motion.ground_acceleration(tau), f"ground acceleration {of_ground}u/(g tan alpha){forced}",
+        ),
+    }  # fmt: skip
+    attributes: dict[str, Any] = {
+        "slenderness": float(motion.cell["slenderness"][0]),
+        "restitution": motion.restitution,
+        "alpha": motion.alpha,
+        "outcome": Outcome(int(record["outcome"])).name,
+        "overturned": int(overturned(record)),
+        "peak_rotation": float(record["peak_rotation"]),
+        "impacts": int(record["impacts"]),
+    }
+    variables = {name: ("tau", values, {"long_name": text, "units": "1"}) for name, (values, text) in named.items()}
+    return xr.Dataset(variables, attrs=attributes), tau, impact_times

@@ -22,7 +22,7 @@ from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes
-from rocking._history.record_motion import build_record_motion
+from rocking._history.motion import build_record_motion
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._numba.cancellation import StopFlag

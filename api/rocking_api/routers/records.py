@@ -17,7 +17,7 @@ from rocking._dimensional.record_scales import ScaleThresholds, scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import reject_flight
-from rocking._history.record_history import record_history
+from rocking._history.time_history import record_history
 from rocking._model.block import Block
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
