@@ -18,7 +18,7 @@ from ._excitation.records.readers.read_record import read_record as read_record
 from ._excitation.records.record import Record as Record
 from ._excitation.sampled import SampledPulse as SampledPulse
 from ._history.time_history import time_history as time_history
-from ._lookup.open import open_cube as open_cube
+from ._lookup.cube import open_cube as open_cube
 from ._model.response import Outcome as Outcome
 from ._model.response import Response as Response
 from ._solver.peak_response import peak_response as peak_response

@@ -26,8 +26,7 @@ from benchmarks.figures.grid_size import draw
 from benchmarks.measure import progress, publish, versions
 from rocking._boundary.cells import crossed_cells
 from rocking._datasets.cube import read_dataset, write_dataset
-from rocking._lookup.open import open_cube
-from rocking._lookup.points import Points
+from rocking._lookup.cube import Points, open_cube
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra
 from workflow.scripts import overturning, overturning_part

@@ -14,9 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._lookup.cube import Cube
-from rocking._lookup.open import open_cube
-from rocking._lookup.points import Points
+from rocking._lookup.cube import Cube, Points, open_cube
 from rocking._solver.peak_response import peak_response
 
 KINDS = {

@@ -11,12 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from pathlib import Path
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import InvalidArgumentError, OutsideCubeError, integer, number, one_of
+from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError, integer, number, one_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._interpolation.kernel import (
     BLOCK,
@@ -30,13 +31,44 @@ from rocking._interpolation.kernel import (
 )
 from rocking._interpolation.stencils import slice_index, slice_window
 from rocking._interpolation.windows import SLICE_WINDOW, group_points
-from rocking._lookup.cube_slice import CubeSlice
-from rocking._lookup.points import Points
+from rocking._lookup.cube_slice import CubeSlice, fetch_slice, open_slice
+from rocking._model.checks import broadcast_groups
 from rocking._model.fields import DERIVED_FIELDS
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import contiguous_array
 from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Arguments of a response, all float arrays (points,); alpha in rad, 0 for the slender limit."""
+
+    slenderness: Array
+    frequency_ratio: Array
+    restitution: Array
+    alpha: Array
+
+    @classmethod
+    def of(
+        cls, slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
+    ) -> tuple[Points, tuple[int, ...]]:
+        """The checked, broadcast and flattened arguments, and the broadcast shape.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, or the shapes do not broadcast.
+        """
+        full = broadcast_groups(slenderness, frequency_ratio, restitution, alpha)
+        return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
+
+    def __getitem__(self, index: Any) -> Points:
+        return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
+
 
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
@@ -49,7 +81,6 @@ MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
 
 _OUTCOME_WITHOUT_UPLIFT = int(Outcome.NO_UPLIFT)
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
@@ -334,3 +365,31 @@ def _solve(pulse: str | AbstractPulse, points: Points, threads: int | None, stop
         threads=threads,
         stop=stop,
     )
+
+
+def open_cube(source: Path | str) -> Cube:
+    """Read spectrum cubes into memory.
+
+    Parameters
+    ----------
+    source : path or str
+        A file such as `results/spectra/sine/eta-0.85.nc`, its http or https address, or a folder such as
+        `results/spectra/sine`; the files of a folder are interpolated in restitution as well.
+
+    Raises
+    ------
+    DatasetError
+        If a file is missing, damaged, or not a spectrum cube, or if the files of a folder differ in pulse or axes.
+    """
+    if str(source).startswith(("http://", "https://")):
+        slices = [fetch_slice(str(source))]
+    elif Path(source).is_dir():
+        slices = [open_slice(path) for path in sorted(Path(source).glob("eta-?.??.nc"))]
+        if not slices:
+            raise DatasetError(f"{source}: holds no spectrum cubes; `make reproduce` builds them")
+    else:
+        slices = [open_slice(source)]
+    for one in slices:
+        if one.pulse != slices[0].pulse or not one.fits(slices[0]):
+            raise DatasetError(f"{source}: cubes of different pulses or grids; build them again")
+    return Cube(slices[0].pulse, np.array([one.restitution for one in slices]), slices.__getitem__)

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._model.energy import residual_energy
 from rocking._model.outcome import Outcome
-from rocking._model.residual_energy import residual_energy
 
 
 @dataclass(frozen=True)

@@ -64,7 +64,7 @@ def solve_motion(
 def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np.void]) -> Array:
     """Excess of the energy at the end of the motion, or after one of the next two impacts, over that of the barrier.
 
-    As `rocking._model.outcome_margin.outcome_margin`, for bodies with two edges: the largest of three margins, since a
+    As `rocking._model.energy.outcome_margin`, for bodies with two edges: the largest of three margins, since a
     body that does not escape about its present edge can do so about the other one after an impact, and about the
     present one after two (`rocking._solver.rules.final_outcome`). Continuous, zero at the transition. Array (size,).
     """

@@ -14,8 +14,8 @@ from rocking._base.errors import broadcast, integer, needed, reject_given
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as Recording
 from rocking._model.checks import check_groups, check_number
+from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
-from rocking._model.outcome_margin import outcome_margin
 from rocking._model.parameters import TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
@@ -24,8 +24,7 @@ from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.records.record_response import record_response, solve_pulse
-from rocking._solver.stages.batch import LEFT, solve_by_arcs
-from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
 from rocking._solver.stages.state import StageState, stage_state
 from rocking._solver.state import BODY_CELL, EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
 

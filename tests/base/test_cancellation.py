@@ -14,8 +14,7 @@ from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import NO_BODIES
-from rocking._solver.stages.batch import LEFT, solve_by_arcs
-from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
 from rocking._solver.stages.state import stage_state
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, pulse_state, step_state
 from rocking._spectra.cubes import spectra

@@ -25,14 +25,13 @@ from rocking._history import sampling
 from rocking._interpolation import kernel as lookup_kernel
 from rocking._interpolation import stencils as interpolation
 from rocking._interpolation import windows
-from rocking._lookup.open import open_cube
+from rocking._lookup.cube import open_cube
 from rocking._numba import kernel_cache
 from rocking._numba.compilation import contiguous_array, entry, kernel, specialised_kernel
 from rocking._numba.way import INTERNALS
 from rocking._solver.arcs.arc import cosh_minus_one_and_sinh
 from rocking._solver.kernels import batch as rock_many
 from rocking._solver.stages import batch as stages
-from rocking._solver.stages import remainder
 from rocking._spectra.cubes import spectra
 
 ROOT = Path(__file__).parents[2]
@@ -41,7 +40,7 @@ ENTRIES = (
     *(
         rock_many.solve_batch,
         stages.solve_by_arcs,
-        remainder.solve_remainder,
+        stages.solve_remainder,
         sampling.solve_and_sample,
         sampling.sample_arcs,
         sampling.sample_free_rocking,
@@ -114,8 +113,7 @@ def test_compiling_process_and_cached_process_give_equal_bits(tmp_path):
 import hashlib, numpy as np, rocking
 from rocking._model.fields import RESPONSE_FIELDS
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.stages.batch import solve_by_arcs
-from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.batch import solve_by_arcs, solve_remainder
 rng = np.random.default_rng(7)
 s, w, e = rng.uniform(0.02, 0.95, 20_000), np.exp(rng.uniform(-1.2, 2.5, 20_000)), rng.uniform(0.5, 0.95, 20_000)
 digest = hashlib.sha256()

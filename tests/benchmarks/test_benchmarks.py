@@ -25,7 +25,7 @@ from benchmarks.cost.equal_error import time_for
 from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.measure import accuracy
 from benchmarks.summary import page
-from rocking._lookup.open import open_cube
+from rocking._lookup.cube import open_cube
 from rocking._solver.peak_response import peak_response
 from tests.workflow_fixtures import snakemake
 

@@ -17,7 +17,7 @@ from rocking._datasets.cube import read_spectrum, write_dataset
 from rocking._excitation import pulses
 from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
 from rocking._lookup.collection import CubeCollection
-from rocking._lookup.open import open_cube
+from rocking._lookup.cube import open_cube
 from rocking._spectra.cubes import spectrum
 from tests.direct_integration import integrate
 

@@ -11,8 +11,7 @@ import rocking._lookup.cube
 from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_spectrum, write_dataset
-from rocking._lookup.cube import SAFETY, Cube
-from rocking._lookup.open import open_cube
+from rocking._lookup.cube import SAFETY, Cube, open_cube
 from rocking._model.response import Outcome
 from rocking._solver.bounded_response import SOLVER_ERROR, solve_with_bound
 from rocking._solver.peak_response import peak_response

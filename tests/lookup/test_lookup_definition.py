@@ -8,9 +8,8 @@ import pytest
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, slice_window
-from rocking._lookup.cube import MIN_CHUNK, SAFETY, Cube
+from rocking._lookup.cube import MIN_CHUNK, SAFETY, Cube, Points
 from rocking._lookup.cube_slice import slice_of
-from rocking._lookup.points import Points
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import SOLVER_ERROR

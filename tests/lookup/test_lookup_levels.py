@@ -7,7 +7,7 @@ import pytest
 
 from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
 from rocking._datasets.cube import read_spectrum, write_dataset
-from rocking._lookup.open import open_cube
+from rocking._lookup.cube import open_cube
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra, spectrum
 from tests.lookup_grid import GRID, crossed, random_points

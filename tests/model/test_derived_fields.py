@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 
 import rocking
 from rocking._datasets.cube import read_spectrum, write_dataset
-from rocking._lookup.open import open_cube
+from rocking._lookup.cube import open_cube
+from rocking._model.energy import residual_energy
 from rocking._model.fields import DERIVED_FIELDS
-from rocking._model.residual_energy import residual_energy
 from rocking._solver.bounded_response import solve_with_bound
 from rocking._spectra.cubes import spectrum
 

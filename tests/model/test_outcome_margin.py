@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
 import rocking
-from rocking._model.outcome_margin import outcome_margin
+from rocking._model.energy import outcome_margin
 
 ALPHAS = st.sampled_from([0.0, 1e-6, 0.1, 0.4, 1.2])
 EXACT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}

@@ -10,8 +10,7 @@ from rocking._excitation.pulses import SinusoidalPulse
 from rocking._numba.compilation import kernel
 from rocking._solver.kernels.event_loop import advance_by_arc, init_state
 from rocking._solver.rules import set_block, write_response
-from rocking._solver.stages.batch import LEFT, solve_by_arcs
-from rocking._solver.stages.remainder import solve_remainder
+from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
 from rocking._solver.stages.state import BLOCK_SIZE, stage_state
 from rocking._solver.state import RESPONSE_RECORD, pulse_state
 

@@ -3,7 +3,8 @@
 A cell waits in the list of its next flight: first, long or short, with negative or positive rotation. `LANES` cells
 of a list are followed at a time, and each is put into the list of the flight after that. The arithmetic of a cell
 depends neither on its lane nor on the other cells. What no stage decides, possible hidden peaks and very many impacts,
-is left to the caller: for `rocking._solver.stages.remainder`, under wavelets for Taylor steps.
+is left to the caller: for `solve_remainder`, under wavelets for Taylor steps. `solve_remainder` is an entry of its own:
+most calls leave no block, and do not wait for its compilation.
 """
 
 from __future__ import annotations
@@ -11,12 +12,20 @@ from __future__ import annotations
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
-from rocking._solver.stages.cuts import init_nodes
-from rocking._solver.stages.events import end_flights
-from rocking._solver.stages.first_flights import start_cells, take_resting_cells
+from rocking._solver.kernels.event_loop import advance_by_arc, init_state
+from rocking._solver.rules import set_block, write_response
+from rocking._solver.stages.cuts import init_nodes, start_uplifts, uplift_piece
+from rocking._solver.stages.events import end_flights, prefetch_responses, write_responses
 from rocking._solver.stages.flight import follow_flights
-from rocking._solver.stages.lists import GENERAL_LIST, LONG_LISTS, SHORT_LISTS, append_where, take_places
-from rocking._solver.stages.responses import prefetch_responses, write_responses
+from rocking._solver.stages.lists import (
+    GENERAL_LIST,
+    LONG_LISTS,
+    SHORT_LISTS,
+    append_where,
+    start_cells,
+    take_places,
+    take_resting_cells,
+)
 from rocking._solver.stages.short_flights import follow_short_flights
 from rocking._solver.stages.state import (
     AT_UPLIFT,
@@ -40,7 +49,6 @@ from rocking._solver.stages.state import (
     UPLIFTS,
     W0,
 )
-from rocking._solver.stages.uplifts import start_uplifts, uplift_piece
 
 LEFT = -1
 """Outcome of a cell that no stage decides: it is left to the caller."""
@@ -209,3 +217,39 @@ def solve_by_arcs(
             response.first_impact_velocity = row[FIRST_IMPACT_VELOCITY]
         left += counts[GENERAL_LIST]
     return left
+
+
+@entry
+def solve_remainder(
+    slenderness: FloatArray, omega: FloatArray, eta: FloatArray, pulse: Record, stop: FloatArray, responses: Record
+) -> None:
+    """Solve the blocks that `rocking._solver.stages.batch.solve_by_arcs` has left.
+
+    Parameters
+    ----------
+    slenderness, omega, eta : float arrays (cells,)
+        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-].
+    pulse
+        Solver state: a record of `pulse_state`.
+    stop : uint8 array (1,)
+        Once another thread sets it to 1, the function returns within a flight; responses are missing.
+    responses : array (cells,) of `rocking._solver.state.RESPONSE_RECORD`
+        As `solve_by_arcs` has filled it; those with the outcome `LEFT` are replaced.
+    """
+    for cell in range(len(slenderness)):
+        if is_stopped(stop):
+            return
+        response = responses[cell]
+        if response.outcome != LEFT:
+            continue
+        followed = response.impacts
+        uplift_time, impact_time = response.uplift_time, response.first_impact_time
+        impact_velocity = response.first_impact_velocity
+        set_block(pulse, slenderness[cell], eta[cell], 0.0)
+        init_state(pulse, omega[cell])
+        while advance_by_arc(pulse) and not is_stopped(stop):
+            pass
+        write_response(pulse, response)
+        if followed > 0:  # the same bits for each eta
+            response.uplift_time, response.first_impact_time = uplift_time, impact_time
+            response.first_impact_velocity = impact_velocity

@@ -1,4 +1,4 @@
-"""Phases at which |a f| = 1, for `LANES` cells.
+"""Phases at which |a f| = 1, for `LANES` cells: cuts of the pieces of the pulse, and uplifts of blocks at rest.
 
 On a monotone piece of the pulse a block with sgn(theta) = sign is destabilised where g = -sign f exceeds 1/a, restored
 where it is smaller. The cut between both is unique. If there is none it is put at an end of the piece, so that the
@@ -16,8 +16,8 @@ from rocking._numba.simd_exponentials import arccosine
 from rocking._solver.crossings import refine_crossings
 from rocking._solver.excitation import shapes_and_slopes
 from rocking._solver.families.sinusoids import is_unit_sinusoid
-from rocking._solver.stages.hermite import hermite_roots
-from rocking._solver.stages.state import SLENDERNESS
+from rocking._solver.stages.roots import hermite_roots
+from rocking._solver.stages.state import OMEGA, PHASE, PIECE, SLENDERNESS, UPLIFT_TIME, UPLIFTS
 
 
 @kernel
@@ -88,3 +88,53 @@ def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, 
     phase = select((phase > low) & (phase < high), phase, 0.5 * (low + high))
     rise = splat(1.0 if rising else -1.0)
     return refine_crossings(pulse, level, rise, (splat(left), splat(right)), low, high, phase, wanted)
+
+
+@kernel
+def uplift_piece(pulse: Record, slenderness: float, phase: float) -> tuple[int, float]:
+    """Piece of the pulse with the first uplift of a block at rest at `phase`, and its sgn(theta), 0 if there is none.
+
+    |f| < 1/a at `phase`, so that |f| reaches 1/a on the first piece with |f| > 1/a at its right end.
+    """
+    for piece in range(pulse.pieces):
+        f = pulse.end_shape[piece + 1]
+        if pulse.end_phase[piece + 1] > phase and abs(f) > slenderness:
+            return piece, -math.copysign(1.0, f)
+    return -1, 0.0
+
+
+@kernel
+def first_uplifts(pulse: Record, slenderness: SimdVector) -> Any:
+    """Pieces of the pulse with the first uplifts of blocks at rest at its start, and their sgn(theta), 0: no uplift.
+
+    The piece is -1 where |f| exceeds 1/a at the start. The vector form of `uplift_piece`.
+    """
+    pieces, signs = splat(-1.0), splat(0.0)
+    for i in range(pulse.pieces):
+        piece = pulse.pieces - 1 - i
+        f = pulse.end_shape[piece + 1]
+        reached = slenderness < abs(f)
+        pieces = select(reached, splat(float(piece)), pieces)
+        signs = select(reached, splat(-math.copysign(1.0, f)), signs)
+    f = pulse.end_shape[0]
+    exceeded = slenderness < abs(f)
+    return select(exceeded, splat(-1.0), pieces), select(exceeded, splat(-math.copysign(1.0, f)), signs)
+
+
+@kernel
+def start_uplifts(pulse: Record, group: Record, sign: float) -> None:
+    """Set the phase and the time of the uplifts that are given by their piece."""
+    pieces = load(group.columns, PIECE)
+    if not any_lane(pieces >= 0.0):
+        return
+    init_cuts(pulse, group)
+    phase = load(group.columns, PHASE)
+    for piece in range(pulse.pieces):
+        here = pieces == float(piece)
+        if any_lane(here):
+            phase = select(here, cut_phases(pulse, group, piece, sign), phase)
+    store(group.columns, PHASE, phase)
+    first = (pieces >= 0.0) & (load(group.columns, UPLIFTS) == 1.0)
+    time = (phase - pulse.end_phase[0]) / load(group.columns, OMEGA)
+    store(group.columns, UPLIFT_TIME, select(first, time, load(group.columns, UPLIFT_TIME)))
+    store(group.columns, PIECE, splat(-1.0))

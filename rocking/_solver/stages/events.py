@@ -1,4 +1,4 @@
-"""Ends of flights of `LANES` blocks: impacts, chatter, rest, and the outcome by energy after the pulse.
+"""Ends of flights of `LANES` blocks: impacts, chatter, rest, the outcome by energy after the pulse, and the response.
 
 The vector form of `rocking._solver.rules` for slender blocks.
 """
@@ -9,7 +9,9 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
+from rocking._numba.memory import prefetch_for_write
+from rocking._numba.records import scatter_records
+from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
 from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, SAFE
 from rocking._solver.stages.excitation import excitation_at_angles, set_angles
 from rocking._solver.stages.state import (
@@ -30,6 +32,7 @@ from rocking._solver.stages.state import (
     REST,
     SHORT,
     UNDECIDED,
+    UPLIFT_TIME,
     UPLIFTS,
     W0,
 )
@@ -168,3 +171,31 @@ def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVe
     ratio = eta * square_root(spread)
     possible = possible & (weakest > 0.0) & (height <= 0.5 * weakest) & (height <= load(group.columns, PEAK))
     return possible & (ratio < 1.0) & (2.0 * w <= window * (weakest - height) * (1.0 - ratio))
+
+
+@kernel
+def write_responses(group: Record, done: int, responses: Record) -> None:
+    """Write the responses of the lanes whose bits are set in `done`, each at once."""
+    columns, response = group.columns, group.response
+    for lane in range(LANES):
+        group.written[lane] = group.place[lane] if (done >> lane) & 1 else -1
+    peak = load(columns, PEAK)
+    store(response.peak_rotation, 0, peak)
+    store(response.exceeded_alpha, 0, select(peak <= 1.0, splat(0.0), splat(1.0)))  # also where it is nan
+    store(response.peak_mode, 0, load(columns, MODE))
+    store(response.outcome, 0, load(group.outcome, 0))
+    store(response.impacts, 0, load(columns, IMPACTS))
+    store(response.chatter, 0, load(columns, CHATTER))
+    store(response.uplift_time, 0, load(columns, UPLIFT_TIME))
+    store(response.first_impact_time, 0, load(columns, FIRST_IMPACT_TIME))
+    store(response.first_impact_velocity, 0, load(columns, FIRST_IMPACT_VELOCITY))
+    store(response.end_rotation, 0, load(group.free_z, 0))
+    store(response.end_velocity, 0, load(group.free_w, 0))
+    scatter_records(response, group.written, responses)
+
+
+@kernel
+def prefetch_responses(responses: Record, first: int, last: int) -> None:
+    """Prefetch the memory of responses of the next block, which is written in the order of the ends of the cells."""
+    for cell in range(first, min(last, len(responses))):
+        prefetch_for_write(responses.ctypes.data + cell * responses.itemsize)

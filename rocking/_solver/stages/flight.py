@@ -28,8 +28,7 @@ from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, spl
 from rocking._solver.stages.arcs import start_arcs, states_at
 from rocking._solver.stages.cuts import cut_phases, init_cuts
 from rocking._solver.stages.excitation import restoring_acceleration, set_angles, set_end_angles
-from rocking._solver.stages.hermite import hermite_roots
-from rocking._solver.stages.roots import locate_impacts, locate_peaks
+from rocking._solver.stages.roots import hermite_roots, locate_impacts, locate_peaks
 from rocking._solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
 from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 

@@ -1,12 +1,28 @@
-"""Lists of the cells that wait for a flight, by their places in the block."""
+"""Lists of the cells that wait for a flight, by their places in the block, and the vectors of their first flights."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import LANES, lane_bits
-from rocking._solver.stages.state import BLOCK_SIZE
+from rocking._numba.compilation import FloatArray, Record, kernel
+from rocking._numba.simd import LANES, any_lane, gather, lane_bits, load_elements, select, splat, store
+from rocking._solver.stages.cuts import first_uplifts, uplift_piece
+from rocking._solver.stages.state import (
+    AT_UPLIFT,
+    BLOCK_SIZE,
+    BUCKETS,
+    ETA,
+    FIRST_IMPACT_TIME,
+    FIRST_IMPACT_VELOCITY,
+    MODE,
+    OMEGA,
+    PHASE,
+    PIECE,
+    SLENDERNESS,
+    UPLIFTS,
+)
+from rocking._solver.state import set_empty_response
 
 FIRST_LISTS, LONG_LISTS, SHORT_LISTS, GENERAL_LIST = 0, 2, 4, 6
 """Lists of cells: two for each kind of flight, with negative and positive rotation, and one for the general solver.
@@ -48,3 +64,117 @@ def take_places(which: int, group: Record, cells: Record) -> None:
     for lane in range(count - start, LANES):
         group.place[lane] = BLOCK_SIZE
         group.source[lane] = places[0]
+
+
+@kernel
+def common_list(place: int, slenderness: FloatArray, omega: FloatArray, pulse: Record) -> int:
+    """List of the first flights of the next `LANES` cells, or -1 if they differ or if some have none or share one."""
+    s, w = load_elements(slenderness, place), load_elements(omega, place)
+    same = (s == load_elements(slenderness, place + 1)) & (w == load_elements(omega, place + 1))
+    _, signs = first_uplifts(pulse, s)
+    if any_lane(same | ~(s < 1.0)):
+        return -1
+    if not any_lane(~(signs > 0.0)):
+        return FIRST_LISTS + 1
+    if not any_lane(~(signs < 0.0)):
+        return FIRST_LISTS
+    return -1
+
+
+@kernel
+def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells: Record, responses: Record) -> bool:
+    """Put the cells of a block into the lists of first flights; True if some share a flight.
+
+    Consecutive cells that differ in eta only share the first flight, for which the first of them stands.
+    """
+    lists, counts, members = cells.lists, cells.counts, cells.members
+    f_start, shared, place, count = pulse.end_shape[0], False, 0, len(slenderness)
+    single = 0  # cells before this one are put into lists one by one
+    while place < count:
+        if place >= single and place + LANES < count:
+            which = common_list(place, slenderness, omega, pulse)
+            if which >= 0:
+                for lane in range(LANES):
+                    lists[which, counts[which] + lane] = place + lane
+                    members[place + lane] = 1
+                counts[which] += LANES
+                place += LANES
+                continue
+            single = place + LANES
+        s, w = slenderness[place], omega[place]
+        following = place + 1
+        while following < count and slenderness[following] == s and omega[following] == w:
+            following += 1
+        sign = -math.copysign(1.0, f_start)
+        if abs(f_start) <= s:
+            _, sign = uplift_piece(pulse, s, pulse.end_phase[0])
+        if s >= 1.0 or sign == 0.0:
+            for one in range(place, following):
+                set_empty_response(responses[one])
+        else:
+            members[place] = following - place
+            shared = shared or following - place > 1
+            append(cells, FIRST_LISTS + (1 if sign > 0.0 else 0), place)
+        place = following
+    for which in range(FIRST_LISTS, FIRST_LISTS + 2):
+        sort_by_slenderness(which, slenderness, cells)
+    return shared
+
+
+@kernel
+def sort_by_slenderness(which: int, slenderness: FloatArray, cells: Record) -> None:
+    """Order a list by slenderness, on which the number of flights and of iterations mainly depends.
+
+    Vectors of cells in random order wait for the slowest of their cells. A list remains as it is if most of its vectors
+    hold cells of about the same slenderness.
+    """
+    places, ends, ordered, count = cells.lists[which], cells.ends, cells.ordered, cells.counts[which]
+    varied = 0
+    for first in range(0, count - LANES + 1, LANES):
+        change = slenderness[places[first + LANES - 1]] - slenderness[places[first]]
+        varied += abs(change) * BUCKETS > 1.0
+    if 2 * varied * LANES <= count:
+        return
+    ends[:] = 0
+    for i in range(count):
+        ends[int(slenderness[places[i]] * BUCKETS)] += 1
+    total = 0
+    for bucket in range(BUCKETS):
+        size = ends[bucket]
+        ends[bucket] = total
+        total += size
+    for i in range(count):
+        bucket = int(slenderness[places[i]] * BUCKETS)
+        ordered[ends[bucket]] = places[i]
+        ends[bucket] += 1
+    for i in range(count):
+        places[i] = ordered[i]
+
+
+@kernel
+def take_resting_cells(
+    which: int,
+    slenderness: FloatArray,
+    omega: FloatArray,
+    eta: FloatArray,
+    pulse: Record,
+    group: Record,
+    cells: Record,
+) -> None:
+    """Take the last cells from a list of first flights into the group; unused lanes get one of them."""
+    columns = group.columns
+    take_places(which, group, cells)
+    for column in range(LANES):
+        store(columns, column, splat(0.0))
+    s = gather(slenderness, group.source)
+    piece, _ = first_uplifts(pulse, s)
+    store(columns, SLENDERNESS, s)
+    store(columns, OMEGA, gather(omega, group.source))
+    store(columns, ETA, gather(eta, group.source))
+    store(columns, PIECE, piece)
+    store(columns, AT_UPLIFT, select(piece >= 0.0, splat(1.0), splat(0.0)))
+    store(columns, PHASE, splat(pulse.end_phase[0]))
+    store(columns, MODE, splat(-1.0))
+    store(columns, UPLIFTS, splat(1.0))
+    store(columns, FIRST_IMPACT_TIME, splat(math.nan))
+    store(columns, FIRST_IMPACT_VELOCITY, splat(math.nan))

@@ -1,4 +1,4 @@
-"""Peaks and impacts of `LANES` flights inside their brackets.
+"""First guesses of zeros by cubics, and peaks and impacts of `LANES` flights inside their brackets.
 
 Each iteration evaluates the exact arc, and continues by reversion of the Taylor series of fourth order there. With
 y = -v/v', b_n = v^(n)/(n! v') the zero of v is y - b_2 y^2 + (2 b_2^2 - b_3) y^3 + (5 b_2 b_3 - 5 b_2^3 - b_4) y^4,
@@ -10,12 +10,29 @@ from __future__ import annotations
 
 from typing import Any
 
-from rocking._numba.compilation import Record, kernel
+from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, load, maximum, select, splat, store
 from rocking._solver.stages.arcs import motions_at
 from rocking._solver.stages.excitation import set_angles
-from rocking._solver.stages.hermite import hermite_roots
 from rocking._solver.stages.state import FAR, OMEGA, PHASE
+
+
+@kernel
+def hermite_roots(f0: SimdVector, d0: SimdVector, f1: SimdVector, d1: SimdVector, length: SimdVector) -> Any:
+    """Guess of the zero in [0, length] of the cubic through two values of opposite sign with their slopes.
+
+    Two Newton steps from the secant.
+    """
+    d0 = d0 * length
+    d1 = d1 * length
+    c2 = 3.0 * (f1 - f0) - 2.0 * d0 - d1
+    c3 = 2.0 * (f0 - f1) + d0 + d1
+    x = f0 / (f0 - f1)
+    for _ in range(2):
+        better = x - (f0 + x * (d0 + x * (c2 + x * c3))) / (d0 + x * (2.0 * c2 + x * 3.0 * c3))
+        x = select((better > 0.0) & (better < 1.0), better, x)
+    return x * length
+
 
 MAX_ARCS = 24
 """Evaluations of the arc after which a search gives up and leaves the cell to the general solver. Nearly all need two

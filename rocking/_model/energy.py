@@ -1,4 +1,4 @@
-"""Energy that a block has at the end of the pulse, relative to that with which it overturns."""
+"""Energy of a block at the end of the pulse, and its margin over that with which the block overturns."""
 
 from __future__ import annotations
 
@@ -36,3 +36,30 @@ def residual_energy(fields: Mapping[str, NDArray[Any]], groups: Mapping[str, NDA
         climbed = z * (2.0 - z) * np.sinc(half * z / np.pi) * np.sinc(half * (2.0 - z) / np.pi)  # X(0)^2 - X(z)^2
         energy = np.where(z < 1.0, w * w + climbed, (w - x) * (w + x) + barrier * barrier)
     return np.asarray(energy / (barrier * barrier))
+
+
+def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
+    """Excess of the energy at the end of the pulse, or after the next impact, over that of the barrier [-].
+
+    Parameters
+    ----------
+    z, w : float arrays
+        |theta|/alpha and its rate with respect to tau at the end of the pulse [-].
+    eta : float array
+        Restitution [-], [0, 1].
+    alpha : float array
+        Slenderness angle [rad], 0: slender.
+
+    Returns
+    -------
+    float array
+        Positive where the block overturns: the larger of (w - X)/X(0), see `rocking._solver.free_rocking`, and
+        of the energy after the next impact, relative to that of the barrier, minus 1, (3.16). It is continuous and
+        zero at the transition.
+    """
+    half = np.where(alpha > 0.0, 0.5 * alpha, 1.0)
+    barrier = np.where(alpha > 0.0, np.sin(half) / half, 1.0)
+    x = np.where(alpha > 0.0, np.sin(half * (1.0 - z)) / half, 1.0 - z)
+    escape = (w - x) / barrier  # (3.8)
+    rebound = eta * eta * (1.0 - (x - w) * (x + w) / (barrier * barrier))
+    return np.asarray(np.where(w < x, np.maximum(escape, rebound - 1.0), escape))
