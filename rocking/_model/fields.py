@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,3 +223,49 @@ def markdown_table() -> str:
         meaning = field.description("nan").replace(" [-]", "").replace("|theta|", "abs(theta)")
         rows.append(f"| `{field.name}` | {kind} | {unit} | ({field.equation}) | {meaning} |")
     return "\n".join(rows)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ResponseFields:
+    """Base of responses: the fields that all of them begin with, and a property for each of `DERIVED_FIELDS`.
+
+    A subclass names its fields by `declared`; their descriptions replace {fields} in its docstring.
+    """
+
+    peak_rotation: NDArray[np.float64]
+    outcome: NDArray[np.int8]
+    impacts: NDArray[np.int32]
+
+    if TYPE_CHECKING:
+
+        @property
+        def residual_energy(self) -> NDArray[np.float64]:
+            """Energy at the end of the pulse over that of the unstable equilibrium at alpha [-]."""
+
+    def __init_subclass__(cls, *, declared: Sequence[ResponseField] = ()) -> None:
+        described = "\n".join(
+            f"    {field.name} : {np.dtype(field.dtype).name} array\n"
+            + fill(f"{field.description('nan')}.", 112, initial_indent=" " * 8, subsequent_indent=" " * 8)
+            for field in declared
+        )
+        cls.__doc__ = (cls.__doc__ or "").replace("    {fields}", described)
+
+    @property
+    def overturned(self) -> NDArray[np.bool_]:
+        """Whether the block overturns in the end."""
+        return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
+
+    def _derived(self, field: ResponseField) -> NDArray[Any]:
+        """The values of a derived field."""
+        raise NotImplementedError
+
+
+def _property(field: ResponseField) -> property:
+    def read(self: ResponseFields) -> NDArray[Any]:
+        return self._derived(field)
+
+    return property(read, doc=field.description("nan"))
+
+
+for _field in DERIVED_FIELDS:
+    setattr(ResponseFields, _field.name, _property(_field))

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Quantity
-from rocking._model.derived_fields import DerivedFields
-from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField
+from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
 from rocking._model.outcome import Outcome
 from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
 
@@ -26,40 +25,14 @@ __all__ = ["Outcome", "Response", "dimensions_of"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Response(DerivedFields, EqualByValue):
+class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
     """Responses of blocks to a pulse. Every field is an array of the broadcast shape of the arguments.
 
-    The fields are declared, with their equations, in `rocking._model.fields`.
+    `outcome` holds codes of `Outcome`. Within one `peak_mode` the peak is a smooth function of the groups.
 
     Attributes
     ----------
-    peak_rotation : float64 array [-]
-        Peak of |theta|/alpha over the whole response, free rocking included; nan where the block
-        overturns, 0 without uplift.
-    outcome : int8 array
-        Final outcome, a code of `Outcome`.
-    impacts : int32 array
-        Number of impacts before the pulse ends, and the one after it that is followed by overturning. Impacts that
-        chatter sums up are not counted.
-    chatter : bool array
-        Whether impacts accumulate to rest while the pulse acts.
-    exceeded_alpha : bool array
-        Whether |theta| passed alpha at some time.
-    uplift_time : float64 array [-]
-        Time p t from the start of the pulse to the first uplift; nan where there is no uplift.
-    first_impact_time : float64 array [-]
-        Time p t from the uplift to the first impact; nan where there is none while the pulse acts.
-    first_impact_velocity : float64 array [-]
-        Angular velocity theta'/(p alpha) just before the first impact; nan likewise.
-    peak_mode : int32 array
-        Arc on which the peak is reached: twice the impacts before it since the last uplift from rest, plus one if it is
-        reached in free rocking, plus 65536 for each such uplift after the first; -1 where there is no peak. Within one
-        mode the peak is a smooth function of the groups.
-    end_rotation, end_velocity : float64 arrays [-]
-        Rotation |theta|/alpha and its rate with respect to p t when the pulse ends, or when overturning is certain.
-    residual_energy : float64 array [-]
-        Kinetic and potential energy at the end of the pulse over that of the unstable equilibrium at alpha, both from
-        the energy at rest; where overturning is certain earlier, the energy then. nan if the angle is not known.
+    {fields}
     pulse : str
         Name of the pulse; empty if not known.
     groups : mapping of str to array
@@ -69,9 +42,6 @@ class Response(DerivedFields, EqualByValue):
         Names of the dimensions if an argument was labelled (xarray).
     """
 
-    peak_rotation: NDArray[np.float64]
-    outcome: NDArray[np.int8]
-    impacts: NDArray[np.int32]
     chatter: NDArray[np.bool_]
     exceeded_alpha: NDArray[np.bool_]
     uplift_time: NDArray[np.float64]
@@ -83,11 +53,6 @@ class Response(DerivedFields, EqualByValue):
     pulse: str = ""
     groups: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     dims: tuple[Hashable, ...] = ()
-
-    @property
-    def overturned(self) -> NDArray[np.bool_]:
-        """Whether the block overturns in the end."""
-        return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.derived_fields import DerivedFields
-from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, ResponseField
+from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, ResponseField, ResponseFields
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
@@ -26,34 +25,19 @@ Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BoundedResponse(DerivedFields, EqualByValue):
+class BoundedResponse(ResponseFields, EqualByValue, declared=BOUNDED_FIELDS):
     """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
 
-    The fields are declared, with their equations, in `rocking._model.fields`.
+    `outcome` holds codes of `rocking.Outcome`; `impacts` is -1 where a cube was interpolated whose nodes around the
+    point differ in them.
 
     Attributes
     ----------
-    peak_rotation : float64 array [-]
-        Peak of |theta|/alpha over the whole response; nan where the block overturns, 0 without uplift.
-    outcome : int8 array
-        Final outcome, a code of `rocking.Outcome`.
-    impacts : int32 array
-        Number of impacts before the pulse ends, and the one after it that is followed by overturning; -1 where a cube
-        was interpolated whose nodes around the point differ in them.
-    exceeded_alpha : bool array
-        Whether |theta| passed alpha at some time.
-    error_bound : float64 array [-]
-        Bound of the absolute error of `peak_rotation`; nan where the block overturns, infinite where the outcome
-        changes within the rounding of the parameters.
-    from_cube : bool array
-        Whether it is interpolated in a data set; else it is solved.
+    {fields}
     derived : mapping of str to float64 array
         The derived fields, such as `residual_energy`, which are attributes too; nan where it is interpolated.
     """
 
-    peak_rotation: Array
-    outcome: NDArray[np.int8]
-    impacts: NDArray[np.int32]
     exceeded_alpha: Flags
     error_bound: Array
     from_cube: Flags
@@ -63,11 +47,6 @@ class BoundedResponse(DerivedFields, EqualByValue):
     def source(self) -> NDArray[np.str_]:
         """Names of the sources: "cube" (interpolated data set) or "solver"."""
         return np.where(self.from_cube, "cube", "solver")
-
-    @property
-    def overturned(self) -> Flags:
-        """Whether the block overturns in the end."""
-        return np.asarray(self.outcome >= Outcome.OVERTURNED_DIRECTLY)
 
     def __repr__(self) -> str:
         """What happened, in words, with the error bound and the source."""
