@@ -22,7 +22,7 @@ from rocking._model.block import AbstractBlock
 from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.amplification import record_amplification  # noqa: F401  # public in `rocking.suites`
+from rocking._solver.records.amplification import record_amplification as record_amplification  # noqa: PLC0414  # public
 from rocking._solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
 
