@@ -1,89 +1,101 @@
-"""Public names of the package, the command line, the HTTP service and the data sets, collected from the code itself.
+"""The public interface as text, collected from the code: Python names and signatures, commands, HTTP routes, columns.
 
-`python -m tests.public_names RESULTS` adds the present names to tests/data/public_names.json; RESULTS is the results
-folder of a finished run of smoke.yaml. The tests allow new names, but none of the stored ones may disappear.
+`python -m tests.public_names` writes it to tests/data/public_names.txt, in which a change of the interface is seen.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import enum
 import inspect
-import json
-import sys
-from collections.abc import Iterator
+import re
+import textwrap
+from collections.abc import Iterable, Iterator
+from operator import attrgetter
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import netCDF4
 import typer
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 import rocking
 from rocking._cli.app import app as command_line
+from rocking._datasets.cube import AXES, OPTIONAL_VARIABLES, SAMPLES, VARIABLES
+from rocking._model.fields import COLUMN_FIELDS, RESPONSE_FIELDS
+from workflow.scripts.overturning import described
+from workflow.scripts.overturning_part import curves_of
 
-STORED = Path(__file__).parent / "data" / "public_names.json"
+STORED = Path(__file__).parent / "data" / "public_names.txt"
+REFERENCE = Path(__file__).parents[1] / "docs/reference/python.md"
 
-UNDOCUMENTED = {"rocking.Cube": {"level", "slice_at", "promised", "interpolate", "used"}}
+NOT_DOCUMENTED = {"rocking.Cube": {"level", "slice_at", "promised", "interpolate", "used"}}
 """Members without a leading underscore that the documentation does not name."""
 
-Names = dict[str, list[str]]
+
+def entry(name: str, words: Iterable[str]) -> str:
+    """A name and what belongs to it, in lines of at most 120 characters."""
+    return textwrap.fill(" ".join([f"{name}:", *words]), 120, subsequent_indent="    ", break_on_hyphens=False)
 
 
-def python_names() -> Names:
-    """Public names of `rocking`: parameters of functions, members of classes, names of modules."""
-    found = {"rocking": sorted(rocking.__all__)}
-    for name in rocking.__all__:
-        found |= members(f"rocking.{name}", getattr(rocking, name))
-    return found
+def python_names() -> Iterator[str]:
+    """Names at the top of `rocking`, their members, and what the reference documents besides them."""
+    yield from names_of("rocking", rocking)
+    for name in re.findall(r"^ +(_\w+\.[\w.]+)$", REFERENCE.read_text(encoding="utf-8"), flags=re.MULTILINE):
+        yield from names_of(f"rocking.{name}", attrgetter(name)(rocking))
 
 
-def members(name: str, value: Any) -> Names:
-    """Names that a user of one public object may write."""
+def names_of(name: str, value: Any) -> Iterator[str]:
+    """A module with its names, a class with its members and their signatures, a function with its signature."""
     if isinstance(value, ModuleType):
-        names = getattr(value, "__all__", [key for key in vars(value) if not key.startswith("_")])
-        found = {name: sorted(names)}
+        own = [key for key, part in vars(value).items() if getattr(part, "__module__", "").startswith(value.__name__)]
+        names = sorted(key for key in getattr(value, "__all__", own) if key == "__version__" or key[0] != "_")
+        yield entry(name, names)
         for key in names:
-            if inspect.isfunction(getattr(value, key)) or inspect.isclass(getattr(value, key)):
-                found |= members(f"{name}.{key}", getattr(value, key))
-        return found
-    if inspect.isclass(value) and issubclass(value, enum.Enum):
-        return {name: [f"{member.name} = {member.value}" for member in value]}
-    if inspect.isclass(value):
-        public = {key for key in dir(value) if not key.startswith("_")} - set(dir(Exception))
-        if dataclasses.is_dataclass(value):
-            public |= {field.name for field in dataclasses.fields(value)}
-        public -= UNDOCUMENTED.get(name, set())
-        found = {name: sorted(public)}
-        for key in public:
-            if inspect.isfunction(getattr(value, key, None)):
-                found |= members(f"{name}.{key}", getattr(value, key))
-        return found
-    if inspect.isfunction(value):
-        return {name: [key for key in inspect.signature(value).parameters if key != "self"]}
-    return {}
+            yield from names_of(f"{name}.{key}", getattr(value, key))
+    elif inspect.isclass(value) and issubclass(value, enum.Enum):
+        yield entry(name, [f"{member.name}={member.value}" for member in value])
+    elif inspect.isclass(value):
+        fields = {key for base in value.__mro__ for key in inspect.get_annotations(base)}
+        members = {key for key in {*dir(value), *fields} - {*dir(Exception)} if key[0] != "_"}
+        members -= NOT_DOCUMENTED.get(name, set())
+        yield entry(name, sorted(members))
+        for key in ("__init__", *sorted(members)):
+            if inspect.isfunction(part := getattr(value, key, None)) or inspect.ismethod(part):
+                yield signature(f"{name}.{key}", part)
+    elif inspect.isfunction(value):
+        yield signature(name, value)
 
 
-def command_names() -> Names:
+def signature(name: str, function: Any) -> str:
+    """The parameters of a function as they may be passed, with defaults that are plain values."""
+    found = inspect.signature(function)
+    parameters = [
+        parameter.replace(annotation=parameter.empty)
+        if isinstance(parameter.default, (type, int, float, str, tuple, type(None)))
+        else parameter.replace(annotation=parameter.empty, default=...)
+        for parameter in found.parameters.values()
+    ]
+    listed = str(found.replace(parameters=parameters, return_annotation=found.empty)).replace("Ellipsis", "...")
+    return textwrap.fill(f"{name}{listed}", 120, subsequent_indent="    ")
+
+
+def command_names() -> Iterator[str]:
     """Options of each command, those of a group under `rocking GROUP COMMAND`."""
 
-    def options(name: str, command: Any) -> Names:
+    def options(name: str, command: Any) -> Iterator[str]:
         if hasattr(command, "commands"):
-            return {
-                key: value
-                for own, part in command.commands.items()
-                for key, value in options(f"{name} {own}", part).items()
-            }
-        return {name: sorted(option for parameter in command.params for option in parameter.opts)}
+            for own, part in sorted(command.commands.items()):
+                yield from options(f"{name} {own}", part)
+        else:
+            yield entry(name, sorted(option for parameter in command.params for option in parameter.opts))
 
     return options("rocking", typer.main.get_command(command_line))
 
 
-def http_names(results: Path) -> Names:
-    """Parameters, media types and fields of each route, from the OpenAPI document."""
-    document = create_app(Settings(results=results)).openapi()
+def http_names() -> Iterator[str]:
+    """Parameters of each route, and the fields of its body and of its answers, from the OpenAPI document."""
+    document = create_app(Settings(results=STORED.parent)).openapi()
 
     def fields(schema: dict[str, Any], path: str = "") -> Iterator[str]:
         if "$ref" in schema:
@@ -95,67 +107,38 @@ def http_names(results: Path) -> Names:
             if isinstance(part, dict):
                 yield from fields(part, path)
 
-    def contents(name: str, message: dict[str, Any]) -> Names:
-        return {
-            f"{name} {media_type}": sorted(set(fields(content.get("schema", {}))))
-            for media_type, content in message.get("content", {}).items()
-        }
+    def contents(name: str, message: dict[str, Any]) -> Iterator[str]:
+        for media_type, content in message.get("content", {}).items():
+            yield entry(f"{name} {media_type}", sorted(set(fields(content.get("schema", {})))))
 
-    found: Names = {}
-    for path, operations in document["paths"].items():
+    errors: set[str] = set()
+    for path, operations in sorted(document["paths"].items()):
         for method, operation in operations.items():
             route = f"{method.upper()} {path}"
-            found[route] = sorted(parameter["name"] for parameter in operation.get("parameters", ()))
-            found |= contents(f"{route} body", operation.get("requestBody", {}))
-            found[f"{route} status"] = sorted(operation["responses"])
-            for status, response in operation["responses"].items():
-                found |= contents(f"{route} {status}" if status < "400" else "error", response)
-    return found
+            yield entry(route, sorted(parameter["name"] for parameter in operation.get("parameters", ())))
+            yield from contents(f"{route} body", operation.get("requestBody", {}))
+            for status, response in sorted(operation["responses"].items()):
+                if status < "400":
+                    yield from contents(f"{route} {status}", response)
+                else:
+                    errors |= {*contents("error", response)}
+            yield entry(f"{route} status", sorted(operation["responses"]))
+    yield from sorted(errors)
 
 
-def file_names(results: Path) -> Names:
-    """Dimensions and variables of the data sets and figures in a results folder."""
-    found: Names = {}
-    for path in sorted(results.rglob("*.nc")):
-        with netCDF4.Dataset(path) as dataset:
-            names = {f"{variable.name}({', '.join(variable.dimensions)})" for variable in dataset.variables.values()}
-        found[path.relative_to(results).as_posix()] = sorted(names)
-    return found
+def column_names() -> Iterator[str]:
+    """Fields of responses, columns of tables, variables of data sets."""
+    curves = next(curves_of("sine", [0.85], 0.0, nodes=16))
+    yield entry("fields of a response", [field.name for field in RESPONSE_FIELDS])
+    yield entry("columns of a table", [field.name for field in COLUMN_FIELDS])
+    yield entry("variables of a spectrum cube", [*AXES, *SAMPLES, *VARIABLES, *OPTIONAL_VARIABLES])
+    yield entry("variables of overturning boundaries", sorted(described(curves, "sine", 0.85).variables))
 
 
-def stored() -> dict[str, Names]:
-    """Read the stored names by kind: python, commands, http, files."""
-    content: dict[str, Names] = json.loads(STORED.read_text(encoding="utf-8"))
-    return content
-
-
-def missing(kind: str, present: Names) -> list[str]:
-    """Return the stored names of a kind that are not present."""
-    return [
-        f"{place}: {name}" if name else place
-        for place, names in stored()[kind].items()
-        for name in (["", *names] if place not in present else sorted(set(names) - set(present[place])))
-    ]
-
-
-def main(results: Path) -> None:
-    """Add the present names to the stored ones."""
-    known = stored() if STORED.exists() else {}
-    present = {
-        "python": python_names(),
-        "commands": command_names(),
-        "http": http_names(results),
-        "files": file_names(results),
-    }
-    merged = {
-        kind: {
-            place: sorted({*known.get(kind, {}).get(place, ()), *names.get(place, ())})
-            for place in sorted({*known.get(kind, {}), *names})
-        }
-        for kind, names in present.items()
-    }
-    STORED.write_text(json.dumps(merged, indent=1) + "\n", encoding="utf-8")
+def present() -> str:
+    """The interface of the code as it is."""
+    return "\n".join([*python_names(), *command_names(), *http_names(), *column_names(), ""])
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    STORED.write_text(present(), encoding="utf-8")
