@@ -132,7 +132,7 @@ def column_names() -> Iterator[str]:
     yield entry("fields of a response", [field.name for field in RESPONSE_FIELDS])
     yield entry("columns of a table", [field.name for field in COLUMN_FIELDS])
     yield entry("variables of a spectrum cube", [*AXES, *SAMPLES, *VARIABLES, *OPTIONAL_VARIABLES])
-    yield entry("variables of overturning boundaries", sorted(described(curves, "sine", 0.85).variables))
+    yield entry("variables of overturning boundaries", sorted(map(str, described(curves, "sine", 0.85).variables)))
 
 
 def present() -> str:
