@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 import yaml
 
+from rocking._base.source_tree import SourceTree
 from rocking._boundary.curves import curves_at, join_curves
 from rocking._datasets.cube import read_dataset, write_dataset
 from rocking._model.block import Block
@@ -41,6 +42,23 @@ def test_figure_drawn_twice_has_equal_bytes(name: str, smoke_results: Path, tmp_
     for kind, path in paths.items():
         there = smoke_results / f"figures/{name}.{kind}"
         assert hashlib.sha256(path.read_bytes()).digest() == hashlib.sha256(there.read_bytes()).digest(), kind
+
+
+# Figures of histories, curves and maps that are in no data set: these call the solver.
+SOLVED = {f"figure-{number}" for number in ("02", "06", "07", "08", "09", "11", "12", "13")}
+SOLVED |= {"figure-master-housner", "figure-master-spectra"}
+
+
+def test_a_figure_depends_on_the_solver_only_if_it_computes_responses() -> None:
+    sources, scripts = SourceTree(PROJECT), PROJECT / "workflow"
+    kernels = PROJECT / "rocking/_solver/kernels"
+    dependent = {
+        name
+        for name in CONFIGURED
+        for files in [sources.files(scripts / "scripts/figure.py", scripts / f"figures/{name.replace('-', '_')}.py")]
+        if any(kernels in file.parents for file in files)
+    }
+    assert dependent == SOLVED
 
 
 @pytest.mark.parametrize("name", CONFIGURED)
