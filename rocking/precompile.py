@@ -13,7 +13,7 @@ import numpy as np
 from rocking._boundary.trends import load_entries
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse
 from rocking._excitation.records.record import Record
-from rocking._history.time_history import record_history, time_history
+from rocking._history.time_history import time_history
 from rocking._lookup.cube import Cube
 from rocking._lookup.cube_slice import slice_of
 from rocking._numba.kernel_cache import NOT_KEPT, cache_folder
@@ -41,7 +41,7 @@ def load_kernels() -> None:
     peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
     motion = Record([0.0, 1.0, -1.0, 0.0], 0.1, unit="m/s2")
     record_response(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85, alpha=[0.0, 0.3])
-    record_history(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85)
+    time_history(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85)
     time_history("sine", **block, samples=2)
     time_history("sine", **block, alpha=0.3, samples=2)
     axes: dict[str, Any] = {"slenderness": np.linspace(0.75, 0.85, 5), "frequency_ratio": np.linspace(2.5, 3.5, 5)}

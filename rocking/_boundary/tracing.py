@@ -33,7 +33,7 @@ UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
 
 
 def overturning_boundary(
-    pulse: str | AbstractPulse,
+    motion: str | AbstractPulse,
     *,
     restitution: Scalar,
     alpha: Scalar | None = None,
@@ -46,7 +46,7 @@ def overturning_boundary(
 
     Parameters
     ----------
-    pulse, restitution, alpha
+    motion, restitution, alpha
         As for `peak_response`; scalars.
     frequency_ratio : (float, float)
         Window of omega [-], 0 < low < high.
@@ -90,7 +90,7 @@ def overturning_boundary(
     in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
     """
     return overturning_boundaries(
-        pulse,
+        motion,
         restitution=check_number(RESTITUTION, restitution),
         alpha=alpha,
         frequency_ratio=frequency_ratio,

@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Scalar
 from rocking._dimensional.curves import (
-    DEFAULT_SAMPLES,
     block_boundary,
     block_history,
     block_record_history,
@@ -20,6 +19,7 @@ from rocking._dimensional.record_response import BlockRecordResponse, respond_to
 from rocking._dimensional.response import BlockResponse, respond
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
+from rocking._history.time_history import DEFAULT_SAMPLES
 from rocking._model import block as geometry
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class RespondingBlock(geometry.AbstractBlock):
     @overload
     def response(
         self,
-        excitation: str | AbstractPulse,
+        motion: str | AbstractPulse,
         *,
         peak_acceleration: Scalar,
         period: Scalar,
@@ -43,12 +43,12 @@ class RespondingBlock(geometry.AbstractBlock):
 
     @overload
     def response(
-        self, excitation: Record, *, scale: Scalar = 1.0, restitution: Restitution = "momentum", thresholds: bool = True
+        self, motion: Record, *, scale: Scalar = 1.0, restitution: Restitution = "momentum", thresholds: bool = True
     ) -> BlockRecordResponse: ...
 
     def response(
         self,
-        excitation: str | AbstractPulse | Record,
+        motion: str | AbstractPulse | Record,
         *,
         peak_acceleration: Scalar | None = None,
         period: Scalar | None = None,
@@ -60,7 +60,7 @@ class RespondingBlock(geometry.AbstractBlock):
 
         Parameters
         ----------
-        excitation : str, AbstractPulse or Record
+        motion : str, AbstractPulse or Record
             The pulse, or a recorded ground motion.
         peak_acceleration : float
             a_g [m/s2], > 0; of a pulse.
@@ -77,7 +77,7 @@ class RespondingBlock(geometry.AbstractBlock):
         Raises
         ------
         InvalidArgumentError
-            If a value is out of range, missing, or has no meaning for the kind of excitation.
+            If a value is out of range, missing, or has no meaning for the kind of motion.
 
         Examples
         --------
@@ -86,16 +86,16 @@ class RespondingBlock(geometry.AbstractBlock):
         >>> Block("40 cm", "160 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
         False
         """
-        motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
-        if isinstance(motion, BlockProblem):
-            return respond(motion)
-        record, factor = motion
+        asked = self._motion(motion, peak_acceleration, period, scale, restitution)
+        if isinstance(asked, BlockProblem):
+            return respond(asked)
+        record, factor = asked
         return respond_to_record(self, record, scale=factor, restitution=restitution, thresholds=thresholds)
 
     @overload
     def history(
         self,
-        excitation: str | AbstractPulse,
+        motion: str | AbstractPulse,
         *,
         peak_acceleration: Scalar,
         period: Scalar,
@@ -108,7 +108,7 @@ class RespondingBlock(geometry.AbstractBlock):
     @overload
     def history(
         self,
-        excitation: Record,
+        motion: Record,
         *,
         scale: Scalar = 1.0,
         restitution: Restitution = "momentum",
@@ -119,7 +119,7 @@ class RespondingBlock(geometry.AbstractBlock):
 
     def history(
         self,
-        excitation: str | AbstractPulse | Record,
+        motion: str | AbstractPulse | Record,
         *,
         peak_acceleration: Scalar | None = None,
         period: Scalar | None = None,
@@ -133,7 +133,7 @@ class RespondingBlock(geometry.AbstractBlock):
 
         Parameters
         ----------
-        excitation, peak_acceleration, period, scale, restitution
+        motion, peak_acceleration, period, scale, restitution
             As for `response`.
         duration : float, optional
             Length [s], > 0; by default the pulse or the record, and 8/p after it.
@@ -145,20 +145,20 @@ class RespondingBlock(geometry.AbstractBlock):
         Raises
         ------
         InvalidArgumentError
-            If a value is out of range, missing, or has no meaning for the kind of excitation.
+            If a value is out of range, missing, or has no meaning for the kind of motion.
         """
-        motion = self._motion(excitation, peak_acceleration, period, scale, restitution)
-        if isinstance(motion, BlockProblem):
+        asked = self._motion(motion, peak_acceleration, period, scale, restitution)
+        if isinstance(asked, BlockProblem):
             count = DEFAULT_SAMPLES if samples is None else samples
-            return block_history(motion, duration=duration, samples=count, contact=contact)
-        record, factor = motion
+            return block_history(asked, duration=duration, samples=count, contact=contact)
+        record, factor = asked
         return block_record_history(
             self, record, scale=factor, restitution=restitution, duration=duration, samples=samples, contact=contact
         )
 
     def spectrum(
         self,
-        excitation: str | AbstractPulse,
+        motion: str | AbstractPulse,
         *,
         peak_acceleration: Scalar,
         period: ArrayLike,
@@ -168,7 +168,7 @@ class RespondingBlock(geometry.AbstractBlock):
 
         Parameters
         ----------
-        excitation, peak_acceleration, restitution
+        motion, peak_acceleration, restitution
             As for `response`.
         period : array_like (periods,)
             T_p [s], > 0.
@@ -178,13 +178,11 @@ class RespondingBlock(geometry.AbstractBlock):
         InvalidArgumentError
             If a value is out of range.
         """
-        return block_spectrum(
-            self, excitation, peak_acceleration=peak_acceleration, period=period, restitution=restitution
-        )
+        return block_spectrum(self, motion, peak_acceleration=peak_acceleration, period=period, restitution=restitution)
 
     def boundary(
         self,
-        pulse: str | AbstractPulse,
+        motion: str | AbstractPulse,
         *,
         restitution: Restitution = "momentum",
         period: tuple[float, float] | None = None,
@@ -193,7 +191,7 @@ class RespondingBlock(geometry.AbstractBlock):
 
         Parameters
         ----------
-        pulse : str or AbstractPulse
+        motion : str or AbstractPulse
             The pulse.
         restitution : float or "momentum"
             As for `response`.
@@ -205,11 +203,11 @@ class RespondingBlock(geometry.AbstractBlock):
         InvalidArgumentError
             If a value is out of range.
         """
-        return block_boundary(self, pulse, restitution=restitution, period=period)
+        return block_boundary(self, motion, restitution=restitution, period=period)
 
     def _motion(
         self,
-        excitation: str | AbstractPulse | Record,
+        motion: str | AbstractPulse | Record,
         peak_acceleration: Scalar | None,
         period: Scalar | None,
         scale: Scalar | None,
@@ -217,17 +215,17 @@ class RespondingBlock(geometry.AbstractBlock):
     ) -> BlockProblem | tuple[Record, Scalar]:
         """The problem under a pulse, or the record and its factor."""
         of_pulse: dict[str, Scalar | None] = {"peak_acceleration": peak_acceleration, "period": period}
-        if isinstance(excitation, Record):
+        if isinstance(motion, Record):
             for name, value in of_pulse.items():
                 if value is not None:
                     raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
-            return excitation, 1.0 if scale is None else scale
+            return motion, 1.0 if scale is None else scale
         if scale is not None:
             raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
         if peak_acceleration is None or period is None:
             missing = next(name for name, value in of_pulse.items() if value is None)
             raise InvalidArgumentError(missing, None, "a number, for a pulse")
-        return BlockProblem(self, excitation, peak_acceleration, period, restitution)
+        return BlockProblem(self, motion, peak_acceleration, period, restitution)
 
 
 @final

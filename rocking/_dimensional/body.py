@@ -16,13 +16,13 @@ from rocking._boundary.tracing import trace_curves
 from rocking._dimensional.body_problem import BodyProblem, checked_restitution
 from rocking._dimensional.body_response import BodyResponse, respond_bodies
 from rocking._dimensional.body_thresholds import BodyThresholds, thresholds_of
-from rocking._dimensional.curves import DEFAULT_SAMPLES, frequency_window, with_si_axes
+from rocking._dimensional.curves import frequency_window, with_si_axes
 from rocking._dimensional.record_groups import HIGHEST_SCALE
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, reactions_of
 from rocking._history.motion import SamplesMotion
-from rocking._history.time_history import MAX_SAMPLES, default_times
+from rocking._history.time_history import DEFAULT_SAMPLES, MAX_SAMPLES, default_times
 from rocking._model.body import AbstractBody
 from rocking._model.checks import check, check_number
 from rocking._model.outcome import Outcome

@@ -16,7 +16,7 @@ from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, perio
 from rocking._dimensional.record_groups import checked_scale, record_groups
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
-from rocking._history.time_history import record_history, time_history
+from rocking._history.time_history import DEFAULT_SAMPLES, time_history
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._numba.cancellation import StopFlag
@@ -24,9 +24,6 @@ from rocking._solver.bounded_response import solve_with_bound
 
 if TYPE_CHECKING:
     import xarray as xr
-
-DEFAULT_SAMPLES = 400
-"""Uniform samples of a history under a pulse, unless another number is given."""
 
 
 def block_history(
@@ -131,7 +128,7 @@ def block_record_history(
     """
     factor = checked_scale(scale, record, block)
     eta = restitution_of(block, restitution)
-    found = record_history(
+    found = time_history(
         record,
         **record_groups(record, block, factor, eta),
         duration=duration,

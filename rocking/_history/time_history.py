@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking._base.errors import integer, number
+from rocking._base.errors import integer, needed, number, reject_given
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
@@ -31,19 +31,24 @@ if TYPE_CHECKING:
 MAX_SAMPLES = 1_000_000
 """Largest number of uniform samples of a history."""
 
+DEFAULT_SAMPLES = 400
+"""Uniform samples of a history under a pulse."""
+
 MIN_CONTINUED = 10_000
 """Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""
 
 
 def time_history(
-    pulse: str | AbstractPulse,
+    motion: str | AbstractPulse | Record,
     *,
     slenderness: Scalar,
-    frequency_ratio: Scalar,
+    frequency_ratio: Scalar | None = None,
+    frequency_parameter: Scalar | None = None,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    vertical_scale: Scalar | None = None,
     duration: Scalar | None = None,
-    samples: int = 400,
+    samples: int | None = None,
     contact: bool = False,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
@@ -51,75 +56,15 @@ def time_history(
 
     Parameters
     ----------
-    pulse, slenderness, frequency_ratio, restitution, alpha
+    motion, slenderness, frequency_ratio, frequency_parameter, restitution, alpha, vertical_scale
         As for `peak_response`; scalars.
     duration : float, optional
-        Duration [tau], > 0. By default the pulse and 8 units after it; if the block overturns, until
-        |theta|/alpha = 4 or |theta| = pi/2.
-    samples : int
-        Number of uniform samples, 2 to 1,000,000; uplift, impacts and the end of the pulse are added.
-    contact : bool
-        Whether to add the reactions of the ground and the friction demand (docs/contact.md).
-    stop : StopFlag, optional
-        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
-
-    Returns
-    -------
-    xarray.Dataset
-        tau(tau): time p t from the start of the pulse [-]; rotation(tau): theta/alpha [-]; angular_velocity(tau):
-        theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(tau): a f [-];
-        impact_time(impact) [-]. Attributes: the arguments, outcome, overturned, peak_rotation, impacts. With
-        `contact`, the variables and attributes of `rocking._history.contact.add_contact`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range.
-    StoppedError
-        If `stop` was set.
-    """
-    samples = integer("samples", samples, 2, MAX_SAMPLES)
-    groups = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution}
-    motion = build_motion(pulse, **groups, alpha=alpha, duration=duration, stop=stop)
-    history, tau, impact_times = _sampled(
-        motion, np.linspace(0.0, motion.horizon, samples), (" (3.4)", "a f = ", " (3.2)")
-    )
-    history["impact_time"] = "impact", impact_times, {"long_name": "time of impact p t", "units": "1"}
-    history = history.assign_coords(tau=("tau", tau, {"long_name": "time p t from pulse start", "units": "1"}))
-    history.attrs |= {
-        "pulse": as_pulse(pulse).name,
-        "frequency_ratio": check_number(FREQUENCY_RATIO, frequency_ratio),
-        "pulse_end": motion.pulse_end,
-    }
-    return add_contact(history, motion, impact_times) if contact else history
-
-
-def record_history(
-    motion: Record,
-    *,
-    frequency_parameter: Scalar,
-    slenderness: Scalar,
-    restitution: Scalar,
-    alpha: Scalar | None = None,
-    vertical_scale: Scalar | None = 1.0,
-    duration: Scalar | None = None,
-    samples: int | None = None,
-    contact: bool = False,
-    stop: StopFlag | None = None,
-) -> xr.Dataset:
-    """Rotation and angular velocity of one block under a recorded motion against time, exact to rounding.
-
-    Parameters
-    ----------
-    motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale
-        As for `record_response`; numbers.
-    duration : float, optional
-        Duration [s], > 0. By default the motion and 8/p after it; if the block overturns, until |theta|/alpha = 4 or
-        |theta| = pi/2.
+        Duration, > 0: [tau] under a pulse, [s] under a record. By default the motion and 8/p after it; if the block
+        overturns, until |theta|/alpha = 4 or |theta| = pi/2.
     samples : int, optional
-        Number of uniform samples, 2 to 1,000,000; by default the samples of the motion, continued after its end by at
-        most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of the motion
-        are added.
+        Number of uniform samples, 2 to 1,000,000; by default 400 under a pulse, and those of a record, continued after
+        its end by at most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of
+        the motion are added.
     contact : bool
         Whether to add the reactions of the ground and the friction demand (docs/contact.md).
     stop : StopFlag, optional
@@ -128,49 +73,72 @@ def record_history(
     Returns
     -------
     xarray.Dataset
-        time(time) [s] from the first sample, and tau(time) = p t [-]; rotation(time): theta/alpha [-];
-        angular_velocity(time): theta'/(p alpha) [-], after the impact at an impact; ground_acceleration(time): u [-],
-        over g tan(alpha); vertical_acceleration(time) [-], over g and upwards, for a record that has it;
-        impact_time(impact) [s]. Attributes: the arguments, outcome, overturned, peak_rotation,
-        impacts. With `contact`, the variables and attributes of `rocking._history.contact.add_contact`.
+        Over tau, time p t from the start of the pulse [-]; or over time [s] from the first sample of a record, with
+        tau(time) [-]: rotation: theta/alpha [-]; angular_velocity: theta'/(p alpha) [-], after the impact at an impact;
+        ground_acceleration: a f = u/(g tan alpha) [-]; vertical_acceleration over g and upwards [-], for a record that
+        has it; impact_time(impact), [-] or [s]. Attributes: the arguments, outcome, overturned, peak_rotation, impacts.
+        With `contact`, the variables and attributes of `rocking._history.contact.add_contact`.
 
     Raises
     ------
     InvalidArgumentError
-        For an argument out of range.
+        For an argument out of range, missing, or without meaning for the kind of motion.
     StoppedError
         If `stop` was set.
     """
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)
-    groups = {
-        "frequency_parameter": frequency_parameter,
-        "slenderness": slenderness,
-        "restitution": restitution,
-        "alpha": alpha,
-        "vertical_scale": vertical_scale,
-    }
-    block = build_record_motion(motion, **groups, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
-    grid = default_times(block) if samples is None else np.linspace(0.0, block.horizon, samples)
-    history, tau, impact_times = _sampled(block, grid)
-    p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
+    if isinstance(motion, Record):
+        reject_given("a record", frequency_ratio=frequency_ratio)
+        groups = {
+            "frequency_parameter": needed("a record", frequency_parameter=frequency_parameter),
+            "slenderness": slenderness,
+            "restitution": restitution,
+            "alpha": alpha,
+            "vertical_scale": vertical_scale,
+        }
+        return _under_record(motion, groups, duration, samples, contact, stop)
+    reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
+    omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
+    of_pulse = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": restitution, "alpha": alpha}
+    moving = build_motion(motion, **of_pulse, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
+    grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
+    history, tau, impact_times = _sampled(moving, grid, (" (3.4)", "a f = ", " (3.2)"))
+    history["impact_time"] = "impact", impact_times, {"long_name": "time of impact p t", "units": "1"}
+    history = history.assign_coords(tau=("tau", tau, {"long_name": "time p t from pulse start", "units": "1"}))
+    history.attrs |= {"pulse": as_pulse(motion).name, "frequency_ratio": omega, "pulse_end": moving.pulse_end}
+    return add_contact(history, moving, impact_times) if contact else history
+
+
+def _under_record(
+    record: Record,
+    groups: dict[str, Any],
+    duration: Scalar | None,
+    samples: int | None,
+    contact: bool,
+    stop: StopFlag | None,
+) -> xr.Dataset:
+    moving = build_record_motion(record, **groups, duration=duration, stop=stop)
+    grid = default_times(moving) if samples is None else np.linspace(0.0, moving.horizon, samples)
+    history, tau, impact_times = _sampled(moving, grid)
+    p = number("frequency_parameter", groups["frequency_parameter"], *frequency_parameter_range(record), unit="rad/s")
     history["impact_time"] = "impact", impact_times / p, {"long_name": "time of impact", "units": "s"}
     history = history.assign_coords(
         tau=("tau", tau, {"long_name": "p t from the first sample", "units": "1"}),
         time=("tau", tau / p, {"long_name": "time from the first sample", "units": "s"}),
     )
     history.attrs |= {
-        "record": motion.name,
-        "record_digest": motion.digest,
+        "record": record.name,
+        "record_digest": record.digest,
         "frequency_parameter": p,
-        "motion_end": motion.duration,
+        "motion_end": record.duration,
     }
-    if motion.vertical is not None:
+    if record.vertical is not None:
         upwards = {"long_name": "vertical ground acceleration over g, upwards", "units": "1"}
-        history["vertical_acceleration"] = "tau", block.vertical_acceleration(tau), upwards
-        history.attrs["vertical_scale"] = float(block.cell["vertical"])
+        history["vertical_acceleration"] = "tau", moving.vertical_acceleration(tau), upwards
+        history.attrs["vertical_scale"] = float(moving.cell["vertical"])
     if contact:
-        history = add_contact(history, block, impact_times)
+        history = add_contact(history, moving, impact_times)
     return history.swap_dims(tau="time")
 
 

@@ -88,8 +88,8 @@ WINDOWS: dict[str, Any] = {
 RECORD, BLOCK = noise(1), rocking.Block(0.5, 2.0)
 FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.0, 16.0])
 OBJECTS: dict[str, Any] = {
-    "pulse": "sine", "excitation": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
-    "motion": RECORD, "record": RECORD, "records": [RECORD, noise(2)], "blocks": BLOCK, "column": BLOCK,
+    "pulse": "sine", "motion": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
+    "record": RECORD, "records": [RECORD, noise(2)], "blocks": BLOCK, "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
     "fragility": FRAGILITY, "argument": Orientation.L0,
     "group_set": GroupSet.RIGID_SMALL_ROTATION, "problem": Problem(0.3, 2.0, 5.0, 10.0), "groups": Groups(5.0, 0.6),
@@ -281,9 +281,9 @@ def walk_python(walk: Walk, results: Path) -> None:
         parameters = inspect.signature(function).parameters
         if "._" in name or not any(NUMERIC.search(str(one.annotation)) for one in parameters.values()):
             continue
-        for excitation in ("sine", RECORD) if "excitation" in parameters and name[-8:] != "spectrum" else ("sine",):
+        for motion in ("sine", RECORD) if "motion" in parameters and name[-8:] != "spectrum" else ("sine",):
             try:
-                given = ordinary_arguments(name, function, excitation)
+                given = ordinary_arguments(name, function, motion)
             except KeyError as error:
                 walk.faults.append(f"{name}: the parameter {error} has no ordinary value in this test")
                 continue
@@ -293,16 +293,16 @@ def walk_python(walk: Walk, results: Path) -> None:
                 walk.call(name, changed, partial(evaluate, function, given | other))
 
 
-def ordinary_arguments(name: str, function: Callable[..., Any], excitation: Any) -> dict[str, Any]:
+def ordinary_arguments(name: str, function: Callable[..., Any], motion: Any) -> dict[str, Any]:
     """The numbers, and the required objects."""
     given: dict[str, Any] = {}
     for key, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.VAR_KEYWORD:
             given |= {"cycles": 2.0, "phase": 0.5}  # of `pulse`
         elif key in OBJECTS:
-            given[key] = excitation if key == "excitation" else OBJECTS[key]
+            given[key] = motion if key == "motion" else OBJECTS[key]
         elif NUMERIC.search(str(parameter.annotation)):
-            if "excitation" not in given or key not in (OF_PULSES if excitation is RECORD else OF_RECORDS):
+            if "motion" not in given or key not in (OF_PULSES if motion is RECORD else OF_RECORDS):
                 given[key] = WINDOWS.get(name, NUMBERS).get(key) or NUMBERS[key]
         elif parameter.annotation == "bool":
             given[key] = True

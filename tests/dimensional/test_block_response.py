@@ -254,7 +254,7 @@ def test_a_record_at_a_large_scale_overturns_and_has_thresholds():
 
 
 @pytest.mark.parametrize(
-    ("excitation", "arguments", "parameter"),
+    ("motion", "arguments", "parameter"),
     [
         (RECORD, {"peak_acceleration": 3.0}, "peak_acceleration"),
         (RECORD, {"period": 0.5}, "period"),
@@ -264,7 +264,7 @@ def test_a_record_at_a_large_scale_overturns_and_has_thresholds():
         ("sine", {"period": 0.5}, "peak_acceleration"),
     ],
 )
-def test_arguments_of_the_other_kind_of_excitation_are_refused(excitation, arguments, parameter):
+def test_arguments_of_the_other_kind_of_excitation_are_refused(motion, arguments, parameter):
     with pytest.raises(InvalidArgumentError) as caught:
-        rocking.Block(width=0.4, height=1.6).response(excitation, **arguments)
+        rocking.Block(width=0.4, height=1.6).response(motion, **arguments)
     assert caught.value.parameter == parameter

@@ -17,7 +17,7 @@ from rocking._dimensional.record_scales import ScaleThresholds, scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import reject_flight
-from rocking._history.time_history import record_history
+from rocking._history.time_history import time_history
 from rocking._model.block import Block
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
@@ -188,7 +188,7 @@ def _response(service: Service, params: RecordResponseParams, record: Record, st
 
 def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopFlag) -> Response:
     block = Block(params.width, params.height, params.gravity)
-    motion = record_history(
+    motion = time_history(
         record,
         **record_groups(
             record, block, checked_scale(params.scale, record, block), restitution_of(block, params.restitution)
