@@ -57,7 +57,7 @@ def set_edge(state: Record, side: int, slenderness: float, eta: float, ratio: fl
 @kernel
 def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> None:
     """Set a body with equal edges; alpha = 0 is the slender limit."""
-    state.alpha, state.each_side = alpha, 0
+    state.alpha, state.pull[0], state.each_side = alpha, 0.0, 0
     set_edge(state, 0, slenderness, eta, 1.0, 1.0)
     set_edge(state, 1, slenderness, eta, 1.0, 1.0)
 
@@ -66,7 +66,7 @@ def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> No
 def set_body(state: Record, cell: Record, each_side: bool) -> None:
     """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
     differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]
-    state.alpha, state.each_side = cell.alpha, int(each_side or differ)
+    state.alpha, state.pull[0], state.each_side = cell.alpha, 0.0, int(each_side or differ)
     set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
     set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
 
@@ -106,12 +106,14 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
 
     The mode counts the impacts since the last uplift from rest.
     """
+    if z <= state.side_peak[side]:
+        return
     peak = z / state.ratio[side]
     if peak > state.peak_rotation * (1.0 + 1e-12):
         uplifts = min(state.uplifts, MAX_UPLIFT_MODE)
         state.peak_mode = MODES_PER_UPLIFT * (uplifts - 1) + 2 * (impacts - state.impacts_before_uplift) + free
     state.peak_rotation = max(state.peak_rotation, peak)
-    state.side_peak[side] = max(state.side_peak[side], z)
+    state.side_peak[side] = z
 
 
 @kernel
@@ -171,22 +173,20 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
 
 @kernel
 def pulls_of(state: Record) -> tuple[float, float]:
-    """-z'' at z = 0 over q on both edges, (p_s/p)^2 sin(alpha_s)/alpha [-]."""
-    if state.alpha == 0.0:
-        return 1.0, 1.0
-    right = math.sin(state.alpha) / state.alpha
-    if state.ratio[1] == 1.0 and state.stiffness[1] == 1.0:
-        return right, right
-    return right, state.stiffness[1] * (math.sin(state.alpha * state.ratio[1]) / state.alpha)
+    """-z'' at z = 0 over q on both edges, (p_s/p)^2 sin(alpha_s)/alpha [-]; sets `softening`, too.
 
-
-@kernel
-def softening_of(state: Record) -> float:
-    """Bound of |dz''/dz| over V on both edges while |F| <= V: (p_s/p)^2 (1 + tan(alpha_s)) [-]."""
-    first = 1.0 + math.tan(state.alpha)
-    if state.ratio[1] == 1.0 and state.stiffness[1] == 1.0:
-        return float(first)
-    return float(max(first, state.stiffness[1] * (1.0 + math.tan(state.alpha * state.ratio[1]))))
+    `softening` bounds |dz''/dz| over V on both edges while |F| <= V, (p_s/p)^2 (1 + tan(alpha_s)) [-]. Both are
+    computed once for a body, where they are first needed.
+    """
+    pull, alpha = state.pull, state.alpha
+    if pull[0] == 0.0:
+        pull[0] = 1.0 if alpha == 0.0 else math.sin(alpha) / alpha
+        pull[1], state.softening = pull[0], 1.0 + math.tan(alpha)
+        if state.ratio[1] != 1.0 or state.stiffness[1] != 1.0:
+            left, stiffness = alpha * state.ratio[1], state.stiffness[1]
+            pull[1] = 1.0 if alpha == 0.0 else stiffness * (math.sin(left) / alpha)
+            state.softening = max(state.softening, stiffness * (1.0 + math.tan(left)))
+    return pull[0], pull[1]
 
 
 @kernel
@@ -223,7 +223,7 @@ def impacts_accumulate(
     if weakest <= 0.0:
         return False
     height = w * w / weakest  # above z_m while k z_m stays below weakest/2
-    softening = vertical * softening_of(state) * height
+    softening = vertical * state.softening * height
     known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
     if softening > 0.5 * weakest or height > known:
         return False

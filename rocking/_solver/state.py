@@ -41,6 +41,8 @@ BODY_FIELDS = [
     ("stiffness", np.float64, EDGES),  # (p_s/p)^2
     ("speed", np.float64, EDGES),  # ratio p_s/p: velocity w over that in the units of the edge
     ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
+    ("pull", np.float64, EDGES),  # see `rocking._solver.rules.pulls_of`; 0 until it is known
+    ("softening", np.float64),
     ("each_side", np.int64),  # whether peaks are wanted for each edge; always where the edges differ
 ]
 """Fields of a solver state that describe the body; set once for a cell, by `rocking._solver.rules`."""

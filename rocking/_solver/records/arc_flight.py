@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rocking._numba.compilation import FloatArray, Record, kernel
-from rocking._solver.records.event_loop import cut_time, restoring_at
+from rocking._solver.records.event_loop import cut_time, ground_on
 from rocking._solver.records.piece import follow_piece, hyperbolic
 from rocking._solver.records.samples import LATER, SHAPE, interval_length
 from rocking._solver.state import IMPACT, OVERTURNS, PULSE_END
@@ -49,7 +49,7 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
     count = len(f) - 1
     k, s = block.interval, block.s
     h = interval_length(block, samples, k)
-    q0, q1 = restoring_at(block, samples, k), restoring_at(block, samples, k + 1)
+    q0, q1, _, _ = ground_on(block, samples, k)
     impact, z, w = follow_interval(block, h, q0, q1, s, 0.0, block.w0, block.starts_at_uplift == 1)
     block.stepped += 1
     if impact >= 0.0:

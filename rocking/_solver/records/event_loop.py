@@ -52,6 +52,15 @@ def restoring_at(block: Record, samples: FloatArray, k: int) -> float:
 
 
 @kernel
+def ground_on(block: Record, samples: FloatArray, k: int) -> tuple[float, float, float, float]:
+    """q at both ends of the sample interval `k`, on the edge of the flight, and V there."""
+    v0, v1 = 1.0, 1.0
+    if block.vertical != 0.0:
+        v0, v1 = vertical_at(block, samples, k), vertical_at(block, samples, k + 1)
+    return v0 + block.strength * samples[SHAPE, k], v1 + block.strength * samples[SHAPE, k + 1], v0, v1
+
+
+@kernel
 def cut_time(q0: float, q1: float, h: float) -> float:
     """Time since the left end of an interval at which q, of opposite signs at its ends, is zero [tau]."""
     return h * (q0 / (q0 - q1))
@@ -78,7 +87,7 @@ def start_flight(block: Record, samples: FloatArray) -> bool:
         if k == samples.shape[1] - 1:
             return False
         set_sign(block, lifting_sign(block, samples[SHAPE, k + 1], vertical_at(block, samples, k + 1)))
-    q0, q1 = restoring_at(block, samples, k), restoring_at(block, samples, k + 1)
+    q0, q1, _, _ = ground_on(block, samples, k)
     if q0 < 0.0:
         cut = 0.0
     else:

@@ -138,7 +138,7 @@ def next_exceedance(block: Record, samples: FloatArray, first: int) -> int:
                 continue
         if has_vertical:
             vertical = vertical_at(block, samples, k + 1)
-        if left * f[k + 1] > vertical or -right * f[k + 1] > vertical:
+        if max(left * f[k + 1], -right * f[k + 1]) > vertical:
             return k
         k += 1
     return count

@@ -76,6 +76,7 @@ def _steps_layout() -> np.dtype[np.void]:
             ("z1", np.float64, lanes),  # z at its end
             ("w1", np.float64, lanes),  # w there
             ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
+            ("steady", np.float64, lanes),  # 1 if it contains neither an impact nor a peak, 0 if not known
             ("taken", np.int64, lanes),  # number of steps of the flight
             ("has_vertical", np.int64),  # whether V is not 1 everywhere
             # accuracy

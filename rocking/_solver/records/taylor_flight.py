@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
-from rocking._solver.records.event_loop import cut_time, restoring_at
-from rocking._solver.records.samples import LATER, LATER_LOW, SHAPE, interval_length, vertical_at
+from rocking._solver.records.event_loop import cut_time, ground_on
+from rocking._solver.records.samples import LATER, LATER_LOW, SHAPE, interval_length
 from rocking._solver.rules import known_rotation
 from rocking._solver.state import IMPACT, IN_FLIGHT, OVERTURNS, PULSE_END
 from rocking._solver.taylor.events import evaluate_series
@@ -25,11 +25,8 @@ from rocking._solver.taylor.step import set_edge_lane
 def start_piece(block: Record, samples: FloatArray, steps: Record, lane: int, at_cut: bool) -> None:
     """Set the force and the limit of the step that starts at `block.s` in the interval; q is 0 there if `at_cut`."""
     k, s, h = block.interval, block.s, interval_length(block, samples, block.interval)
-    q0, q1 = restoring_at(block, samples, k), restoring_at(block, samples, k + 1)
-    slope, v0, vertical_slope = (q1 - q0) / h, 1.0, 0.0
-    if block.vertical != 0.0:
-        v0 = vertical_at(block, samples, k)
-        vertical_slope = (vertical_at(block, samples, k + 1) - v0) / h
+    q0, q1, v0, v1 = ground_on(block, samples, k)
+    slope, vertical_slope = (q1 - q0) / h, 0.0 if v0 == v1 else (v1 - v0) / h
     block.length = block.piece_end = h
     restoring = q0 + q1 > 0.0
     if q0 < 0.0 < q1 or q1 < 0.0 < q0:
@@ -63,19 +60,19 @@ def never_returns(block: Record, samples: FloatArray, z: float, w: float) -> boo
 
     Beyond alpha_s and with w > 0, z'' > 0 as long as sin(alpha z - alpha_s) > tan(alpha_s) |F|/V, and the sine
     increases up to |theta| = pi/2; the largest later |f| over the smallest later V bounds the right side. In the
-    slender limit z - 1 > |F|/V.
+    slender limit z - alpha_s/alpha > (alpha_s/alpha) |F|/V.
     """
     alpha, ratio = block.alpha, block.ratio[block.side]
     beyond = z - ratio
     if w <= 0.0 or beyond <= 0.0:
         return False
-    if alpha > 0.0 and z >= 0.5 * math.pi / alpha:
+    if alpha * z >= 0.5 * math.pi:
         return True
     k = block.interval
     strongest = block.a[block.side] * samples[LATER, k] / (1.0 + block.vertical * samples[LATER_LOW, k])
-    if alpha == 0.0:
-        return bool(beyond > strongest)
-    return bool(math.sin(alpha * beyond) > math.tan(alpha * ratio) * strongest)
+    if beyond <= ratio * strongest:  # sin(x) <= x <= tan(x): no need of either
+        return False
+    return bool(alpha == 0.0 or math.sin(alpha * beyond) > math.tan(alpha * ratio) * strongest)
 
 
 @kernel
@@ -87,17 +84,18 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
     What ended the flight, or `IN_FLIGHT`; the time since the left end of the interval `block.interval`; z and w.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
-    destabilised = block.destabilised == 1
-    impact = impact_in_step(steps, lane, destabilised, block.from_ground == 1)
-    if impact >= 0.0:
-        h, z, w = impact, 0.0, min(evaluate_series(steps.rate, lane, steps.order - 1, impact), 0.0)
-    if not destabilised:
-        known = max(known_rotation(block), block.largest_z)
-        block.largest_z = max(block.largest_z, highest_peak(steps, lane, 0.0, h, z, w, known))
-    if impact >= 0.0:
-        return IMPACT, block.s + h, z, w
-    if block.alpha > 0.0 and block.largest_z >= 0.5 * math.pi / block.alpha:
-        return OVERTURNS, block.s + h, z, w
+    if steps.steady[lane] == 0.0:
+        destabilised = block.destabilised == 1
+        impact = impact_in_step(steps, lane, destabilised, block.from_ground == 1)
+        if impact >= 0.0:
+            h, z, w = impact, 0.0, min(evaluate_series(steps.rate, lane, steps.order - 1, impact), 0.0)
+        if not destabilised:
+            known = max(known_rotation(block), block.largest_z)
+            block.largest_z = max(block.largest_z, highest_peak(steps, lane, 0.0, h, z, w, known))
+        if impact >= 0.0:
+            return IMPACT, block.s + h, z, w
+        if block.alpha * block.largest_z >= 0.5 * math.pi:
+            return OVERTURNS, block.s + h, z, w
     block.from_ground = 0
     steps.z0[lane], steps.w0[lane] = z, w
     if h < steps.limit[lane]:  # the series is accurate on a part of the piece only
@@ -107,15 +105,15 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
             steps.vertical[lane] += steps.vertical_rate[lane] * h
         steps.limit[lane] -= h
         return IN_FLIGHT, block.s, z, w
-    if block.piece_end < block.length:
+    at_cut = block.piece_end < block.length
+    if at_cut:
         block.s = block.piece_end
-        start_piece(block, samples, steps, lane, True)
-        return IN_FLIGHT, block.s, z, w
-    block.stepped += 1
-    block.interval, block.s = block.interval + 1, 0.0
-    if never_returns(block, samples, z, w):
-        return OVERTURNS, 0.0, z, w
-    if block.interval == len(samples[SHAPE]) - 1:
-        return PULSE_END, 0.0, z, w
-    start_piece(block, samples, steps, lane, False)
-    return IN_FLIGHT, 0.0, z, w
+    else:
+        block.stepped += 1
+        block.interval, block.s = block.interval + 1, 0.0
+        if never_returns(block, samples, z, w):
+            return OVERTURNS, 0.0, z, w
+        if block.interval == len(samples[SHAPE]) - 1:
+            return PULSE_END, 0.0, z, w
+    start_piece(block, samples, steps, lane, at_cut)
+    return IN_FLIGHT, block.s, z, w

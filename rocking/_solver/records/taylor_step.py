@@ -7,7 +7,7 @@ V = V0 + V' tau have two coefficients instead of a series, which removes one of 
 from __future__ import annotations
 
 from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import load, splat, store
+from rocking._numba.simd import absolute, load, minimum, select, splat, store
 from rocking._solver.taylor.step import choose_step_size, evaluate_step, start_series
 
 
@@ -46,7 +46,15 @@ def expand_motion(steps: Record) -> None:
 
 @kernel
 def take_step(steps: Record) -> None:
-    """Expand about z0, w0; set the step size, z and w at the end, and the bound of |w''| on the step."""
+    """Expand about z0, w0; set the step size, z and w at the end, the bound of |w''| on the step, and `steady`.
+
+    On a steady step w keeps its sign: it differs from its chord by (largest |w''|) h^2/8 at most. If z > 0 at the end,
+    too, the step contains neither an impact nor a peak.
+    """
     expand_motion(steps)
     choose_step_size(steps)
     evaluate_step(steps)
+    h, w0, w1 = load(steps.h, 0), load(steps.w0, 0), load(steps.w1, 0)
+    sagitta = 0.125 * load(steps.second_derivative_bound, 0) * h * h
+    steady = (load(steps.z1, 0) > 0.0) & (w0 * w1 > 0.0) & (minimum(absolute(w0), absolute(w1)) > sagitta)
+    store(steps.steady, 0, select(steady, splat(1.0), splat(0.0)))
