@@ -99,6 +99,8 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
     block.from_ground = 0
     steps.z0[lane], steps.w0[lane] = z, w
     if h < steps.limit[lane]:  # the series is accurate on a part of the piece only
+        if block.alpha * z >= 0.5 * math.pi:
+            return OVERTURNS, block.s + h, z, w
         block.s += h
         steps.force[lane] += steps.force_rate[lane] * h
         if steps.has_vertical == 1:

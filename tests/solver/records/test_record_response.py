@@ -102,6 +102,13 @@ def test_a_coarse_motion_needs_several_taylor_steps_an_interval(alpha: float | N
     )
 
 
+def test_a_block_that_passes_the_horizontal_inside_an_interval_has_overturned() -> None:
+    # 1e11 g tan(alpha): the block would spin for millions of steps up to the next sample, and come back to the ground
+    motion = rocking.Record([0.0, 1.0, -0.5, 0.3], 1.0, unit="m/s2")
+    found = rocking.peak_response(motion, frequency_parameter=20.0, slenderness=1e-11, restitution=0.5, alpha=0.03)
+    assert found.outcome == rocking.Outcome.OVERTURNED_DIRECTLY
+
+
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_a_constant_acceleration_that_ends_has_a_closed_form(alpha: float | None) -> None:
     """A rectangular pulse: samples 1, ..., 1, then zero after the last; it is the catalogue's rectangular pulse."""
