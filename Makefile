@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify test browser serve docs bench stress slurm fuzz mutants lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify test browser serve docs bench stress slurm deploy-check fuzz mutants lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -65,6 +65,9 @@ slurm: .venv/project ## make data sets through a Slurm cluster of one node and c
 
 # Besides these the plugin needs what is locked; it is not installed into .venv.
 SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin-slurm-jobstep==0.6.1
+
+deploy-check: .venv/project ## slow and greedy clients of the service alone, and behind nginx if it is installed; a minute
+	python -m tests.api.check_deployment
 
 fuzz: .venv/project ## send 5,000 random requests to the service; three minutes (SEED= for others)
 	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/api/test_api_fuzz.py

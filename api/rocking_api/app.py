@@ -102,7 +102,9 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
     # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream")
-    app.add_middleware(MemoryBudgetMiddleware, budget=service.memory_budget)  # counts before compression
+    app.add_middleware(  # counts before compression
+        MemoryBudgetMiddleware, budget=service.memory_budget, seconds=settings.reading_seconds
+    )
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )

@@ -1,4 +1,4 @@
-"""The server: uvicorn, one event loop in each process, with connection limits, JSON logs and graceful shutdown."""
+"""The server: uvicorn, one event loop in each process, with a limit of connections, JSON logs and graceful shutdown."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from uvicorn.config import STARTUP_FAILURE
 from rocking.precompile import load_kernels
 from rocking_api.app import create_app
 from rocking_api.execution.kernels import compile_command
-from rocking_api.http.connection import limited_protocol
 from rocking_api.http.metrics import forget_process
 from rocking_api.http.request_log import CONFIG
 from rocking_api.service_manager import tell_that_it_answers
@@ -38,6 +37,9 @@ The event loop waits that long after each read from a connection while another t
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
 """Parameters of `mallopt`, from glibc's malloc.h."""
+
+UNSENT = 128 * 1024
+"""Unsent bytes of a connection that the operating system buffers; the rest waits in this process."""
 
 LARGE_BLOCK = 1_000_000
 """Bytes of memory that are returned to the operating system when they are freed."""
@@ -66,7 +68,7 @@ def serve(settings: Settings, host: str, port: int, workers: int = 1) -> int:
     options: dict[str, Any] = {
         "host": host,
         "port": port,
-        "http": limited_protocol(settings.arrival_seconds, settings.max_header_bytes, settings.reading_seconds),
+        "limit_concurrency": settings.max_connections,
         "ws": "none",
         "log_config": CONFIG,
         "access_log": False,  # written by RequestLog
@@ -74,7 +76,7 @@ def serve(settings: Settings, host: str, port: int, workers: int = 1) -> int:
         "timeout_graceful_shutdown": settings.stop_seconds,
     }
 
-    def work(listener: socket.socket | None, runs: Callable[[], None]) -> None:
+    def work(listener: socket.socket, runs: Callable[[], None]) -> None:
         async def notify() -> None:
             runs()
 
@@ -82,16 +84,16 @@ def serve(settings: Settings, host: str, port: int, workers: int = 1) -> int:
         # with a negative time uvicorn notifies once a second whatever is done to the clock of the machine
         config = uvicorn.Config(app, callback_notify=notify, timeout_notify=-sys.maxsize, **options)
         server = uvicorn.Server(config)
-        server.run(None if listener is None else [listener])
+        server.run([listener])
         if not server.started:
             sys.exit(STARTUP_FAILURE)
 
+    listeners = _listen(uvicorn.Config("", **options), workers)
     if workers == 1:
         _tune_garbage_collector()
         with suppress(KeyboardInterrupt):
-            work(None, tell_that_it_answers)
+            work(listeners[0], tell_that_it_answers)
         return 0
-    listeners = _listen(uvicorn.Config("", **options), workers)
     _load_kernels()
     _tune_garbage_collector()
     return Workers(work, forget_process, settings.stop_seconds).run(listeners)
@@ -104,12 +106,15 @@ def _listen(config: uvicorn.Config, workers: int) -> list[socket.socket]:
     that wait: sixteen that were opened together all went to one of two workers. Elsewhere the workers share one socket.
     """
     first = config.bind_socket()  # fails if another service listens there
+    if hasattr(socket, "TCP_NOTSENT_LOWAT"):  # connections inherit it: how slowly a client reads is noticed here
+        first.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT)
     sockets = [first] * workers
     if sys.platform == "linux":
         first.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
         sockets[1:] = [socket.socket(first.family) for _ in sockets[1:]]
         for one in sockets[1:]:
             one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+            one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT)
             one.bind(first.getsockname())
     for one in sockets:
         one.listen(config.backlog)

@@ -39,7 +39,7 @@ class Settings(BaseSettings):
     max_record_bytes: int = Field(
         default=8 * 1024 * 1024, ge=1, description="largest file of a record in the body of a request"
     )
-    max_header_bytes: int = Field(default=32 * 1024, ge=1024, description="largest URL and headers of a request")
+    max_connections: int = Field(default=1000, ge=1, description="connections beyond which requests are refused")
     max_samples: int = Field(
         default=100_000, ge=2, description="largest number of samples of a time history or spectrum"
     )
@@ -51,11 +51,9 @@ class Settings(BaseSettings):
         ge=1,
         description="limit of bodies, batches and unread responses, all together [bytes]",
     )
-    arrival_seconds: float = Field(
-        default=20.0, gt=0.0, description="time for the headers, and for a body, to arrive [s]"
-    )
+    arrival_seconds: float = Field(default=20.0, gt=0.0, description="time for a body to arrive [s]")
     reading_seconds: float = Field(
-        default=15.0, gt=0.0, description="time after which a client that does not read is disconnected [s]"
+        default=15.0, gt=0.0, description="time for a client to read a part of a large response [s]"
     )
     stop_seconds: int = Field(default=30, ge=1, description="time for running requests at shutdown [s]")
     access_log: bool = Field(default=True, description="one line of JSON for each request")

@@ -3,10 +3,11 @@
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -65,3 +66,44 @@ def serving(results, log, command=(sys.executable, "-m", "rocking._cli"), cwd=RO
                     process.wait(timeout=30)
                 except subprocess.TimeoutExpired:
                     process.kill()
+
+
+@contextmanager
+def proxy(service_port, folder):
+    """The configuration of the proxy in front of a service: its port on the loopback, and what it writes."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    own = (ROOT / "deploy" / "nginx.conf").read_text().replace("/etc/ssl/rocking", str(folder))
+    own = own.replace("listen 443", f"listen 127.0.0.1:{port}")
+    own = own.replace("http://127.0.0.1:8000", f"http://127.0.0.1:{service_port}")
+    temporary = " ".join(
+        f"{kind}_temp_path {folder / kind};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+    )
+    (folder / "nginx.conf").write_text(
+        f"daemon off; worker_processes auto; user root; pid {folder / 'pid'}; error_log stderr;\n"
+        "events { worker_connections 768; }\n"
+        f"http {{ access_log off; {temporary}\n{own} }}"
+    )
+    files = ["-keyout", str(folder / "key.pem"), "-out", str(folder / "fullchain.pem")]
+    key = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=rocking.example.org", *files]
+    subprocess.run(key, check=True, capture_output=True)
+    log = folder / "nginx.log"
+    command = ["nginx", "-p", str(folder), "-c", str(folder / "nginx.conf")]
+    with log.open("w") as output, subprocess.Popen(command, stderr=output) as process:
+        try:
+            for _ in range(100):
+                with suppress(OSError), socket.create_connection(("127.0.0.1", port)):
+                    break
+                assert process.poll() is None, log.read_text()
+                time.sleep(0.1)
+            yield port, log
+        finally:
+            process.terminate()
+
+
+def kept_waiting(*processes):
+    """Time that the main threads of processes were ready to run while the processors did other work [s].
+
+    That of the other threads of the service must count: the event loop waits for those that parse bodies.
+    """
+    return 1e-9 * sum(int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[1]) for pid in processes)

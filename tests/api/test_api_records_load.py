@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.api.servers import serving
+from tests.api.servers import kept_waiting, serving
 
 ROUTE = "/v1/records/response?width=0.5&height=2.0&unit=g"
 
@@ -48,14 +48,6 @@ def megabytes(process, kind):
     status = Path(f"/proc/{process.pid}/status").read_text()
     (line,) = [line for line in status.splitlines() if line.startswith(kind)]
     return int(line.split()[1]) / 1024
-
-
-def kept_waiting(*processes):
-    """Time that the main threads of processes were ready to run while the processors did other work [s].
-
-    That of the other threads of the service must count: the event loop waits for those that parse bodies.
-    """
-    return 1e-9 * sum(int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[1]) for pid in processes)
 
 
 HOSTILE = {

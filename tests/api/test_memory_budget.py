@@ -33,11 +33,10 @@ def test_beyond_the_limit_others_are_refused_but_a_single_request_is_not():
     for reservation in (one, other):
         with pytest.raises(BusyError):
             reservation.add(1)
-    other.release()
+    other.replace(0)
     one.add(1000)  # alone
     assert total.held == 1060
-    one.release()
-    one.add(5)  # the request is over
+    one.replace(0)
     assert total.held == 0
 
 
@@ -51,7 +50,7 @@ def test_a_reservation_can_be_replaced():
     assert total.held == 100
     with pytest.raises(BusyError):
         one.replace(21)
-    one.release()
+    one.replace(0)
     other.replace(1000)  # alone
     assert total.held == 1000
 
@@ -77,7 +76,7 @@ def sent_through(layer_of, body):
 def test_large_responses_are_sent_in_chunks(size):
     body = bytes(k % 251 for k in range(size))
     total = MemoryBudget(10 * CHUNK_BYTES)
-    head, *parts = sent_through(lambda app: MemoryBudgetMiddleware(app, total), body)
+    head, *parts = sent_through(lambda app: MemoryBudgetMiddleware(app, total, 9.0), body)
     assert head["status"] == 200
     assert b"".join(part["body"] for part in parts) == body
     assert [part.get("more_body", False) for part in parts] == [True] * (len(parts) - 1) + [False]
@@ -88,12 +87,12 @@ def test_large_responses_are_sent_in_chunks(size):
 def test_a_response_beyond_the_limit_is_503():
     total = MemoryBudget(10)
     Reservation(total).add(10)
-    head, part = sent_through(lambda app: MemoryBudgetMiddleware(app, total), bytes(2 * CHUNK_BYTES))
+    head, part = sent_through(lambda app: MemoryBudgetMiddleware(app, total, 9.0), bytes(2 * CHUNK_BYTES))
     assert head["status"] == 503
     assert (b"retry-after", b"2") in head["headers"]
     assert b"retry" in part["body"]
     assert total.held == 10
-    head, _ = sent_through(lambda app: MemoryBudgetMiddleware(app, total), b"small")
+    head, _ = sent_through(lambda app: MemoryBudgetMiddleware(app, total, 9.0), b"small")
     assert head["status"] == 200
 
 
@@ -105,7 +104,7 @@ def test_a_body_beyond_the_limit_is_503(results):
         assert_problem(refused, 503)
         assert int(refused.headers["retry-after"]) > 0
         assert client.get("/v1/response", params=POINT).status_code == 200
-        other.release()
+        other.replace(0)
         assert client.post("/v1/response", json=POINT).status_code == 200
         assert client.app.state.service.memory_budget.held == 0
 
@@ -183,21 +182,13 @@ def megabytes(process):
     return int(line.split()[1]) / 1024
 
 
-def sockets(process):
-    """Number of sockets that a process has open."""
-    with suppress(FileNotFoundError):  # a descriptor closed meanwhile
-        return sum("socket:" in str(link.readlink()) for link in Path(f"/proc/{process.pid}/fd").iterdir())
-    return sockets(process)
-
-
 @pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="counts bytes and sockets as Linux tells them")
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc of Linux")
 @pytest.mark.parametrize("behaviour", BEHAVIOURS)
-def test_clients_that_do_not_send_or_read_use_little_memory_and_are_disconnected(server, behaviour):
+def test_clients_that_do_not_send_or_read_use_little_memory_for_a_short_time(server, behaviour):
     if behaviour.startswith("batch"):
         BATCHES(behaviour.rpartition(" ")[2])
     before = most = megabytes(server.process)
-    open_before = sockets(server.process)
     dropped = threading.Event()
 
     def client():
@@ -213,7 +204,7 @@ def test_clients_that_do_not_send_or_read_use_little_memory_and_are_disconnected
         one.start()
     began = time.monotonic()
     try:
-        while time.monotonic() - began < 1 or sockets(server.process) > open_before:
+        while time.monotonic() - began < 4 or read(server) < 5e6:  # refused while the memory is in use
             most = max(most, megabytes(server.process))
             assert time.monotonic() - began < 30  # 2 s each, and the time of the work on a busy machine
             time.sleep(0.05)
@@ -222,7 +213,6 @@ def test_clients_that_do_not_send_or_read_use_little_memory_and_are_disconnected
         for one in clients:
             one.join()
     assert most - before < 250
-    assert read(server) > 5e6
 
 
 def test_a_slow_client_that_reads_is_served(server):
@@ -237,34 +227,3 @@ def test_a_slow_client_that_reads_is_served(server):
             if time.monotonic() - began < 3.5:  # longer than the time limit of a client that reads nothing
                 time.sleep(0.2)
     assert received > 5e6
-
-
-def whole_response(connection):
-    """Head and body of an error."""
-    received = b""
-    while not received.endswith(b"}"):
-        received += connection.recv(65536)
-    return received
-
-
-@pytest.mark.parametrize("rest", [b"a" * 1_000_000, b"a" * 1000, b"\r\n"])
-def test_a_connection_is_closed_if_a_body_ends_after_its_response(server, rest):
-    length = 0 if rest.isspace() else 1_000_000
-    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as connection:
-        connection.sendall(b"POST /health HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % length)
-        assert b" 405 " in whole_response(connection)
-        connection.sendall(rest)
-        assert connection.recv(65536) == b""  # closed
-
-
-def test_the_rest_of_a_body_is_not_waited_for(server):
-    """The response (405) is sent while the body still arrives."""
-    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as connection:
-        connection.sendall(b"POST /health HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
-        assert b" 405 " in connection.recv(65536)
-        began = time.monotonic()
-        with suppress(OSError):  # a broken pipe, or a reset
-            while time.monotonic() - began < 20:
-                connection.sendall(b"a")
-                time.sleep(0.1)
-    assert time.monotonic() - began < 10

@@ -14,8 +14,7 @@ import socket
 import ssl
 import subprocess
 import sys
-import time
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing
 from pathlib import Path
 
 import httpx2
@@ -24,7 +23,7 @@ import typer
 from rocking_api.settings import Settings
 
 from rocking._cli.app import app
-from tests.api.servers import serving
+from tests.api.servers import proxy, serving
 
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
@@ -222,42 +221,12 @@ def test_proxy_has_the_limits_of_the_service(unit):
         return re.findall(rf"^ *{name} (.*);$", PROXY, re.MULTILINE)
 
     assert directive("client_max_body_size") == [f"{settings.max_body_bytes // 2**20}m"]
-    assert directive("large_client_header_buffers") == [f"4 {settings.max_header_bytes // 2**10}k"]
     assert int(directive("proxy_read_timeout")[0].rstrip("s")) > settings.max_seconds
+    assert directive("client_body_timeout") == [f"{settings.arrival_seconds:g}s"]
+    assert directive("send_timeout") == [f"{settings.reading_seconds:g}s"]
     port = serve_arguments(shlex.split(unit["ExecStart"][0]))["port"]
     assert set(directive("proxy_pass")) == {f"http://127.0.0.1:{port}"}
     assert PROXY.count("{") == PROXY.count("}")
-
-
-@contextmanager
-def proxy(service_port, folder):
-    """The configuration of the proxy in front of a service: its port on the loopback, and what it writes."""
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    own = PROXY.replace("/etc/ssl/rocking", str(folder)).replace("listen 443", f"listen 127.0.0.1:{port}")
-    own = own.replace("http://127.0.0.1:8000", f"http://127.0.0.1:{service_port}")
-    temporary = " ".join(
-        f"{kind}_temp_path {folder / kind};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
-    )
-    (folder / "nginx.conf").write_text(
-        f"daemon off; user root; pid {folder / 'pid'}; error_log stderr; events {{}}\n"
-        f"http {{ access_log off; {temporary}\n{own} }}"
-    )
-    files = ["-keyout", str(folder / "key.pem"), "-out", str(folder / "fullchain.pem")]
-    key = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=rocking.example.org", *files]
-    subprocess.run(key, check=True, capture_output=True)
-    log = folder / "nginx.log"
-    command = ["nginx", "-p", str(folder), "-c", str(folder / "nginx.conf")]
-    with log.open("w") as output, subprocess.Popen(command, stderr=output) as process:
-        try:
-            for _ in range(100):
-                with suppress(OSError), socket.create_connection(("127.0.0.1", port)):
-                    break
-                assert process.poll() is None, log.read_text()
-                time.sleep(0.1)
-            yield port, log
-        finally:
-            process.terminate()
 
 
 @pytest.mark.skipif(None in map(shutil.which, ("nginx", "openssl")), reason="no nginx and openssl")

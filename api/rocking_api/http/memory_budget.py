@@ -1,14 +1,14 @@
 """Limit of the memory held for clients: bodies that arrive, batches, responses that are not yet read.
 
 A client that sends or reads slowly makes the service hold its data. Beyond the limit requests are answered 503 and may
-be repeated. Time limits are those of the connection.
+be repeated.
 """
 
 from __future__ import annotations
 
-import threading
-
+import anyio
 from fastapi import Request
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking_api.execution.executor import BusyError
@@ -30,11 +30,10 @@ class MemoryBudget:
     def __init__(self, limit: int) -> None:
         self.limit = limit
         self.held = 0
-        self.lock = threading.Lock()
 
 
 class Reservation:
-    """Bytes held for one request; its methods may be called from any thread.
+    """Bytes held for one request; its methods are called by the event loop only.
 
     Parameters
     ----------
@@ -45,10 +44,9 @@ class Reservation:
     def __init__(self, budget: MemoryBudget) -> None:
         self._budget = budget
         self._own = 0
-        self._released = False
 
     def replace(self, count: int) -> None:
-        """Set the number of bytes.
+        """Set the number of bytes; 0 at the end of the request.
 
         Raises
         ------
@@ -56,33 +54,15 @@ class Reservation:
             If it grows, and exceeds the limit together with the bytes of other requests.
         """
         budget = self._budget
-        with budget.lock:
-            if self._released:
-                return  # the request is over
-            others = budget.held - self._own
-            if count > self._own and others and others + count > budget.limit:
-                raise BusyError(
-                    f"the limit of {budget.limit} bytes for bodies and responses is reached; retry in a moment"
-                )
-            budget.held = others + count
-            self._own = count
+        others = budget.held - self._own
+        if count > self._own and others and others + count > budget.limit:
+            raise BusyError(f"the limit of {budget.limit} bytes for bodies and responses is reached; retry in a moment")
+        budget.held = others + count
+        self._own = count
 
     def add(self, count: int) -> None:
-        """Add bytes.
-
-        Raises
-        ------
-        BusyError
-            If they exceed the limit together with the bytes of other requests.
-        """
+        """Add bytes; as `replace`."""
         self.replace(self._own + count)
-
-    def release(self) -> None:
-        """Release all bytes: the request is over."""
-        with self._budget.lock:
-            self._budget.held -= self._own
-            self._own = 0
-            self._released = True
 
 
 def reservation_of(request: Request) -> Reservation:
@@ -100,11 +80,14 @@ class MemoryBudgetMiddleware:
         Inner application.
     budget : MemoryBudget
         Of the service.
+    seconds : float
+        Time for a client to read a chunk; then the response is given up [s].
     """
 
-    def __init__(self, app: ASGIApp, budget: MemoryBudget) -> None:
+    def __init__(self, app: ASGIApp, budget: MemoryBudget, seconds: float) -> None:
         self._app = app
         self._budget = budget
+        self._seconds = seconds
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -114,6 +97,12 @@ class MemoryBudgetMiddleware:
         scope.setdefault("state", {})["reservation"] = reservation
         start: Message | None = None
         refused = False
+
+        async def send_in_time(message: Message) -> None:
+            with anyio.move_on_after(self._seconds) as patience:
+                await send(message)
+            if patience.cancelled_caught:
+                raise ClientDisconnect
 
         async def send_chunks(message: Message) -> None:
             """Hold the head until the first bytes: a response beyond the limit is replaced by an error."""
@@ -135,11 +124,12 @@ class MemoryBudgetMiddleware:
                     return
                 await send(head)
             while len(body) > CHUNK_BYTES:
-                await send({"type": "http.response.body", "body": bytes(body[:CHUNK_BYTES]), "more_body": True})
+                await send_in_time({**message, "body": bytes(body[:CHUNK_BYTES]), "more_body": True})
                 body = memoryview(body)[CHUNK_BYTES:]
-            await send({**message, "body": bytes(body)})
+            is_short = head is not None and len(message.get("body", b"")) <= CHUNK_BYTES
+            await (send if is_short else send_in_time)({**message, "body": bytes(body)})
 
         try:
             await self._app(scope, receive, send_chunks)
         finally:
-            reservation.release()
+            reservation.replace(0)
