@@ -5,22 +5,18 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from typing import Any
 
 import anyio
 import anyio.to_thread
 from fastapi import FastAPI
 from pydantic import BaseModel
-from starlette.middleware import Middleware
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
-from starlette.types import ASGIApp
 
 from rocking._lookup.collection import CubeCollection
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
 from rocking_api.http.host import HostCheck
 from rocking_api.http.memory_budget import MemoryBudgetMiddleware
-from rocking_api.http.params_route import FastPath, ParamsRoute
 from rocking_api.http.request_log import RequestLog
 from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.blocks import BlockRows
@@ -57,33 +53,12 @@ ROUTES = (
 )
 
 
-class Application(FastAPI):
-    """FastAPI with outer middleware: a response made there does not pass through the middleware of FastAPI.
-
-    An error that leaves the stack of FastAPI reaches the outer middleware as an exception.
-    """
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(**options)
-        self.outer_layers: list[Middleware] = []
-
-    def add_outer_layer(self, kind: Callable[..., ASGIApp], **options: Any) -> None:
-        """Add a middleware around those added before."""
-        self.outer_layers.append(Middleware(kind, **options))
-
-    def build_middleware_stack(self) -> ASGIApp:
-        stack = super().build_middleware_stack()
-        for kind, arguments, options in self.outer_layers:
-            stack = kind(stack, *arguments, **options)
-        return stack
-
-
 def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None) -> FastAPI:
     """Build the service over the results folder of the settings, which need not exist.
 
     `when_ready` is called once the compiled solver is loaded.
     """
-    app = Application(
+    app = FastAPI(
         title="rocking",
         version=VERSION,
         summary="Does the block overturn, and how far does it rock?",
@@ -108,17 +83,15 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
-    short = [route for route in response.router.routes if isinstance(route, ParamsRoute)]
-    app.add_outer_layer(FastPath, routes=short)
     if settings.cors_origins:
-        app.add_outer_layer(
+        app.add_middleware(
             CORSMiddleware,
             allow_origins=list(settings.cors_origins),
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
-    app.add_outer_layer(HostCheck)
-    app.add_outer_layer(RequestLog, metrics=service.metrics, access_log=settings.access_log)
+    app.add_middleware(HostCheck)
+    app.add_middleware(RequestLog, metrics=service.metrics, access_log=settings.access_log)
     app.state.when_ready = when_ready
     add_handlers(app)
     for module in ROUTES:

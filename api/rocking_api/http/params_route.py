@@ -1,4 +1,4 @@
-"""Route class with fast parsing of query parameters, and a fast path for the cheapest route.
+"""Route class with fast parsing of query parameters.
 
 FastAPI parses a query model field by field for every request, which takes longer than the solver. Here pydantic
 validates all query parameters at once, which saves 24 % of the processor time of a request for one block. Declarations
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import inspect
 from collections import Counter
-from collections.abc import Awaitable, Callable, Coroutine, Iterable
+from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any, get_type_hints
 from urllib.parse import parse_qsl
 
@@ -17,12 +17,11 @@ from fastapi import Request, Response
 from fastapi.params import Depends
 from fastapi.routing import APIRoute
 from pydantic import BaseModel, TypeAdapter, ValidationError
-from starlette.types import ASGIApp, Receive, Scope, Send
 
 from rocking._base.errors import InvalidArgumentError
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import json_response
-from rocking_api.http.errors import STATUS, InvalidQueryError, error_response
+from rocking_api.http.errors import InvalidQueryError
 from rocking_api.models.params import Params
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -134,40 +133,3 @@ def query_parameters(request: Request) -> dict[str, str]:
         values = [value for name, value in given if name == twice]
         raise InvalidArgumentError(twice, " and ".join(values), "one value")
     return parameters
-
-
-KNOWN_ERRORS = tuple(STATUS)
-
-
-class FastPath:
-    """Middleware that calls the handlers of some routes without the router, compression and dependencies of FastAPI.
-
-    Those take 28 % of the processor time of a request for one block. Errors go through the same table. Other methods of
-    these paths take the usual way.
-
-    Parameters
-    ----------
-    app : ASGI application
-        FastAPI.
-    routes : routes
-        Routes to call directly on GET; their responses are too short to be compressed.
-    """
-
-    def __init__(self, app: ASGIApp, routes: Iterable[ParamsRoute]) -> None:
-        self._app = app
-        self._routes = {
-            route.path: (route, route.get_route_handler()) for route in routes if "GET" in (route.methods or ())
-        }
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        found = self._routes.get(scope["path"]) if scope.get("method") == "GET" else None
-        if found is None:
-            await self._app(scope, receive, send)
-            return
-        scope["route"], handle = found  # the request log counts by route
-        request = Request(scope, receive)
-        try:
-            response = await handle(request)
-        except KNOWN_ERRORS as error:
-            response = await error_response(request, error)
-        await response(scope, receive, send)

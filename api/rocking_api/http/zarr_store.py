@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections import OrderedDict
+from functools import lru_cache
 from typing import Any
 
 import xarray as xr
@@ -28,7 +28,7 @@ class ZarrStores:
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue
         self._lock = threading.Lock()
-        self._stores: OrderedDict[str, dict[str, bytes]] = OrderedDict()
+        self._kept = lru_cache(MAX_KEPT)(self._made)
 
     def store(self, name: str) -> tuple[str, dict[str, bytes]]:
         """The sha256 of the netCDF file and the contents of its zarr store.
@@ -41,15 +41,12 @@ class ZarrStores:
             If it is damaged, or cannot be read.
         """
         version = self._catalogue.product(name).sha256
-        with self._lock:
-            if version not in self._stores:
-                product, dataset = self._catalogue.dataset(name)
-                version = product.sha256
-                self._stores[version] = _contents(dataset)
-                while len(self._stores) > MAX_KEPT:
-                    self._stores.popitem(last=False)
-            self._stores.move_to_end(version)
-            return version, self._stores[version]
+        with self._lock:  # each is made once
+            return self._kept(name, version)
+
+    def _made(self, name: str, _version: str) -> tuple[str, dict[str, bytes]]:
+        product, dataset = self._catalogue.dataset(name)  # which may be newer
+        return product.sha256, _contents(dataset)
 
 
 def _contents(dataset: xr.Dataset) -> dict[str, bytes]:

@@ -1,0 +1,24 @@
+"""Methods and origins of requests for one block."""
+
+import pytest
+
+from tests.api.conftest import assert_problem, client_of
+
+POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+
+
+@pytest.mark.parametrize("method", ["HEAD", "PUT", "DELETE", "OPTIONS"])
+def test_other_methods_are_refused_as_everywhere(client, method):
+    response = client.request(method, "/v1/response", params=POINT)
+    assert response.status_code == 405
+    assert response.headers["allow"] == "GET, POST"
+
+
+def test_other_origins_may_read_the_answer_if_they_are_allowed(results):
+    with client_of(results, cors_origins=("https://a.example",)) as client:
+        response = client.get("/v1/response", params=POINT, headers={"Origin": "https://a.example"})
+        refused = client.get("/v1/response", headers={"Origin": "https://a.example"})
+    assert response.headers["access-control-allow-origin"] == "https://a.example"
+    assert "ETag" in response.headers["access-control-expose-headers"]
+    assert_problem(refused, 422)
+    assert refused.headers["access-control-allow-origin"] == "https://a.example"
