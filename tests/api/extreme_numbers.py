@@ -96,8 +96,9 @@ OBJECTS: dict[str, Any] = {
 }  # fmt: skip
 """Arguments that are no numbers."""
 
-OF_PULSES, OF_RECORDS = ("peak_acceleration", "period"), ("scale",)
-"""Numbers of `Block.response` and `Block.history` that belong to one kind of excitation."""
+OF_PULSES = ("peak_acceleration", "period", "frequency_ratio", "tolerance")
+OF_RECORDS = ("scale", "frequency_parameter", "vertical_scale")
+"""Numbers that belong to one kind of motion."""
 
 MADE = (rocking.Block, rocking.EquivalentBlock, rocking.Record, rocking.SampledPulse, Groups, Problem)
 """Classes that are made from numbers."""
