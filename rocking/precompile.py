@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._boundary.trends import load_entries
+from rocking._boundary.matching import load_entries
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.time_history import time_history

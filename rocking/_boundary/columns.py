@@ -37,7 +37,7 @@ class Column:
     regions : int array (thresholds + 1,)
         The codes as an array.
     trends : float array (2, thresholds, 4)
-        How the boundary curve goes that ends at each threshold, see `rocking._boundary.trends`: known from the left
+        How the boundary curve goes that ends at each threshold, see `rocking._boundary.matching`: known from the left
         (row 0) and from the right (row 1); nan where unknown.
     whole, offset : Column, int
         The column that this one is a part of, and the index of its first threshold there.

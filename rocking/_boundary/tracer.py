@@ -16,9 +16,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from rocking._boundary.columns import THINNEST, Column, Lines
-from rocking._boundary.courses import probes_for_lost_regions
 from rocking._boundary.matching import Side, join_sides, learn_slopes, learn_smooth_slopes, match_thresholds
-from rocking._boundary.panels import Panel
+from rocking._boundary.panels import Panel, probes_for_lost_regions
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
 from rocking._model.outcome_code import impacts_of_code
 
@@ -41,8 +40,14 @@ There they lie in ever more layers, on which blocks strike a hundred times: the 
 times the work.
 """
 
+LAYERED = 3.5
+"""Ends of regions of many impacts that the nodes of one line show, on average, above which the same holds [-].
+
+Under the pulse c2 thin safe bands divide such a region, each with thinner ones beside it, down to the finest scale.
+"""
+
 UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD = 3e-4, 3e-3, 3e-4
-"""Above `NEARLY_ELASTIC`, for regions of many impacts: in place of `THINNEST`, of `END` and of `CHORD` [-]."""
+"""In these two cases, for regions of many impacts: in place of `THINNEST`, of `END` and of `CHORD` [-]."""
 
 EFFORT = 10_000_000
 """Impacts and blocks after which regions are no longer followed, and, as many later, steps no longer halved [-].
@@ -88,17 +93,12 @@ class Tracer:
     def __init__(
         self, log_omega: Floats, etas: Floats, classify: Classify, classify_regions: Classify, work: Work
     ) -> None:
-        self.size = log_omega.size
+        self.size, self.etas = log_omega.size, etas
         lines = np.arange(etas.size * self.size)
         self.points = np.stack([np.zeros(lines.size), np.tile(log_omega, etas.size), np.repeat(etas, self.size)], 1)
         self.classify = classify
         self.classify_regions = classify_regions
         self.work = work
-        elastic = etas > NEARLY_ELASTIC
-        self.thinnest = np.where(elastic, UNCOUNTED_THINNEST, THINNEST)
-        self.ends = np.where(elastic, UNCOUNTED_END, END)
-        self.chords = np.where(elastic, UNCOUNTED_CHORD, CHORD)
-        self.lines = Lines(self.points, classify, np.repeat(self.thinnest, self.size))
         self.columns: list[Column] = []
         self.panels = lines[lines % self.size != self.size - 1].tolist()
         self.joins: dict[int, list[tuple[Side, Side]]] = {}
@@ -150,8 +150,21 @@ class Tracer:
             finer = (low + (high - low) * np.arange(1, FINER)[:, None] / FINER).ravel()
             line = np.tile(line, FINER - 1)
             found.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
-        columns = self.lines.add(Nodes.joined(found))
+        nodes = Nodes.merged(found)
+        self._resolve_layers(nodes)
+        self.lines = Lines(self.points, self.classify, np.repeat(self.thinnest, self.size))
+        columns = self.lines.add(nodes)
         self.columns = [columns[k] for k in range(len(self.points))]
+
+    def _resolve_layers(self, nodes: Nodes) -> None:
+        """Choose how finely regions of many impacts are resolved, from how many of their ends the nodes show."""
+        many = without_layers(nodes.codes) == UNCOUNTED
+        ends = nodes.line[1:][(many[1:] != many[:-1]) & (np.diff(nodes.line) == 0)]
+        layered = np.bincount(ends // self.size, minlength=self.etas.size) > LAYERED * self.size
+        coarse = layered | (self.etas > NEARLY_ELASTIC)
+        self.thinnest = np.where(coarse, UNCOUNTED_THINNEST, THINNEST)
+        self.ends = np.where(coarse, UNCOUNTED_END, END)
+        self.chords = np.where(coarse, UNCOUNTED_CHORD, CHORD)
 
     def _follow(self, panels: Iterable[int], most: dict[float, float]) -> set[int]:
         """Look in each column for the regions of its neighbours; the panels whose columns changed."""
