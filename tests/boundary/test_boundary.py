@@ -194,6 +194,15 @@ def test_nearly_elastic_blocks_have_no_open_ends():
         assert np.ptp(boundary.frequency_ratio.values[points]) > 0.0
 
 
+@pytest.mark.parametrize(("pulse", "thinnest"), [("c2", 3e-4), ("cosine", 1e-6)])
+def test_layers_without_a_finest_one_are_resolved_less_finely(pulse, thinnest):
+    boundary = rocking.overturning_boundary(
+        pulse, restitution=0.85, frequency_ratio=(0.45, 0.6), slenderness=(0.92, 0.96), nodes=41
+    )
+    assert boundary.thinnest_uncounted_region == thinnest
+    assert boundary.open_ends <= 10
+
+
 def test_islands_are_drawn():
     boundary = rocking.overturning_boundary(
         "sine", restitution=0.9, frequency_ratio=(0.6, 1.1), slenderness=(0.88, 1.0), nodes=201
