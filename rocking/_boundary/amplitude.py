@@ -16,12 +16,12 @@ from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, cla
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import check_one_vertical_scale, highest_vertical_scale
-from rocking._model.checks import check_number
+from rocking._model.checks import check_number, check_one_alpha
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import record_response
+from rocking._solver.records.record_response import frequency_parameter_range, record_response
 
 LOWEST_WITH_VERTICAL = 0.1
 """Lowest amplitude tried under a record with a vertical component [-], which can lift the block below 1."""
@@ -96,13 +96,14 @@ def thresholds(
     eta = check_number(RESTITUTION, restitution)
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
-        p = needed("a record", frequency_parameter=frequency_parameter)
-        return _record_changes(
-            motion, {"frequency_parameter": p, "restitution": eta, "alpha": alpha}, vertical_scale, highest, stop
-        )
+        given = needed("a record", frequency_parameter=frequency_parameter)
+        p = number("frequency_parameter", given, *frequency_parameter_range(motion), unit="rad/s")
+        groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha)}
+        return _record_changes(motion, groups, vertical_scale, highest, stop)
+    made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
-    return amplitude_changes(block_solver(as_pulse(motion), alpha, stop), omega, eta, highest)
+    return amplitude_changes(block_solver(made, alpha, stop), omega, eta, highest)
 
 
 def _record_changes(

@@ -98,15 +98,16 @@ def time_history(
             "vertical_scale": vertical_scale,
         }
         return _under_record(motion, groups, duration, samples, contact, stop)
+    made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
     of_pulse = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": restitution, "alpha": alpha}
-    moving = build_motion(motion, **of_pulse, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
+    moving = build_motion(made, **of_pulse, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
     history, tau, impact_times = _sampled(moving, grid, (" (3.4)", "a f = ", " (3.2)"))
     history["impact_time"] = "impact", impact_times, {"long_name": "time of impact p t", "units": "1"}
     history = history.assign_coords(tau=("tau", tau, {"long_name": "time p t from pulse start", "units": "1"}))
-    history.attrs |= {"pulse": as_pulse(motion).name, "frequency_ratio": omega, "pulse_end": moving.pulse_end}
+    history.attrs |= {"pulse": made.name, "frequency_ratio": omega, "pulse_end": moving.pulse_end}
     return add_contact(history, moving, impact_times) if contact else history
 
 

@@ -136,11 +136,11 @@ def peak_response(
             threads=threads,
             stop=stop,
         )
+    made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     frequency_ratio = needed("a pulse", frequency_ratio=frequency_ratio)
     if threads is not None:
         threads = integer("threads", threads, 1, math.inf)
-    made = as_pulse(motion)
     given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
     checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
     slender = not checked[3].any()

@@ -32,6 +32,13 @@ PEAKS = {"peak_rotation": [1.0, 2.0], "restitution": [0.8, 0.9]}
 RIGID = paper.GroupSet.RIGID_SMALL_ROTATION
 SCALED = {"motion": RECORD, "scale": 1.0, "restitution": 0.9}
 
+class Hump(rocking.SmoothPulse):
+    """A family of one's own."""
+
+    def curve(self, phase):
+        return np.sin(phase * np.pi / 3.0)
+
+
 CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "Block": (rocking.Block, [{"width": 0.4, "height": 1.6} | SIZE]),
     "SampledPulse": (rocking.SampledPulse, [{"period": 2.0, "acceleration": [0.0, 1.0, 0.0]}]),
@@ -125,6 +132,19 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         [{"motion": "sine", "tolerance": 1e-6, "threads": 1} | PROBLEM,
          {"motion": UPWARDS, "vertical_scale": 1.0, "threads": 1} | OF_RECORD],
     ),
+    "SinusoidalPulse": (
+        rocking.SinusoidalPulse,
+        [{"name": "own", "start": 0.0, "end": 6.0, "stationary": (), "terms": ((1.0, 1.0, -1.5707963267948966),)}],
+    ),
+    "SinusoidalPulse.of_unit_peak": (
+        rocking.SinusoidalPulse.of_unit_peak,
+        [{"name": "own", "start": 0.0, "end": 6.0, "terms": ((1.0, 1.0, 0.0),)}],
+    ),
+    "WaveletPulse": (
+        rocking.WaveletPulse,
+        [{"name": "own", "start": -3.0, "end": 3.0, "stationary": (), "polynomial": (1.0, 0.0, -1.0), "spread": 1.0}],
+    ),
+    "SmoothPulse": (Hump, [{"name": "own", "start": 0.0, "end": 3.0}]),
     "read_record": (rocking.read_record, [{"path": __file__, "time_step": 0.01}]),
     "suites.record_amplification": (
         rocking.suites.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]
@@ -171,7 +191,7 @@ RESULTS = {"suites.PulseFit", "paper.Quantity", "Block.top_displacement", "Equiv
 
 OPTIONAL = {
     "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
-    "restitution", "scale", "vertical_scale", "highest", "size", "peak_acceleration", "period",
+    "restitution", "scale", "vertical_scale", "highest", "highest_amplitude", "size", "peak_acceleration", "period",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 
@@ -193,7 +213,7 @@ def public_functions(module: ModuleType, prefix: str = "") -> Iterator[tuple[str
         value = getattr(module, name)
         if inspect.ismodule(value) and value is not rocking.plot:
             yield from public_functions(value, f"{name}.")
-        if not (getattr(value, "__module__", None) or "").startswith(module.__name__):
+        if not (getattr(value, "__module__", None) or "").startswith("rocking"):
             continue
         found = {prefix + name: value} if callable(value) else {}
         if inspect.isclass(value):

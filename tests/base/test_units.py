@@ -160,8 +160,8 @@ BLOCK = rocking.Block(0.4, 1.6)
 @pytest.mark.parametrize("sizes", [("20 cm", "800 mm"), (QUANTITY(20, "cm"), QUANTITY(0.8, "m")), (0.2, "0.8m")])
 def test_blocks_of_quantities_hold_floats(sizes):
     block = rocking.Block(*sizes, gravity="1 g")
-    assert type(block.half_width) is type(block.half_height) is type(block.gravity) is float
-    assert (block.half_width, block.half_height) == pytest.approx((0.2, 0.8), rel=1e-15)
+    assert type(block.width) is type(block.height) is type(block.gravity) is float
+    assert (block.width, block.height) == pytest.approx((0.2, 0.8), rel=1e-15)
     assert block.gravity == BLOCK.gravity
     angle = rocking.Block.from_slenderness_angle("20 deg", QUANTITY(100, "cm"))
     assert (angle.alpha, angle.half_diagonal) == pytest.approx((math.radians(20.0), 1.0), rel=1e-15)

@@ -298,7 +298,7 @@ def test_a_mesh_that_is_not_closed_is_doubted(tmp_path):
         ({"peak_acceleration": 3.0}, "`period` = None"),
         ({"period": 1.0}, "`peak_acceleration` = None"),
         ({**MOTION, "scale": 2.0}, "`scale` = 2.0"),
-        ({**MOTION, "restitution": "momentum"}, "momentum, or"),
+        ({**MOTION, "restitution": "housner"}, "momentum, or"),
         ({**MOTION, "restitution": 1.2}, "`restitution` = 1.2"),
         ({"peak_acceleration": -3.0, "period": 1.0}, "`peak_acceleration` = -3"),
         ({"peak_acceleration": [1.0, 2.0], "period": [1.0, 2.0, 3.0]}, "shapes that broadcast"),

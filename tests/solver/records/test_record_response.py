@@ -192,7 +192,7 @@ def test_invalid_arguments_are_named(change: dict, named: str) -> None:
 
 
 def test_only_records_are_motions() -> None:
-    with pytest.raises(InvalidArgumentError, match="read_record"):
+    with pytest.raises(InvalidArgumentError, match=r"napa\.at2"):
         rocking.peak_response("napa.at2", **GRID)  # type: ignore[arg-type]
 
 
