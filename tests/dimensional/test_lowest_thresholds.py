@@ -1,0 +1,63 @@
+"""Lowest thresholds of arrays of bodies: those of the search of one body, confirmed from both sides by the solver."""
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.lowest_thresholds import lowest_thresholds
+from rocking._excitation.pulses import as_pulse
+
+
+def random_bodies(seed: int, count: int) -> rocking.RigidBody:
+    """Bodies of 0.2 to 2.4 m, every other one with an offset centre of mass."""
+    rng = np.random.default_rng(seed)
+    height = np.exp(rng.uniform(np.log(0.1), np.log(1.2), count))
+    half = height * rng.uniform(0.1, 0.6, count)
+    offset = np.where(np.arange(count) % 2, rng.uniform(0.6, 1.0, count), 1.0)
+    return rocking.RigidBody(left=half * offset, right=half, height=height)
+
+
+@pytest.mark.parametrize(
+    ("pulse", "period"), [("sine", 0.6), ("cosine", 0.9), ("c2", 1.0), ("ricker_antisymmetric", 0.8)]
+)
+def test_no_threshold_of_the_search_of_one_body_is_lower_and_each_is_confirmed_from_both_sides(
+    pulse: str, period: float
+) -> None:
+    bodies = random_bodies(7, 12)
+    highest = 12.0 * np.asarray(bodies.uplift_acceleration)
+    found = lowest_thresholds(BodyProblem(bodies, as_pulse(pulse), np.ones(()), np.array(period), None), highest)
+    single = np.array(
+        [
+            rocking.RigidBody(left=left, right=right, height=height).thresholds(pulse, period=period).lowest
+            for left, right, height in zip(
+                *(bodies.parameters[name] for name in ("left", "right", "height")), strict=True
+            )
+        ]
+    )
+    single = np.where(single <= highest, single, np.nan)
+    np.testing.assert_allclose(found, single, rtol=1e-3)  # several changes can lie between two nodes, 0.05 % apart
+    assert not (found > single * (1.0 + 1e-10)).any()
+    known = np.isfinite(found)
+    assert known.sum() >= 4
+    for factor, overturns in ((1.0 + 1e-9, True), (1.0 - 1e-9, False)):
+        acceleration = np.where(known, factor * found, 0.5 * highest)
+        outcome = bodies.response(pulse, peak_acceleration=acceleration, period=period)
+        assert (outcome.overturned[known] == overturns).all()
+
+
+def test_nothing_is_found_above_the_highest_acceleration_or_below_uplift() -> None:
+    bodies = random_bodies(3, 6)
+    problem = BodyProblem(bodies, as_pulse("sine"), np.ones(()), np.array(0.8), None)
+    found = lowest_thresholds(problem, 20.0 * np.asarray(bodies.uplift_acceleration))
+    assert np.isfinite(found).all()
+    np.testing.assert_array_equal(np.isnan(lowest_thresholds(problem, 0.999 * found)), True)
+    np.testing.assert_array_equal(lowest_thresholds(problem, 1.001 * found), found)
+    assert np.isnan(lowest_thresholds(problem, 0.5 * np.asarray(bodies.uplift_acceleration))).all()
+
+
+def test_a_record_is_refused() -> None:
+    record = rocking.Record([0.0, 1.0, 0.0], 0.1, "g")
+    problem = BodyProblem(random_bodies(1, 2), record, np.ones(()), np.ones(()), None)
+    with pytest.raises(rocking.InvalidArgumentError, match="motion"):
+        lowest_thresholds(problem, 10.0)
