@@ -171,7 +171,7 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
         first = np.full(count.size, 2 * GRID.size)
         first[nodes.line[nodes.overturned]] = nodes.place[nodes.overturned]
         close = nodes.place[1:] > first[nodes.line[1:]] - CLOSE
-        below = nodes.overturned[1:] | np.append(nodes.overturned[2:], False)
+        below = nodes.overturned[1:] | np.append(nodes.overturned, False)[2:]
         halved = np.flatnonzero((gap > 1) & (likely | close | below))
         if not halved.size:
             return nodes
@@ -181,7 +181,7 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
 def _reach(values: Array, same: NDArray[np.bool_], multiple: Index | float) -> Array:
     """The larger of two consecutive values of a body plus a multiple of the variation there; arrays (values - 1,)."""
     step = np.where(same, np.abs(np.diff(values)), 0.0)
-    variation = np.max([step, np.append(0.0, step[:-1]), np.append(step[1:], 0.0)], axis=0, initial=0.0)
+    variation = np.maximum(step, np.maximum(np.append(0.0, step)[:-1], np.append(step, 0.0)[1:]))
     return np.asarray(np.maximum(values[:-1], values[1:]) + multiple * variation)
 
 
