@@ -55,7 +55,7 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     if not {"median_intensity", "dispersion", "model"} <= {*fragility.variables}:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
     x, rates = check_hazard_curve(_pair(hazard_curve))
-    weights, nodes = _quadrature(x, rates)
+    weights, nodes = hazard_quadrature(x, rates)
     found = xr.full_like(fragility["median_intensity"], np.nan)
     at_end = xr.full_like(fragility["median_intensity"], np.nan)
     for name in fragility["model"].values.tolist():
@@ -87,7 +87,7 @@ def _pair(hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> tuple[Arr
     return hazard_curve["intensity"].values, hazard_curve.values
 
 
-def _quadrature(x: Array, rates: Array) -> tuple[Array, Array]:
+def hazard_quadrature(x: Array, rates: Array) -> tuple[Array, Array]:
     """Weights and nodes for the integral of a function of x over -dH(x), H a power of x between the points."""
     nodes, gauss = np.polynomial.legendre.leggauss(NODES)
     weights, points = [], []

@@ -18,6 +18,7 @@ LAYERS = (
     ("api/rocking_api", "rocking/_cli", "workflow"),
     ("rocking/plot",),
     ("rocking/precompile",),
+    ("rocking/_assessment",),
     ("rocking/_lookup", "rocking/suites"),
     ("rocking/_dimensional",),
     ("rocking/_spectra",),

@@ -1,0 +1,160 @@
+"""What an assessment takes and gives, declared once: Python, tables, the command and the service derive from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Column:
+    """One quantity of an object or of a result.
+
+    Attributes
+    ----------
+    name : str
+        In Python and in tables that are written.
+    unit : str
+        SI unit; "-" for a number, "" for text, "bool" for yes or no.
+    meaning : str
+        In one sentence.
+    aliases : tuple of str
+        Other names in the headers of tables, in small letters without accents.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    aliases: tuple[str, ...] = ()
+
+
+INPUTS = (
+    Column(
+        "name",
+        "",
+        "name of the object",
+        (
+            *("object", "item", "title", "id", "inventory number", "inventory no", "inv no", "inv nr", "no", "nr"),
+            *(
+                "bezeichnung",
+                "objekt",
+                "inventarnummer",
+                "nome",
+                "oggetto",
+                "inventario",
+                "nom",
+                "objet",
+                "designation",
+            ),
+            *("nombre", "objeto", "onoma", "antikeimeno"),
+        ),
+    ),
+    Column("width", "m", "width of the base", ("w", "breite", "larghezza", "largeur", "ancho", "anchura", "platos")),
+    Column(
+        "depth", "m", "depth of the base", ("d", "tiefe", "profondita", "profondeur", "fondo", "profundidad", "vathos")
+    ),
+    Column("diameter", "m", "diameter of a round base", ("dia", "durchmesser", "diametro", "diametre", "diametros")),
+    Column(
+        "height", "m", "height of the object", ("h", "hohe", "hoehe", "altezza", "hauteur", "alto", "altura", "ypsos")
+    ),
+    Column(
+        "mass_height",
+        "m",
+        "height of the centre of mass above the base; by default half of the height",
+        (
+            *(
+                "height of the centre of mass",
+                "centre of mass height",
+                "center of mass height",
+                "cg height",
+                "com height",
+            ),
+            *("schwerpunkthohe", "altezza del baricentro", "hauteur du centre de masse", "altura del centro de masa"),
+        ),
+    ),
+    Column(
+        "offset_width", "m", "centre of mass from the middle of the width", ("offset", "offset x", "eccentricity x")
+    ),
+    Column("offset_depth", "m", "centre of mass from the middle of the depth", ("offset y", "eccentricity y")),
+    Column(
+        "mass",
+        "kg",
+        "mass; not needed for the outcome",
+        ("weight", "masse", "gewicht", "massa", "peso", "maza", "poids"),
+    ),
+    Column(
+        "friction",
+        "-",
+        "coefficient of friction at the base",
+        (
+            "friction coefficient",
+            "coefficient of friction",
+            "mu",
+            "reibung",
+            "reibungskoeffizient",
+            "attrito",
+            "frottement",
+            "friccion",
+            "trivi",
+        ),
+    ),
+    Column(
+        "restitution",
+        "-",
+        "coefficient of restitution; by default from the angular momentum",
+        ("coefficient of restitution", "eta", "stosszahl", "restituzione", "restitucion"),
+    ),
+    Column("tolerance", "m", "how far the dimensions are uncertain", ("dimension tolerance", "toleranz", "tolleranza")),
+    Column("pedestal", "", "what the object stands on", ("sockel", "piedistallo", "socle", "pedestal type", "vathro")),
+    Column(
+        "notes",
+        "",
+        "anything else",
+        (
+            "note",
+            "remarks",
+            "comment",
+            "comments",
+            "bemerkung",
+            "bemerkungen",
+            "anmerkungen",
+            "osservazioni",
+            "remarques",
+            "notas",
+            "observaciones",
+            "simeioseis",
+            "material",
+            "location",
+            "room",
+        ),
+    ),
+)
+
+OUTPUTS = (
+    Column("object", "", "name of the object"),
+    Column("direction", "", "along which dimension of the base it rocks: width, depth, or any of a round base"),
+    Column("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
+    Column("uplifts", "bool", "whether a motion of the site makes it uplift"),
+    Column("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
+    Column("factor", "-", "lowest factor on the motions of the site at which one of them overturns it"),
+    Column("governing", "", "that motion"),
+    Column("overturned_by", "", "motions that overturn it at the strength of the site or below"),
+    Column("share", "-", "share of the motions of the site that overturn it"),
+    Column("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
+    Column("share_upper", "-", "upper end of it"),
+    Column("rotation", "rad", "largest rotation under the motions that do not overturn it"),
+    Column("displacement", "m", "largest movement of its top under them"),
+    Column("yearly_rate", "1/year", "annual rate of overturning, where a hazard curve is given"),
+    Column("friction_needed", "-", "coefficient of friction that uplift needs"),
+    Column("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
+    Column("sliding", "m", "displacement if it only slides, where it slides first; the other bound"),
+    Column("smallest_width", "m", "smallest base at this height that the pulses of the site do not overturn"),
+    Column("largest_height", "m", "largest height on this base that they do not overturn"),
+    Column("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
+    Column("factor_more_restitution", "-", "the factor with one higher by 0.05"),
+    Column("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
+    Column("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
+    Column("warnings", "", "what is in doubt"),
+)
+
+VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")
+"""From the best to the worst."""

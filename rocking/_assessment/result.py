@@ -1,0 +1,91 @@
+"""The result of an assessment: a table with one row for each object and direction."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._base.equality import EqualByValue
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Assessment(EqualByValue):
+    """Objects at a site, one row for each direction in which one can rock, the worst first.
+
+    Attributes
+    ----------
+    columns : mapping of str to array (rows,)
+        The columns of `rocking._assessment.columns.OUTPUTS`; a number that is not known is nan.
+    motions : tuple of str
+        The motions of the site.
+    highest_factor : float
+        Highest factor on these motions that was searched [-].
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+    motions: tuple[str, ...]
+    highest_factor: float
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows, each by the names of the columns; a number or answer that is not known is None."""
+        columns = [[None if value != value else value for value in column.tolist()] for column in self.columns.values()]
+        return [dict(zip(self.columns, row, strict=True)) for row in zip(*columns, strict=True)]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The table as a data frame."""
+        import pandas as pd  # noqa: PLC0415  (takes longer to load than the package)
+
+        return pd.DataFrame(dict(self.columns))
+
+    def to_xarray(self) -> xr.Dataset:
+        """The table as a labelled data set over `row`, with units and meanings."""
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
+        about = {one.name: {"long_name": one.meaning} | ({"units": one.unit} if one.unit else {}) for one in OUTPUTS}
+        columns = {
+            name: column.astype(np.float64) if name == "slides_first" else column
+            for name, column in self.columns.items()
+        }
+        return xr.Dataset({name: ("row", column, about[name]) for name, column in columns.items()})
+
+    def to_csv(self, path: str | PathLike[str] | None = None) -> str:
+        """The table as CSV with units in its header, written to a file if a path is given."""
+        text = io.StringIO(newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        units = {one.name: one.unit for one in OUTPUTS}
+        writer.writerow(
+            [f"{name} [{units[name]}]" if units[name] not in ("", "-", "bool") else name for name in self.columns]
+        )
+        writer.writerows([["" if value is None else value for value in row.values()] for row in self.rows])
+        if path is not None:
+            Path(path).write_text(text.getvalue(), encoding="utf-8")
+        return text.getvalue()
+
+    def __repr__(self) -> str:
+        """How many rows have each verdict, and the worst."""
+        count = Counter(self.columns["verdict"].tolist())
+        counted = ", ".join(f"{count[verdict]} {verdict}" for verdict in reversed(VERDICTS) if count[verdict])
+        head = (
+            f"<rocking.Assessment of {sum(count.values())} objects and directions under {len(self.motions)} motions: "
+        )
+        worst = next(iter(self.rows), None)
+        if worst is None:
+            return f"{head}none>"
+        margin = f"up to {self.highest_factor:g}" if worst["factor"] is None else f"from {worst['factor']:.3g}"
+        how = "not overturned" if worst["factor"] is None else "overturned"
+        return f"{head}{counted};\nworst: {worst['object']}, {worst['direction']}, {how} {margin} times these motions>"

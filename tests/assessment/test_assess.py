@@ -1,0 +1,150 @@
+"""Assessments: each factor is confirmed by the solver, and the answers follow from the motions of the site."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rocking._assessment.assess import assess
+from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.objects import Bodies, Object
+from rocking._assessment.site import Site
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.rigid_body import RigidBody
+from rocking._excitation.impulse import impulse_of
+from rocking._excitation.records.record import Record
+
+SITE = Site(pga="0.35 g", pgv="0.5 m/s", shapes=["sine", "cosine", "ricker"])
+
+
+def random_objects(count: int) -> list[Object]:
+    rng = np.random.default_rng(17)
+    height, width = np.exp(rng.uniform(np.log(0.3), np.log(2.5), count)), rng.uniform(0.12, 0.5, (count, 2))
+    return [
+        Object(f"object {k}", width=h * w, depth=h * d, height=h, mass_height=0.45 * h, offset_width=0.05 * h * w)
+        for k, (h, (w, d)) in enumerate(zip(height, width, strict=True))
+    ]
+
+
+def test_each_factor_is_confirmed_from_both_sides_and_no_motion_overturns_below_it() -> None:
+    objects = random_objects(20)
+    found = assess(objects, SITE, sensitivity=False)
+    by_name = {one.name: one for one in objects}
+    overturning = [row for row in found.rows if row["factor"] is not None]
+    assert len(overturning) >= 10
+    for row in overturning[::4]:
+        one = by_name[row["object"]]
+        width, offset = one.directions[row["direction"]]
+        gyration = math.hypot(width, one.height) / math.sqrt(12.0)
+        sides = [
+            RigidBody(left=width / 2 + side, right=width / 2 - side, height=one.mass_height, gyration=gyration)
+            for side in (offset, -offset)
+        ]
+        below = row["factor"] * np.append(1.0 - 1e-8, np.linspace(0.05, 0.999, 60))
+        hit = []
+        for motion in SITE.motions:
+            strength = {"period": motion.period}
+            for body in sides:
+                weaker = body.response(motion.motion, peak_acceleration=below * motion.peak_acceleration, **strength)
+                assert not weaker.overturned.any(), (row, motion.name)
+                peak = row["factor"] * (1.0 + 1e-8) * motion.peak_acceleration
+                hit += [motion.name] * bool(body.response(motion.motion, peak_acceleration=peak, **strength).overturned)
+        assert row["governing"] in hit
+
+
+def test_rows_come_worst_first_with_verdicts_of_the_share() -> None:
+    found = assess(random_objects(20), SITE, sensitivity=False)
+    share = found.columns["share"]
+    assert (np.diff(share) <= 0.0).all()
+    assert share[0] > 0.5
+    assert share[-1] == 0.0
+    for row in found.rows:
+        expected = 3 if row["share"] > 0.5 else 2 if row["share"] > 0.0 else int(row["uplifts"])
+        assert row["verdict"] == VERDICTS[expected]
+        assert (row["factor"] is not None and row["factor"] <= 1.0) == (row["share"] > 0.0)
+        assert (row["rotation"] is None) == (row["share"] == 1.0)
+
+
+def test_the_smallest_width_and_the_largest_height_are_where_the_outcome_changes() -> None:
+    (row,) = assess(Object("pier", width=0.4, height=1.6), SITE).rows
+    for change, overturns in ((1.0 + 1e-6, False), (1.0 - 1e-6, True)):
+        for pier in (
+            Object("pier", width=row["smallest_width"] * change, height=1.6),
+            Object("pier", width=0.4, height=row["largest_height"] / change),
+        ):
+            body = Bodies.of([pier]).scaled().rigid
+            outcomes = [
+                body.response(one.motion, peak_acceleration=one.peak_acceleration, period=one.period).overturned[0]
+                for one in SITE.motions
+            ]
+            assert any(outcomes) == overturns
+
+
+def test_each_shape_reaches_the_ground_velocity_and_moving_ground_only_if_asked() -> None:
+    motions = Site(pga=3.0, pgv=0.4).motions
+    assert {one.name for one in motions}.isdisjoint({"half_sine", "rectangular"})
+    assert len(motions) == 7
+    for one in motions:
+        largest = impulse_of(one.motion).largest * one.peak_acceleration * one.period / (2.0 * math.pi)
+        assert largest == pytest.approx(0.4, rel=1e-12)
+    assert len(Site(pga=3.0, pgv=0.4, moving_ground=True).motions) == 9
+
+
+def test_suite_of_records_with_hazard() -> None:
+    rng = np.random.default_rng(2)
+    records = [Record(rng.normal(size=300) * np.hanning(300), 0.05, "m/s2", name=f"r{k}") for k in range(6)]
+    site = Site(pga=4.0, records=records, hazard=([0.5, 20.0], [0.1, 1e-4]))
+    slender, stocky = Object("slender", width=0.1, height=0.8), Object("stocky", width=2.0, height=0.8)
+    found = assess([stocky, slender], site)
+    worst, best = found.rows
+    assert (worst["object"], best["object"]) == ("slender", "stocky")
+    assert worst["share_lower"] < worst["share"] <= worst["share_upper"]
+    assert 1e-4 < worst["yearly_rate"] < 0.1
+    assert best["yearly_rate"] < worst["yearly_rate"]
+    body = Bodies.of([slender]).scaled().rigid
+    outcomes = [body.response(one, scale=4.0 / one.peak_acceleration).overturned[0] for one in records]
+    assert {one.name for one, hit in zip(records, outcomes, strict=True) if hit} <= {
+        *worst["overturned_by"].split("; ")
+    }
+
+
+def test_friction_less_than_the_slope_slides_first() -> None:
+    friction = {"rough": 0.5, "smooth": 0.1, "unknown": None}
+    found = assess([Object(name, width=0.3, height=1.0, friction=mu) for name, mu in friction.items()], SITE).rows
+    by_name = {row["object"]: row for row in found}
+    assert by_name["rough"]["slides_first"] is False
+    assert by_name["rough"]["sliding"] is None
+    assert by_name["smooth"]["slides_first"] is True
+    assert by_name["smooth"]["sliding"] > 0.0
+    assert by_name["unknown"]["slides_first"] is None
+    assert "sliding is not assessed" in by_name["unknown"]["warnings"]
+
+
+def test_result_as_table(tmp_path) -> None:
+    found = assess([Object("a", width=0.3, height=1.2), Object("b", diameter="30 cm", height=1.0)], SITE)
+    text = found.to_csv(tmp_path / "table.csv")
+    assert (tmp_path / "table.csv").read_text() == text
+    assert "uplift_acceleration [m/s2]" in text.splitlines()[0]
+    assert list(found.to_pandas().columns) == [one.name for one in OUTPUTS] == list(found.to_xarray().data_vars)
+    assert len(repr(found).splitlines()) == 2
+    assert "objects and directions under 3 motions" in repr(found)
+    assert "wobbling" in next(row for row in found.rows if row["object"] == "b")["warnings"]
+
+
+@pytest.mark.parametrize(
+    "given", [{"pga": 3.0}, {"pgv": 0.3}, {"pga": 3.0, "pgv": 0.3, "periods": (0.1, 1.0)}, {"pga": -1.0, "pgv": 0.3}]
+)
+def test_incomplete_sites_are_refused(given) -> None:
+    with pytest.raises(InvalidArgumentError):
+        Site(**given)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"height": 1.0}, {"width": 0.4}, {"width": 0.4, "diameter": 0.4, "height": 1.0},
+     {"width": 0.4, "height": 1.0, "offset_width": 0.2}, {"width": 0.4, "height": 1.0, "tolerance": 0.2},
+     {"width": 0.4, "height": 1.0, "restitution": 1.2}],
+)  # fmt: skip
+def test_incomplete_objects_are_refused(given) -> None:
+    with pytest.raises(InvalidArgumentError):
+        Object("one", **given)
