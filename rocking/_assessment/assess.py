@@ -173,6 +173,11 @@ def _overturned(body: BodyArray, motion: Motion, acceleration: Array | float, st
     return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
 
 
+def overturned_by(body: BodyArray, motion: Motion, stop: StopFlag | None = None) -> Bools:
+    """Whether a motion at the strength of the site overturns each body from either side."""
+    return _overturned(body, motion, motion.peak_acceleration, stop)
+
+
 def _record_factor(body: BodyArray, motion: Motion, stop: StopFlag | None) -> Array:
     """The lowest of `LEVELS` at which a record overturns each body, bisected from the level below."""
     peak = motion.peak_acceleration
@@ -259,7 +264,7 @@ def _sensitivity(
 
     def overturns(rows: Index, base: Array, height: Array) -> Bools:
         body = bodies.take(rows).scaled(base, height)
-        return np.asarray(np.any([_overturned(body, one, one.peak_acceleration, stop) for one in motions], axis=0))
+        return np.asarray(np.any([overturned_by(body, one, stop) for one in motions], axis=0))
 
     rows = np.arange(still.size)
     every, sizes = np.repeat(rows, SIZES.size), np.tile(SIZES, still.size)
