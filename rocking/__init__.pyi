@@ -1,6 +1,10 @@
 from . import paper as paper
 from . import plot as plot
 from . import suites as suites
+from ._assessment.assess import assess as assess
+from ._assessment.objects import Object as Object
+from ._assessment.site import Site as Site
+from ._assessment.uncertainty import overturning_probability as overturning_probability
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RockingError as RockingError
 from ._base.version import __version__ as __version__

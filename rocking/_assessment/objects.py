@@ -13,11 +13,15 @@ from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.units import Scalar
-from rocking._dimensional.body_problem import checked_restitution
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.body import AbstractBody, Edge
+from rocking._model.checks import check_number
+from rocking._model.parameters import RESTITUTION
 
 Array = NDArray[np.float64]
+
+LENGTHS = 1e-4, 1e3
+"""Smallest and largest dimension of an object [m]."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +33,13 @@ class Object:
     name : str
         For output.
     width, depth : float
-        Of the base [m], > 0; without a depth only the direction of the width is assessed.
+        Of the base [m], 0.1 mm to 1 km, as all lengths; without a depth only the direction of the width is assessed.
     height : float
-        Of the object [m], > 0.
+        Of the object [m].
     diameter : float
-        Of a round base, in place of the width [m], > 0: the planar model, in which it does not wobble or roll.
+        Of a round base, in place of the width [m]: the planar model, in which it does not wobble or roll.
     mass_height : float, optional
-        Height of the centre of mass [m], > 0; half the height by default.
+        Height of the centre of mass [m]; half the height by default.
     offset_width, offset_depth : float
         Distance of the centre of mass from the middle of the base [m], inside it.
     mass : float, optional
@@ -81,11 +85,12 @@ class Object:
         for name in ("width", "height", "depth", "diameter", "mass_height"):
             value = getattr(self, name)
             if value is not None or name == "height":
-                checked[name] = positive(name, value, "m")
+                checked[name] = number(name, value, *LENGTHS, unit="m")
         for name, unit in (("mass", "kg"), ("friction", "-")):
             if getattr(self, name) is not None:
                 checked[name] = positive(name, getattr(self, name), unit)
-        checked_restitution(self.restitution)
+        if not (isinstance(self.restitution, str) and self.restitution == "momentum"):
+            checked["restitution"] = check_number(RESTITUTION, self.restitution)
         sizes = [checked[name] for name in ("width", "height", "depth", "diameter") if name in checked]
         checked["tolerance"] = number("tolerance", self.tolerance, 0.0, 0.5 * min(sizes), closed="left", unit="m")
         for name, size in (("offset_width", "width"), ("offset_depth", "depth")):

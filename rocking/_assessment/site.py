@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import InvalidArgumentError, positive
+from rocking._base.errors import InvalidArgumentError, number
 from rocking._base.units import Scalar
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, as_pulse
@@ -18,6 +18,12 @@ from rocking._excitation.records.record import Record
 from rocking.suites.hazard_curve import check_hazard_curve
 
 Array = NDArray[np.float64]
+
+STRENGTHS = 1e-3, 1e3
+"""Smallest and largest PGA [m/s2] and PGV [m/s]."""
+
+LENGTH = 0.01, 10.0
+"""Shortest and longest period of a pulse, and ratio of PGV to PGA [s]."""
 
 PERIODS = 12
 """Periods of each shape where the site has a range of periods, in equal ratios from its ends [-]."""
@@ -49,17 +55,18 @@ class Motion:
 class Site:
     """How strongly the ground of a site moves.
 
-    One of: PGA and PGV; PGA and a range of periods; a suite of records, scaled to the PGA if it is given, also with a
+    One of: PGA and PGV; PGA and a range of periods; a suite of records, scaled to the PGA if it is given, and with it a
     hazard curve of PGA.
 
     Parameters
     ----------
     pga : float
-        Peak ground acceleration [m/s2], > 0, or a text such as "0.3 g".
+        Peak ground acceleration [m/s2], 0.001 to 1000, or a text such as "0.3 g".
     pgv : float
-        Peak ground velocity [m/s], > 0. Each pulse shape has the period at which its largest velocity equals it.
+        Peak ground velocity [m/s], 0.001 to 1000. Each pulse shape has the period at which its largest velocity equals it.
     periods : (float, float)
-        Shortest and longest period of the pulses [s], 0 < shortest <= longest; `PERIODS` are assessed.
+        Shortest and longest period of the pulses [s], 0.01 to 10, shortest <= longest; `PERIODS` of them are
+        assessed.
     records : sequence of Record
         The suite; its records count as independent and equally likely.
     hazard : (array_like, array_like)
@@ -86,7 +93,8 @@ class Site:
     def __post_init__(self) -> None:
         for name, unit in (("pga", "m/s2"), ("pgv", "m/s")):
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, positive(name, getattr(self, name), unit))  # a frozen dataclass
+                value = number(name, getattr(self, name), *STRENGTHS, unit=unit)
+                object.__setattr__(self, name, value)  # a frozen dataclass
         object.__setattr__(self, "records", tuple(self.records))
         ways = (self.pgv is not None) + (self.periods is not None) + bool(self.records)
         if ways != 1:
@@ -98,10 +106,12 @@ class Site:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
             check_hazard_curve(self.hazard)
         if self.periods is not None:
-            low, high = (positive("periods", value, "s") for value in self.periods)
+            low, high = (number("periods", value, *LENGTH, unit="s") for value in self.periods)
             if low > high:
                 raise InvalidArgumentError("periods", (low, high), "the shortest and the longest period")
             object.__setattr__(self, "periods", (low, high))
+        if self.pgv is not None and not LENGTH[0] <= vars(self)["pgv"] / vars(self)["pga"] <= LENGTH[1]:
+            raise InvalidArgumentError("pgv", self.pgv, f"{LENGTH[0]:g} to {LENGTH[1]:g} s times pga")
         if self.shapes is not None:
             if not len(self.shapes):
                 raise InvalidArgumentError("shapes", self.shapes, "one or more pulses")

@@ -66,7 +66,7 @@ def overturning_probability(
     offset: Any = 0.0,
     restitution: Any = "momentum",
     samples: Scalar = 8192,
-    seed: int = 0,
+    seed: Scalar = 0,
     stop: StopFlag | None = None,
 ) -> OverturningProbability:
     """Probability that the motions of a site overturn a body with uncertain dimensions.
@@ -84,7 +84,7 @@ def overturning_probability(
         Bodies, rounded up to 8 times a power of two, 64 to 4,194,304; the Sobol indices need as many again for each
         uncertain input.
     seed : int
-        Of the scrambled Sobol sequence.
+        0 to 2^53, of the scrambled Sobol sequence.
     stop : StopFlag, optional
         Cancels the work.
 
@@ -110,7 +110,7 @@ def overturning_probability(
         hits = [overturned_by(_body(sampled, values.shape[1]), motion, stop) for motion in motions]
         return np.asarray(np.mean(hits, axis=0))
 
-    streams = np.random.default_rng(seed).spawn(REPLICATES + 1)
+    streams = np.random.default_rng(integer("seed", seed, 0, 2**53)).spawn(REPLICATES + 1)
     means = []
     for stream in streams[1:]:
         points = stats.qmc.Sobol(len(uncertain), rng=stream).random(each)

@@ -53,7 +53,7 @@ AT_ONCE = 4
 """Coarse nodes solved at a time, before the bodies that have overturned are left out."""
 
 
-@dataclass
+@dataclass(eq=False)
 class _Nodes:
     """Solved nodes of several bodies in order of body, then amplitude; arrays (nodes,)."""
 
@@ -111,7 +111,7 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
     cells = replace(problem, acceleration=np.asarray(uplift)).cells
     top = (np.broadcast_to(highest, shape) / uplift).ravel()
-    count = np.searchsorted(-GRID, -1.0 / np.maximum(top, 1.0)) + 1  # nodes up to the highest
+    count = np.minimum(np.searchsorted(-GRID, -1.0 / np.maximum(top, 1.0)) + 1, GRID.size)  # nodes up to the highest
 
     def solve(line: Index, slenderness: Array) -> Solved:
         chosen = cells[line]

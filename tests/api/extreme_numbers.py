@@ -72,6 +72,9 @@ NUMBERS: dict[str, Any] = {
     "amplitude": 4.0, "time": 0.5, "velocity": 0.5, "rotation": 0.5, "scaled": 0.5, "impact_time": 1.5,
     "phi": [0.5, 7.0], "falling": 1.0, "growing": 0.5, "constant": 0.2, "most": 2, "impacts": 1,
     "start_phase": 1.0, "impact_phase": 3.0, "impact_velocity": 0.5,
+    "width": 0.4, "depth": 0.3, "diameter": 0.4, "height": 1.6, "mass_height": 0.7, "offset": 0.0, "friction": 0.5,
+    "offset_width": 0.01, "offset_depth": 0.01, "pga": 3.0, "pgv": 0.4, "periods": (0.3, 1.0), "seed": 1,
+    "hazard": ([1.0, 10.0], [1e-2, 1e-4]),
     "exponents": {"a_g/g": 1, "alpha": -2}, "largest": 2, "cos_alpha": math.cos(0.3),
 }  # fmt: skip
 """Ordinary values of the parameters of Python by their names."""

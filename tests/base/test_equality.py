@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import rocking
 from rocking import paper
@@ -55,6 +56,10 @@ EXAMPLES = {
     "BlockRecordResponse": lambda: BLOCK.response(record(), scale=50.0),
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
     "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
+    "Assessment": lambda: rocking.assess(rocking.Object("vase", width=0.2, height=1.0), rocking.Site(pga=3.0, pgv=0.4)),
+    "OverturningProbability": lambda: rocking.overturning_probability(
+        rocking.Site(pga=3.0, pgv=0.4), width=stats.norm(0.3, 0.01), height=1.2, samples=64
+    ),
     "Problem": lambda: paper.Problem(0.2, [2.0, 3.0], 4.0, 8.0),
     "Groups": lambda: paper.Groups([2.0, 3.0], 0.5),
     "SuiteConfiguration": configuration,
@@ -65,7 +70,7 @@ EXAMPLES = {
 
 def dataclasses_of_the_package():
     for module in pkgutil.walk_packages(rocking.__path__, "rocking."):
-        if module.name.split(".")[1] not in ("_cli", "plot", "precompile"):
+        if module.name.split(".")[1] not in ("__main__", "_cli", "plot", "precompile"):
             for value in vars(importlib.import_module(module.name)).values():
                 if (
                     isinstance(value, type)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import rocking
 from rocking import EquivalentBlock, InvalidArgumentError, paper
@@ -41,6 +42,18 @@ class Hump(rocking.SmoothPulse):
 
 CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "Block": (rocking.Block, [{"width": 0.4, "height": 1.6} | SIZE]),
+    "Object": (
+        rocking.Object,
+        [{"name": "vase", "width": 0.4, "height": 1.6, "depth": 0.3, "mass_height": 0.7, "offset_width": 0.01,
+          "offset_depth": 0.01, "mass": 100.0, "friction": 0.5, "restitution": 0.9, "tolerance": 0.01},
+         {"name": "amphora", "diameter": 0.4, "height": 1.6}],
+    ),
+    "Site": (rocking.Site, [{"pga": 3.0, "pgv": 0.4}]),
+    "overturning_probability": (
+        rocking.overturning_probability,
+        [{"site": rocking.Site(pga=3.0, pgv=0.4), "width": stats.norm(0.4, 0.01), "height": 1.6, "samples": 64,
+          "seed": 1}],
+    ),
     "SampledPulse": (rocking.SampledPulse, [{"period": 2.0, "acceleration": [0.0, 1.0, 0.0]}]),
     "SampledPulse.from_file": (rocking.SampledPulse.from_file, [{"path": __file__, "period": 2.0}]),
     "Block.from_slenderness_angle": (
@@ -192,6 +205,7 @@ RESULTS = {"suites.PulseFit", "paper.Quantity", "Block.top_displacement", "Equiv
 OPTIONAL = {
     "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
     "restitution", "scale", "vertical_scale", "highest", "highest_amplitude", "size", "peak_acceleration", "period",
+    "depth", "diameter", "mass_height", "mass", "friction", "pgv",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 
