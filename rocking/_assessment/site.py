@@ -63,7 +63,8 @@ class Site:
     pga : float
         Peak ground acceleration [m/s2], 0.001 to 1000, or a text such as "0.3 g".
     pgv : float
-        Peak ground velocity [m/s], 0.001 to 1000. Each pulse shape has the period at which its largest velocity equals it.
+        Peak ground velocity [m/s], 0.001 to 1000, 0.01 to 10 s times the PGA. Each pulse shape has the period at which
+        its largest velocity equals it.
     periods : (float, float)
         Shortest and longest period of the pulses [s], 0.01 to 10, shortest <= longest; `PERIODS` of them are
         assessed.

@@ -105,9 +105,12 @@ def read_objects(source: str | PathLike[str]) -> ObjectTable:
         If the packages for sheets are not installed: pandas with openpyxl or odfpy.
     """
     path = Path(source)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InvalidArgumentError("objects", str(path), f"a file that can be read ({error.strerror})") from None
     if path.suffix.lower() in (".xlsx", ".ods"):
-        return objects_of_rows(_sheet(path))
-    raw = path.read_bytes()
+        return objects_of_rows(_sheet(raw))
     try:
         text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
@@ -152,14 +155,21 @@ def objects_of_csv(text: str) -> ObjectTable:
     return objects_of_rows(max(tables, key=lambda one: one[0])[1])
 
 
-def _sheet(path: Path) -> list[list[str]]:
+def _sheet(raw: bytes) -> list[list[str]]:
     """The first sheet of a file as text; numbers have decimal points."""
     import pandas as pd  # noqa: PLC0415  (reads sheets with openpyxl or odfpy, which are extras)
 
-    frame = pd.read_excel(path, header=None, dtype=object)
-    return [
-        ["" if value is None or value != value else str(value) for value in row] for row in frame.to_numpy().tolist()
-    ]
+    frame = pd.read_excel(io.BytesIO(raw), header=None, dtype=object)
+    return [list(map(_cell_text, row)) for row in frame.to_numpy().tolist()]
+
+
+def _cell_text(value: object) -> str:
+    """A cell of a sheet as text, whose decimal sign is certain."""
+    if value is None or value != value:
+        return ""
+    if isinstance(value, float):
+        return str(int(value)) if value.is_integer() else f"{value:.9f}"
+    return str(value)
 
 
 @dataclass(frozen=True)

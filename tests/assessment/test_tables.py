@@ -88,3 +88,8 @@ def test_rows_that_could_be_misread_are_reported(row: str) -> None:
 def test_json_that_is_no_list_of_objects_is_refused(text: str) -> None:
     with pytest.raises(InvalidArgumentError):
         objects_of_json(text)
+
+
+def test_a_missing_file_is_refused() -> None:
+    with pytest.raises(InvalidArgumentError, match="can be read"):
+        read_objects(TABLES / "missing.csv")
