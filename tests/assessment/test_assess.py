@@ -37,7 +37,7 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
             overturning += row["factor"] is not None
             top = HIGHEST_FACTOR if row["factor"] is None else row["factor"]
             below = top * np.linspace(0.05, 0.997, 60)
-            tried = np.concatenate([below, below * 1.0025, top * np.array([1.0 - 1e-8, 1.0 + 1e-8])])
+            tried = np.concatenate([below, below * 1.0025, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
             width, offset = one.directions[row["direction"]]
             gyration = math.hypot(width, one.height) / math.sqrt(12.0)
             hit = set()
@@ -49,7 +49,7 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
                 # a range narrower than the nodes of the search, 0.05 to 0.23 %, may be missed
                 assert not (overturned[:60] & overturned[60:120]).any(), (row, motion.name)
                 assert not overturned[120], (row, motion.name)
-                hit |= {motion.name} if overturned[121] else set()
+                hit |= {motion.name} if overturned[121:].any() else set()  # the range above may be as thin
             assert row["factor"] is None or row["governing"] in hit
     assert overturning > count
 
