@@ -18,6 +18,8 @@ from ._excitation.pulses import SinusoidalPulse as SinusoidalPulse
 from ._excitation.pulses import SmoothPulse as SmoothPulse
 from ._excitation.pulses import WaveletPulse as WaveletPulse
 from ._excitation.pulses import pulse as pulse
+from ._excitation.records.floor import floor_motion as floor_motion
+from ._excitation.records.floor import isolated_motion as isolated_motion
 from ._excitation.records.readers.read_record import read_record as read_record
 from ._excitation.records.record import Record as Record
 from ._excitation.sampled import SampledPulse as SampledPulse

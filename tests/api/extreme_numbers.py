@@ -63,7 +63,7 @@ NUMBERS: dict[str, Any] = {
     "width": 0.5, "height": 2.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
     "frequency_parameter": 2.0, "pulse_frequency": 10.0, "cycles": 2.0, "phase": 0.5,
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
-    "vertical_scale": 1.0,
+    "vertical_scale": 1.0, "periods": [0.5, 0.1], "damping": 0.1, "participation": [1.3, -0.3], "tail": 1.0,
     "intensity": [3.0, 9.0], "demand": 0.5, "confidence": 0.9, "restitution_step": 0.05,
     "hazard_curve": ([1.0, 10.0], [1e-2, 1e-4]),
     "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,

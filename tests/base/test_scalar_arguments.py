@@ -115,6 +115,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
          {"motion": UPWARDS, "vertical_scale": 1.0, "highest_amplitude": 20.0}
          | {key: value for key, value in OF_RECORD.items() if key != "slenderness"}],
     ),
+    "floor_motion": (rocking.floor_motion, [{"record": RECORD, "periods": 0.5, "tolerance": 0.01, "tail": 1.0}]),
     "fragility": (rocking.fragility, [SUITE]),
     "pulse": (
         lambda **given: rocking.pulse("mavroeidis_papageorgiou", **given), [{"cycles": 2.0}, {"phase": 0.5}],
@@ -136,6 +137,11 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "paper.restitution_exponent": (paper.restitution_exponent, [PEAKS | {"axis": 0}]),
     "paper.admissible_exponents": (
         paper.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
+    "isolated_motion": (
+        rocking.isolated_motion, [{"record": RECORD, "period": 0.5, "damping": 0.1, "tolerance": 0.01}],
+    ),
+    "orientation.admissible_exponents": (
+        orientation.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
     ),
     "overturning_boundary": (
         rocking.overturning_boundary, [{"motion": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32}],
@@ -206,6 +212,7 @@ OPTIONAL = {
     "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
     "restitution", "scale", "vertical_scale", "highest", "highest_amplitude", "size", "peak_acceleration", "period",
     "depth", "diameter", "mass_height", "mass", "friction", "pgv",
+    "restitution", "scale", "tail", "vertical_scale", "highest", "size", "peak_acceleration", "period",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 
