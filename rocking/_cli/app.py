@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from rocking._cli.fragility import fragility
+from rocking._cli.identify import identify
 from rocking._cli.options import (
     FrequencyRatioMax,
     FrequencyRatioMin,
@@ -136,6 +137,7 @@ def boundary(
 
 app.command()(record)
 app.command()(fragility)
+app.command()(identify)
 app.add_typer(plot, name="plot")
 
 

@@ -155,8 +155,8 @@ _NO_LINES = ("margin", "warnings", "overturns_above")
 """What the text output says before the values, or in one line with another value."""
 
 _UNITS = {
-    "alpha": "rad",
-    "frequency_parameter": "rad/s",
+    **dict.fromkeys(("alpha", "alpha_lower", "alpha_upper", "noise", "offset"), "rad"),
+    **dict.fromkeys(("frequency_parameter", "frequency_parameter_lower", "frequency_parameter_upper"), "rad/s"),
     "angular_velocity_deg": "deg/s",
     "annual_rate": "1/year",
     "gravity": "m/s2",

@@ -26,6 +26,7 @@ from types import FrameType
 from typing import Any
 from unittest.mock import patch
 
+import numpy as np
 import typer.main
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
@@ -69,7 +70,7 @@ NUMBERS: dict[str, Any] = {
     "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,
     "stiffness": 500.0, "restoring": 100.0, "load": 200.0,
     "uplift_acceleration": 2.0, "radius": 4.0, "thickness": 0.6, "embrace": 2.7, "voussoirs": 8,
-    "amplitude": 4.0, "time": 0.5, "velocity": 0.5, "rotation": 0.5, "scaled": 0.5, "impact_time": 1.5,
+    "edges": 1, "amplitude": 4.0, "time": 0.5, "velocity": 0.5, "rotation": 0.5, "scaled": 0.5, "impact_time": 1.5,
     "phi": [0.5, 7.0], "falling": 1.0, "growing": 0.5, "constant": 0.2, "most": 2, "impacts": 1,
     "start_phase": 1.0, "impact_phase": 3.0, "impact_velocity": 0.5,
     "width": 0.4, "depth": 0.3, "diameter": 0.4, "height": 1.6, "mass_height": 0.7, "offset": 0.0, "friction": 0.5,
@@ -79,8 +80,11 @@ NUMBERS: dict[str, Any] = {
 }  # fmt: skip
 """Ordinary values of the parameters of Python by their names."""
 
+TRACE = np.arange(80) * 0.05, 0.1 * np.cos(np.arange(80) * 0.25)
+
 WINDOWS: dict[str, Any] = {
     "rocking.SampledPulse": {"time": [0.0, 1.0, 2.0, 4.0]},
+    "rocking.identify_free_rocking": dict(zip(("time", "rotation"), (trace.tolist() for trace in TRACE), strict=True)),
     "rocking.overturning_boundary": {"frequency_ratio": (2.0, 3.0), "slenderness": (0.3, 0.6)},
     "rocking.Block.boundary": {"period": (0.5, 0.6)},
     "rocking.paper.overturning_interval": {"amplitude": (2.0, 4.0)},
@@ -119,17 +123,17 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "period_min": (0.5, " s"), "period_max": (0.6, " s"), "duration": (5.0, " s"),
     "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
     "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
-    "port": (8000, ""), "workers": (1, ""),
+    "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
 TEXTS = {
     "pulse", "blocks", "json", "csv", "units", "contact", "output", "file", "unit", "component", "vertical",
-    "thresholds", "fit", "configuration", "table", "host", "results", "help", "version",
+    "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
 }  # fmt: skip
 """Options and arguments that take none."""
 
-COMMON = {"restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"}
+COMMON = {"edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"}
 VARIANTS = (
     {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
     {"width", "height", "peak_acceleration", "period", "period_min", "period_max", "duration"},
@@ -330,6 +334,8 @@ def walk_commands(walk: Walk, folder: Path) -> None:
     """All options of all commands that take a number, and the numbers of the configuration of a suite."""
     cases: dict[str, list[str]] = {"record": [OBJECTS["path"]], "fragility": [str(folder / "suite.json")]}
     (folder / "suite.json").write_text(json.dumps(SUITE), encoding="utf-8")
+    (folder / "trace.csv").write_text("\n".join(f"{t},{y}" for t, y in zip(*TRACE, strict=True)), encoding="utf-8")
+    cases["identify"] = [str(folder / "trace.csv")]
     for name, command in commands("rocking", typer.main.get_command(command_line)):
         takes = {parameter.name for parameter in command.params}
         walk.faults += [f"{name}: {one} has no ordinary value in this test" for one in takes - OPTIONS.keys() - TEXTS]

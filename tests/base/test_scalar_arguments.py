@@ -22,6 +22,7 @@ BODY = rocking.RigidBody(0.15, 0.2, 0.6)
 FRAME = EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5)
 TIME = np.arange(0.0, 3.0, 0.01)
 RECORD = rocking.Record(3.0 * np.sin(6.0 * TIME), 0.01, "m/s2")
+TRACE = TIME, 0.1 * np.cos(6.0 * TIME) * np.exp(-TIME)
 UPWARDS = rocking.Record(RECORD.acceleration, 0.01, "m/s2", vertical=0.1 * RECORD.acceleration)
 PROBLEM = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
 OF_RECORD = {"frequency_parameter": 3.0, "slenderness": 0.4, "restitution": 0.85, "alpha": 0.2}
@@ -137,6 +138,9 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "paper.restitution_exponent": (paper.restitution_exponent, [PEAKS | {"axis": 0}]),
     "paper.admissible_exponents": (
         paper.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
+    "identify_free_rocking": (
+        rocking.identify_free_rocking, [{"time": TRACE[0], "rotation": TRACE[1], "edges": 1, "confidence": 0.9}],
+    ),
     "isolated_motion": (
         rocking.isolated_motion, [{"record": RECORD, "period": 0.5, "damping": 0.1, "tolerance": 0.01}],
     ),

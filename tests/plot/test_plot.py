@@ -6,6 +6,7 @@ import sys
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -43,6 +44,18 @@ def test_history_of_a_block_in_degrees(ax):
     assert ax.lines[4].get_xdata()[0] == data.impact_time[0]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [s]", r"rotation $\theta$ [deg]")
     assert ax.get_title("right") == "rocks and comes to rest"
+
+
+def test_a_free_rocking_with_its_residual_in_degrees(ax):
+    time = np.arange(0.0, 4.0, 0.02)
+    names = "rotation", "fitted", "residual"
+    data = xr.Dataset({name: ("time", np.full(time.size, k)) for k, name in enumerate(names)}, {"time": time})
+    plot.free_rocking(data.assign(impact_time=("impact", [1.0, 2.0]), offset=0.1), ax)
+    assert [line.get_label() for line in ax.lines] == ["measured", "fitted", "impact", "residual"]
+    np.testing.assert_allclose(ax.lines[3].get_ydata(), np.degrees(2.0))
+    np.testing.assert_allclose(ax.lines[2].get_ydata(), np.degrees(0.1))
+    with pytest.raises(InvalidArgumentError, match=r"identify_free_rocking"):
+        plot.free_rocking(xr.Dataset())
 
 
 def test_an_equivalent_block_has_its_own_angle(ax):

@@ -32,6 +32,7 @@ PRINTED = {
     "does_it_overturn": ["rocks and comes to rest", "overturns above 4.70006 m/s2"],
     "figure_8": [],
     "fragility": ["median 5.40 m/s2"],
+    "free_rocking": ["restitution 0.9197"],
     "large_rotations": ["6.06624767, 7.45218141"],
     "map_with_boundaries": ["400 never uplift"],
     "own_body": [],

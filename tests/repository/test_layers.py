@@ -19,6 +19,7 @@ LAYERS = (
     ("rocking/plot",),
     ("rocking/precompile",),
     ("rocking/_assessment",),
+    ("rocking/_evidence",),
     ("rocking/_lookup", "rocking/suites"),
     ("rocking/_dimensional",),
     ("rocking/_spectra",),

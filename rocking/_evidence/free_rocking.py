@@ -1,0 +1,286 @@
+"""The block from a measured free rocking: restitution, slenderness angle and frequency parameter, with intervals.
+
+Between impacts the body obeys theta'' = -p^2 sin(alpha - theta), theta > 0 (2.2), so that phi = alpha - theta is a
+pendulum near its upper equilibrium. With the peak at time t_c,
+
+    sin(phi/2) = sin(phi_c/2)/dn(p (t - t_c) | cos^2(phi_c/2)),
+
+dn the elliptic function of Jacobi. An impact multiplies the velocity by eta, so that the peaks obey
+cos(alpha - theta_n) - cos(alpha) = eta^2 (cos(alpha - theta_(n-1)) - cos(alpha)) (Housner 1963), with the factor
+(p/p')^2 where the edges differ. The whole trace therefore follows from the time of the first impact, the peak before
+it, and eta, alpha, p; these are fitted to all samples by least squares. The start is from peaks and impacts, which are
+located by a parabola in each flight.
+
+References
+----------
+Housner G. W. (1963), The behavior of inverted pendulum structures during earthquakes, Bulletin of the Seismological
+Society of America 53(2), 403-417.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import OptimizeResult, least_squares
+from scipy.special import ellipj, ellipkinc
+from scipy.stats import t as student
+
+from rocking._base.errors import InvalidArgumentError, in_range, integer, number
+from rocking._base.units import Scalar
+
+Array = NDArray[np.float64]
+
+MAX_ROTATION = 0.8
+"""Largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees."""
+
+MIN_IMPACTS = 3
+"""Fewest impacts from which eta, alpha and p are told apart [-]."""
+
+MAX_FLIGHTS = 200
+"""Most flights that are fitted [-]."""
+
+LEVEL = 10.0
+"""Peak of the smallest flight that is used, over the noise [-]; at 6, one trace in 100 had a flight too few."""
+
+MIN_SAMPLES = 5
+"""Fewest samples of a flight that is used [-]."""
+
+START_SHARES = 0.3, 0.5, 0.7, 0.85, 0.95
+"""Shares of alpha that the first peak is tried at [-]: of 200 traces one start in alpha left three at wrong minima."""
+
+HIGHEST_SHARE = 0.9999
+"""Highest peak over alpha [-]: at alpha a flight has no end."""
+
+LARGEST_RESIDUAL = 0.1
+"""Standard deviation of the residual over the first peak, above which the trace is no free rocking [-]."""
+
+HELD_SHARE = 0.95
+"""Share of the first peak below which the body is taken as released [-]: a hand holds it before."""
+
+
+def identify_free_rocking(
+    time: ArrayLike, rotation: ArrayLike, *, edges: int = 1, confidence: Scalar = 0.95
+) -> xr.Dataset:
+    """Restitution, slenderness angle and frequency parameter from the trace of a body that rocks freely.
+
+    Parameters
+    ----------
+    time : array_like (samples,)
+        Times [s], ascending; steps may differ.
+    rotation : array_like (samples,)
+        Rotation [rad], of a sensor or a film, with noise and an offset; positive values turn on the right edge. It may
+        begin while the body is held, and end after it has come to rest. What is fitted begins where the rotation has
+        fallen to 95 % of its first peak, and ends with the last flight that stands out from the noise.
+    edges : {1, 2}
+        1 for a body with equal edges; 2 fits the three numbers of each edge.
+    confidence : float
+        Of the intervals [-], (0, 1): those of least squares with independent errors of equal variance.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `edge` ("both", or "right" and "left"): `restitution` [-] of the impacts after which the body turns on the
+        edge, `alpha` [rad], `frequency_parameter` [rad/s], and the ends of their intervals, `_lower` and `_upper`. Over
+        `time`: `rotation`, `fitted` and `residual` [rad], nan where nothing is fitted. Over `impact`: `impact_time` [s]
+        of the fit. `offset` and `noise` [rad]: the rotation at rest, and the standard deviation of the residual.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described, the rotation seems to be in degrees, or the trace has fewer than three
+        impacts; for two edges, fewer than six.
+
+    Notes
+    -----
+    Small rotations alone tell p^2 alpha but not p and alpha: then their intervals are wide. Release the body at half of
+    alpha or more.
+    """
+    t, theta, sides = _checked(time, rotation, edges)
+    level = number("confidence", confidence, 0.0, 1.0, closed="neither")
+    offset, noise = _rest(theta)
+    flights, impacts = _flights(t, theta - offset, noise)
+    needed = MIN_IMPACTS * sides
+    if impacts.size < needed:
+        allowed = f"a trace with at least {needed} impacts between flights that stand out from the noise"
+        raise InvalidArgumentError("rotation", f"{impacts.size} impacts", allowed)
+    peaks = np.array([(theta - offset)[run][np.abs(theta[run] - offset).argmax()] for run in flights])
+    held = np.flatnonzero(np.abs(theta[flights[0]] - offset) > HELD_SHARE * abs(peaks[0]))
+    first = t[flights[0][held[-1]]]
+    sign = float(np.sign(peaks[0]))
+    starts = _starts(offset, impacts, peaks, sides)
+    count = needed + 1
+    while True:  # a few flights first: a wrong period would shift the later ones by whole flights
+        count = min(count, len(flights))
+        used = (t > first) & (t <= t[flights[count - 1][-1]])
+        misfit = partial(_misfit, t[used], theta[used], sign, sides, count)
+        fit = min((_fitted(misfit, start) for start in starts), key=lambda one: float(one.cost))
+        if count == len(flights):
+            break
+        starts, count = [fit.x], count + count // 2
+        flights = _flights(t, theta - fit.x[0], noise)[0]  # the first offset is that of a body that may rock on
+    model, impacts = _trace(t[used], fit.x, sign, sides, count)
+    if fit.x[3 : 3 + sides].max() >= math.log(0.999 * MAX_ROTATION):
+        raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
+    if np.std(model - theta[used]) > LARGEST_RESIDUAL * np.abs(peaks).max():
+        allowed = "free rocking: no block of the model is within 10 % of the first peak of these samples"
+        raise InvalidArgumentError("rotation", _peak_text(theta), allowed)
+    return _described(t, theta, used, model, impacts, fit, sides, level)
+
+
+_DEGREES = f"radians, with alpha below {MAX_ROTATION:g} rad: are these degrees?"
+
+
+def _peak_text(theta: Array) -> str:
+    return f"values up to {np.abs(theta).max():.4g}"
+
+
+def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, Array, int]:
+    t = in_range("time", time, -1e9, 1e9, unit="s")
+    theta = in_range("rotation", rotation, -1e9, 1e9, unit="rad")
+    if t.ndim != 1 or t.shape != theta.shape or t.size < MIN_SAMPLES * MIN_IMPACTS:
+        raise InvalidArgumentError("rotation", theta.shape, f"as many samples as of time, {t.shape}, at least 15")
+    if not np.all(np.diff(t) > 0.0):
+        raise InvalidArgumentError("time", f"a step of {np.diff(t).min():g} s", "ascending times")
+    if np.abs(theta).max() > MAX_ROTATION:
+        raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
+    return t, theta, integer("edges", edges, 1, 2)
+
+
+def _rest(theta: Array) -> tuple[float, float]:
+    """Rotation at rest and noise, from third differences: the median at the end, the middle of a body that rocks on."""
+    noise = float(np.median(np.abs(np.diff(theta, 3))) / (0.6745 * math.sqrt(20.0)))  # of normal errors
+    end, half = theta[-max(theta.size // 10, 3) :], theta[theta.size // 2 :]
+    return float(np.median(end) if np.std(end) < LEVEL * noise else 0.5 * (half.max() + half.min())), noise
+
+
+def _flights(t: Array, theta: Array, noise: float) -> tuple[list[NDArray[np.intp]], Array]:
+    """Samples of each flight that stands out, in order, and the times of the impacts between them.
+
+    An impact lies between the roots of the parabolas of two flights. The first flight, which may begin in a hand, is no
+    parabola.
+    """
+    threshold = LEVEL * max(noise, 1e-9 * float(np.abs(theta).max()))
+    above = np.flatnonzero(np.abs(theta) > 0.5 * threshold)
+    runs = np.split(above, np.flatnonzero(np.diff(np.sign(theta[above]))) + 1)
+    stands_out = [run.size >= MIN_SAMPLES and bool(np.abs(theta[run]).max() > threshold) for run in runs]
+    first = stands_out.index(True) if any(stands_out) else len(runs)
+    count = next((k for k, one in enumerate(stands_out[first:]) if not one), len(runs) - first)
+    flights = runs[first : first + min(count, MAX_FLIGHTS)]
+    if len(flights) < 2:
+        return flights, np.empty(0)
+    roots = [np.sort(np.roots(np.polyfit(t[run] - t[run[0]], theta[run], 2)).real) + t[run[0]] for run in flights]
+    before = [t[flights[0][-1]], *(ends[-1] for ends in roots[1:-1])]
+    between = [0.5 * (end + ends[0]) for end, ends in zip(before, roots[1:], strict=True)]
+    low, high = ([t[run[place]] for run in part] for place, part in ((-1, flights[:-1]), (0, flights[1:])))
+    return flights, np.clip(between, low, high)
+
+
+def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Array]:
+    """First values of all unknowns, one set for each share of alpha that the first peak may be.
+
+    p is from peaks and times of flight, in the slender limit (2/p) arccosh(1/(1 - theta_n/alpha)); eta from the peaks.
+    """
+    size, duration = np.abs(peaks), np.diff(impacts)
+    found = []
+    for share in START_SHARES:
+        alpha = size.max() / share
+        rates = 2.0 * np.arccosh(1.0 / (1.0 - size[1:-1] / alpha)) / duration
+        barrier = 1.0 - (1.0 - size / alpha) ** 2
+        eta = float(np.clip(np.sqrt(np.median(barrier[1:] / barrier[:-1])), 0.3, 0.99))
+        edges = np.repeat([math.log(alpha), math.log(np.median(rates)), eta], sides)
+        found.append(np.concatenate([[offset, impacts[0], size[0] / alpha], edges]))
+    return found
+
+
+def _misfit(t: Array, theta: Array, sign: float, sides: int, flights: int, x: Array) -> Array:
+    return _trace(t, x, sign, sides, flights)[0] - theta
+
+
+def _fitted(misfit: Callable[[Array], Array], x: Array) -> OptimizeResult:
+    sides = (x.size - 3) // 3
+    low = [-1.0, -np.inf, 1e-6, *[-12.0] * sides, *[-5.0] * sides, *[0.0] * sides]
+    high = [1.0, np.inf, HIGHEST_SHARE, *[math.log(MAX_ROTATION)] * sides, *[6.0] * sides, *[1.0] * sides]
+    inside = np.clip(x, np.add(low, 1e-7), np.subtract(high, 1e-7))
+    return least_squares(misfit, inside, bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12)
+
+
+def _trace(t: Array, x: Array, sign: float, sides: int, flights: int) -> tuple[Array, Array]:
+    """Rotation at times t (samples,), and times of the impacts (flights - 1,), from all unknowns.
+
+    x: offset, time of the first impact, peak before it over alpha, and of each edge ln alpha, ln p, eta.
+    """
+    offset, impact, share = x[:3]
+    alpha, p = np.exp(x[3 : 3 + sides]), np.exp(x[3 + sides : 3 + 2 * sides])
+    eta = x[3 + 2 * sides :]
+    side = 0 if sign > 0.0 else sides - 1
+    phi = float(alpha[side]) * (1.0 - share)
+    theta = np.full(t.shape, offset)
+    impacts = np.empty(flights)
+    begin = -math.inf
+    for k in range(flights):
+        m = math.cos(0.5 * phi) ** 2
+        lowest = math.sin(0.5 * phi)
+        edge = math.sin(0.5 * alpha[side])
+        dn = min(lowest / edge, 1.0)
+        half = float(ellipkinc(math.asin(math.sqrt(max(1.0 - dn * dn, 0.0) / m)), m)) / p[side]
+        centre = impact - half if k == 0 else begin + half
+        end = centre + half
+        inside = (t > begin) & ((t <= end) if k < flights - 1 else True)
+        shape = ellipj(np.clip(p[side] * (t[inside] - centre), -1e3, 1e3), m)[2]
+        theta[inside] += sign * (alpha[side] - 2.0 * np.arcsin(np.clip(lowest / shape, 0.0, 1.0)))
+        impacts[k] = begin = end
+        energy = p[side] ** 2 * (math.cos(phi) - math.cos(alpha[side]))
+        side, sign = sides - 1 - side if sides == 2 else 0, -sign
+        cosine = math.cos(alpha[side]) + eta[side] ** 2 * max(energy, 0.0) / p[side] ** 2
+        phi = max(math.acos(min(cosine, 1.0)), (1.0 - HIGHEST_SHARE) * float(alpha[side]))
+    return theta, impacts[:-1]
+
+
+def _described(
+    t: Array,
+    theta: Array,
+    used: NDArray[np.bool_],
+    model: Array,
+    impacts: Array,
+    fit: OptimizeResult,
+    sides: int,
+    level: float,
+) -> xr.Dataset:
+    """The result, with intervals from the Jacobian."""
+    freedom = model.size - fit.x.size
+    variance = 2.0 * fit.cost / freedom
+    inverse = np.linalg.pinv(fit.jac)
+    deviation = np.sqrt(variance * (inverse**2).sum(axis=1))
+    reach = float(student.ppf(0.5 * (1.0 + level), freedom)) * deviation
+    fitted = np.full(t.shape, np.nan)
+    fitted[used] = model
+    found = xr.Dataset(
+        {
+            "rotation": ("time", theta, {"units": "rad", "long_name": "measured rotation"}),
+            "fitted": ("time", fitted, {"units": "rad", "long_name": "rotation of the fitted body"}),
+            "residual": ("time", theta - fitted, {"units": "rad", "long_name": "measured less fitted rotation"}),
+            "impact_time": ("impact", impacts, {"units": "s", "long_name": "times of the impacts"}),
+            "offset": ((), fit.x[0], {"units": "rad", "long_name": "rotation of the body at rest"}),
+            "noise": ((), math.sqrt(variance), {"units": "rad", "long_name": "standard deviation of the residual"}),
+        },
+        {
+            "time": ("time", t, {"units": "s", "long_name": "time"}),
+            "edge": ("edge", ["both"] if sides == 1 else ["right", "left"], {"long_name": "edge of rotation"}),
+        },
+        {"confidence": level, "samples": int(used.sum())},
+    )
+    for k, (name, unit, meaning) in enumerate(
+        [("alpha", "rad", "slenderness angle"), ("frequency_parameter", "rad s-1", "frequency parameter p"),
+         ("restitution", "1", "coefficient of restitution eta of impacts after which it turns on the edge")]
+    ):  # fmt: skip
+        own = slice(3 + k * sides, 3 + (k + 1) * sides)
+        for suffix, shift in (("", 0.0), ("_lower", -reach[own]), ("_upper", reach[own])):
+            values = fit.x[own] + shift
+            about = {"units": unit, "long_name": meaning + (", end of the interval" if suffix else "")}
+            found[name + suffix] = ("edge", values if name == "restitution" else np.exp(values), about)
+    return found

@@ -1,0 +1,44 @@
+"""A measured free rocking, the body fitted to it, and what is left."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from rocking._base.errors import InvalidArgumentError
+from rocking.plot.style import BLUE, GREY, VERMILION, axes_of, label_of
+
+
+def free_rocking(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
+    """Draw the measured and the fitted rotation, the impacts, and the residual around zero, all in degrees.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `rocking.identify_free_rocking`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default in a new figure.
+    **style
+        Properties of the fitted line.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If `data` is anything else.
+    """
+    if not {"rotation", "fitted", "residual", "impact_time"} <= data.keys():
+        raise InvalidArgumentError("data", sorted(map(str, data)), "a result of rocking.identify_free_rocking")
+    ax = axes_of(ax)
+    time, offset = data["time"], float(data["offset"])
+    impacts = data["impact_time"].values
+    ax.plot(time, np.degrees(data["rotation"]), ".", color=GREY, markersize=3, label="measured")
+    ax.plot(time, np.degrees(data["fitted"]), **({"color": BLUE} | style), label="fitted")
+    ax.plot(impacts, np.full(impacts.size, math.degrees(offset)), "o", color=VERMILION, markersize=2.5, label="impact")
+    ax.plot(time, np.degrees(data["residual"]), color=VERMILION, linewidth=0.6, label="residual")
+    ax.set(xlabel=label_of(time), ylabel=r"rotation $\theta$ [deg]", xlim=(float(time[0]), float(time[-1])))
+    ax.legend()
+    return ax

@@ -1,0 +1,41 @@
+"""`rocking identify`: text, JSON and CSV, degrees, and errors that name the file."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+from rocking._evidence.free_rocking import identify_free_rocking
+from tests.cli.test_cli import refused, run
+from tests.evidence.test_free_rocking import trace
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "trace.csv"
+    np.savetxt(path, np.column_stack(trace()), delimiter=",", header="time,rotation", comments="")
+    return path
+
+
+def test_three_formats_hold_the_fit(file):
+    expected = identify_free_rocking(*trace())["alpha"].item()
+    assert json.loads(run("identify", str(file), "--json"))["alpha"] == pytest.approx([expected], rel=1e-6)
+    (row,) = csv.DictReader(io.StringIO(run("identify", str(file), "--csv")))
+    assert float(row["alpha"]) == pytest.approx(expected, rel=1e-6)
+    assert "alpha [rad]" in run("identify", str(file))
+
+
+def test_degrees(file):
+    time, rotation = trace()
+    np.savetxt(file, np.column_stack([time, np.degrees(rotation)]), delimiter=",")
+    found = json.loads(run("identify", str(file), "--json", "--degrees"))
+    assert found["alpha"] == pytest.approx([0.25], rel=1e-3)
+    assert "degrees" in refused("identify", str(file))
+
+
+def test_errors_name_the_file(file):
+    assert "No such file" in refused("identify", str(file.with_name("none.csv")))
+    file.write_text("1\n2\n3\n")
+    assert "one column" in refused("identify", str(file))

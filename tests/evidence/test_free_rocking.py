@@ -1,0 +1,96 @@
+"""Blocks from traces of free rocking that an independent integration makes."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import rocking
+from benchmarks.accuracy.free_rocking import NAMES, errors, free_rocking
+from rocking._base.errors import InvalidArgumentError
+from rocking._evidence.free_rocking import identify_free_rocking
+
+ALPHA, P, ETA = 0.25, 2.5, 0.9
+
+
+def trace(rate=100, held=20, duration=6.0, start=0.2):
+    clean = free_rocking(np.array([start]), ALPHA, P, ETA, duration, rate)[0]
+    rotation = np.concatenate([np.full(held, start), clean])
+    return np.arange(rotation.size) / rate, rotation
+
+
+@pytest.mark.parametrize("start", [0.2, -0.1])
+def test_a_trace_without_noise_gives_the_block(start):
+    found = identify_free_rocking(*trace(start=start))
+    assert found["restitution"].item() == pytest.approx(ETA, abs=1e-5)
+    assert found["alpha"].item() == pytest.approx(ALPHA, rel=1e-4)
+    assert found["frequency_parameter"].item() == pytest.approx(P, rel=1e-4)
+    assert found["edge"].item() == "both"
+    assert np.nanmax(np.abs(found["residual"])) < 1e-4
+
+
+def test_the_first_impact_is_where_the_equation_of_motion_has_it():
+    time, rotation = trace()
+    hit = solve_ivp(
+        lambda _, y: [y[1], -P * P * np.sin(ALPHA - y[0])], (0.0, 3.0), [0.2, 0.0], rtol=1e-10, atol=1e-12,
+        events=lambda _, y: y[0],
+    ).t_events[0][0]  # fmt: skip
+    assert identify_free_rocking(time, rotation)["impact_time"][0].item() == pytest.approx(0.2 + hit, abs=1e-5)
+
+
+def test_peaks_obey_the_energy_of_housner():
+    found = identify_free_rocking(*trace())
+    fitted, impacts = found["fitted"].dropna("time"), found["impact_time"].values
+    peaks = [np.abs(fitted.sel(time=slice(*ends))).max().item() for ends in pairwise(impacts)]
+    energy = np.cos(ALPHA - np.array([0.2, *peaks[:5]])) - np.cos(ALPHA)
+    np.testing.assert_allclose(energy[1:] / energy[:-1], ETA**2, rtol=3e-3)  # peaks lie between samples
+
+
+def test_two_edges_give_their_own_numbers():
+    alpha, p, eta = np.array([[0.2], [0.3]]), np.array([[2.2], [2.4]]), np.array([[0.93], [0.88]])
+    rotation = free_rocking(np.array([0.16]), alpha, p, eta, 6.0, 200)[0]
+    noisy = rotation + 2e-4 * np.random.default_rng(5).normal(size=rotation.size)
+    found = identify_free_rocking(np.arange(noisy.size) / 200, noisy, edges=2)
+    assert found["edge"].values.tolist() == ["right", "left"]
+    for name, true in (("alpha", alpha), ("frequency_parameter", p), ("restitution", eta)):
+        np.testing.assert_allclose(found[name], true[:, 0], rtol=0.02)
+
+
+def test_a_tenth_of_the_benchmark_is_within_its_bounds():
+    found, within = errors(20, 4)
+    assert np.abs(found).max(axis=0) == pytest.approx([0.0, 0.0, 0.0], abs=0.05)
+    assert np.abs(found[:, 0]).max() < 0.01
+    assert np.all(within.mean(axis=0) > 0.75)
+    assert NAMES[0] == "restitution"
+
+
+def test_wider_confidence_widens_the_intervals():
+    time, rotation = trace()
+    noisy = rotation + 1e-3 * np.random.default_rng(2).normal(size=rotation.size)
+    narrow, wide = (identify_free_rocking(time, noisy, confidence=level) for level in (0.5, 0.99))
+    assert wide["alpha_lower"] < narrow["alpha_lower"] < narrow["alpha"] < narrow["alpha_upper"] < wide["alpha_upper"]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda t, y: (t, np.degrees(y)), "degrees"),
+        (lambda t, y: (t, 0.06 * np.degrees(y)), "degrees"),
+        (lambda t, y: (t[:120], y[:120]), "impacts"),
+        (lambda t, y: (t, np.full(y.size, 0.1)), "0 impacts"),
+        (lambda t, y: (t[::-1], y), "ascending"),
+        (lambda t, y: (t[:10], y[:10]), "at least 15"),
+        (lambda t, y: (t, np.where(t > 1.0, np.nan, y)), "nan"),
+    ],
+)
+def test_refusals(change, message):
+    with pytest.raises(InvalidArgumentError, match=message):
+        identify_free_rocking(*change(*trace()))
+
+
+def test_a_vibration_that_is_no_rocking_is_refused():
+    time = np.arange(0.0, 6.0, 0.01)
+    with pytest.raises(InvalidArgumentError, match=r"free rocking|degrees"):
+        identify_free_rocking(time, 0.1 * np.sin(5.0 * time) + 0.1 * np.sin(13.0 * time))
+    assert rocking.identify_free_rocking is identify_free_rocking
