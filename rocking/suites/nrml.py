@@ -1,0 +1,104 @@
+"""Fragility curves for other programs: NRML 0.5, the format of OpenQuake.
+
+The curves of a suite are not monotone, so that they are written with `format="discrete"`, the probabilities at the
+levels. On request the lognormal fits are written with `format="continuous"`, `shape="logncdf"`. OpenQuake takes the
+mean m and the standard deviation s of the intensity itself there, not of its logarithm: its function
+`openquake.risklib.scientific.FragilityFunctionContinuous` computes beta^2 = ln(1 + s^2/m^2) and the median
+m^2/sqrt(m^2 + s^2). For a median x and a dispersion beta therefore m = x exp(beta^2/2), s = m sqrt(exp(beta^2) - 1). Its
+unit of PGA is g, of PGV cm/s.
+"""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from os import PathLike
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError, one_of
+from rocking.suites.fits import FitStatus, fit_curve
+
+NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
+
+TYPES = {"pga": ("PGA", STANDARD_GRAVITY), "pgv": ("PGV", 0.01)}
+"""Intensity measure types of OpenQuake for those of this package that a hazard curve has, with their units in SI."""
+
+STEP_DISPERSION = 1e-3
+"""Dispersion that is written for a step [-], such as uplift over the PGA: OpenQuake has no curve of dispersion 0."""
+
+LIMIT_STATES = ("rocks", "overturns")
+
+
+def write_nrml(
+    fragility: xr.Dataset,
+    path: str | PathLike[str],
+    *,
+    format: Literal["discrete", "lognormal"] = "discrete",  # noqa: A002  # the word of NRML
+    description: str = "rocking of free-standing blocks",
+) -> None:
+    """Write the fragility of blocks as a fragility model of OpenQuake, limit states rocks and overturns.
+
+    Parameters
+    ----------
+    fragility : xarray.Dataset
+        Result of `rocking.fragility`, with the measure pga or pgv; one function for each block, `block-1` and so on.
+    path : path
+        The file, written anew.
+    format : {"discrete", "lognormal"}
+        Fractions at the levels, or curves fitted to them. OpenQuake's curve is zero below the lowest level written and
+        constant above the highest one.
+    description : str
+        A text for the file.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the measure has no counterpart, there is one level only, or a fit does not exist.
+    """
+    one_of("format", format, ("discrete", "lognormal"))
+    measure = fragility.attrs.get("measure", "")
+    if measure not in TYPES:
+        raise InvalidArgumentError("fragility", measure, "a fragility with the measure pga or pgv")
+    name, unit = TYPES[measure]
+    data = fragility if "block" in fragility.dims else fragility.expand_dims("block")
+    levels = data["intensity"].values
+    if levels.size < 2:
+        raise InvalidArgumentError("fragility", f"{levels.size} level", "two levels at least")
+    outcomes = data[["overturned", "peak_rotation"]].transpose("block", "intensity", "record")
+    overturns = outcomes["overturned"].values.astype(bool)
+    rocks = overturns | (outcomes["peak_rotation"].values > 0.0)
+    root = ET.Element("nrml", xmlns=NAMESPACE)
+    model = ET.SubElement(root, "fragilityModel", id="rocking", assetCategory="contents", lossCategory="contents")
+    ET.SubElement(model, "description").text = description
+    ET.SubElement(model, "limitStates").text = " ".join(LIMIT_STATES)
+    shape = {"format": "discrete"} if format == "discrete" else {"format": "continuous", "shape": "logncdf"}
+    for k in range(overturns.shape[0]):
+        function = ET.SubElement(model, "fragilityFunction", attrib={"id": f"block-{k + 1}", **shape})
+        limits = {"imt": name, "noDamageLimit": f"{levels[0] / unit:.9g}"}
+        if format == "discrete":
+            ET.SubElement(function, "imls", limits).text = _numbers(levels / unit)
+        else:
+            ends = {"minIML": f"{levels[0] / unit:.9g}", "maxIML": f"{levels[-1] / unit:.9g}"}
+            ET.SubElement(function, "imls", limits | ends)
+        for state, reached in zip(LIMIT_STATES, (rocks[k], overturns[k]), strict=True):
+            if format == "discrete":
+                ET.SubElement(function, "poes", ls=state).text = _numbers(reached.mean(axis=1))
+                continue
+            fit = fit_curve(reached, levels, model="lognormal")
+            if fit.status not in (FitStatus.FITTED, FitStatus.SEPARATED):
+                raise InvalidArgumentError("format", format, f"discrete: block-{k + 1} {state}: {fit.status.sentence}")
+            beta = max(fit.dispersion, STEP_DISPERSION)
+            mean = fit.median / unit * math.exp(0.5 * beta**2)
+            deviation = mean * math.sqrt(math.expm1(beta**2))
+            ET.SubElement(function, "params", ls=state, mean=f"{mean:.9g}", stddev=f"{deviation:.9g}")
+    ET.indent(root)
+    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _numbers(values: NDArray[np.float64]) -> str:
+    return " ".join(f"{value:.9g}" for value in values)

@@ -1,0 +1,80 @@
+"""Fragility models in NRML 0.5, read with the rules of OpenQuake's reader."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from scipy.stats import lognorm
+
+import rocking
+from rocking._base.errors import InvalidArgumentError
+from rocking.suites.nrml import write_nrml
+from tests.suites.motions import noise
+
+BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.3, 1.0)]
+LEVELS = np.geomspace(1.0, 60.0, 15)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return rocking.fragility([noise(k) for k in range(8)], BLOCKS, intensity=LEVELS)
+
+
+def read(path):
+    """Functions by identity as OpenQuake evaluates them (risklib.nrml.ffconvert, risklib.scientific)."""
+    space = "{http://openquake.org/xmlns/nrml/0.5}"
+    (model,) = ET.parse(path).getroot()
+    assert model.tag == f"{space}fragilityModel"
+    assert {"id", "assetCategory", "lossCategory"} <= set(model.keys())
+    states = model[1].text.split()
+    result = {}
+    for function in model[2:]:
+        imls, *parts = function
+        assert [part.get("ls") for part in parts] == states
+        curves = {}
+        for part in parts:
+            if function.get("format") == "discrete":
+                x, poes = (np.array(text.split(), dtype=float) for text in (imls.text, part.text))
+                assert x.shape == poes.shape
+                assert np.all(np.diff(x) > 0.0)
+                assert np.all((poes >= 0.0) & (poes <= 1.0))
+                curves[part.get("ls")] = lambda im, x=x, poes=poes: np.interp(im, x, poes)
+            else:
+                mean, deviation = float(part.get("mean")), float(part.get("stddev"))
+                sigma = np.sqrt(np.log(deviation**2 / mean**2 + 1.0))
+                median = mean**2 / np.sqrt(deviation**2 + mean**2)
+                curves[part.get("ls")] = lambda im, s=sigma, m=median: lognorm.cdf(im, s, scale=m)
+        result[function.get("id"), imls.get("imt")] = curves
+    return result
+
+
+def test_discrete_functions_are_the_fractions_over_g(found, tmp_path):
+    write_nrml(found, tmp_path / "model.xml")
+    functions = read(tmp_path / "model.xml")
+    assert functions.keys() == {("block-1", "PGA"), ("block-2", "PGA")}
+    for k in range(2):
+        curves = functions[f"block-{k + 1}", "PGA"]
+        overturns = curves["overturns"](LEVELS / 9.80665)
+        np.testing.assert_allclose(overturns, found["fraction"].isel(block=k), atol=1e-8)
+        rocks = curves["rocks"](LEVELS / 9.80665)
+        np.testing.assert_allclose(rocks, LEVELS / BLOCKS[k].uplift_acceleration > 1.0, atol=1e-6)
+        assert np.all(rocks >= overturns - 1e-6)
+
+
+def test_lognormal_functions_are_the_fitted_curves(found, tmp_path):
+    write_nrml(found, tmp_path / "model.xml", format="lognormal")
+    curves = read(tmp_path / "model.xml")["block-1", "PGA"]
+    fit = found.sel(model="lognormal").isel(block=0)
+    np.testing.assert_allclose(curves["overturns"](LEVELS / 9.80665), fit["fitted"], atol=1e-7)
+    rocks = curves["rocks"](LEVELS / 9.80665)
+    np.testing.assert_allclose(rocks, LEVELS / BLOCKS[0].uplift_acceleration > 1.0, atol=1e-9)
+
+
+def test_refusals(found, tmp_path):
+    strong = rocking.fragility(noise(1), BLOCKS, intensity=[100.0, 200.0])
+    with pytest.raises(InvalidArgumentError, match="below the lowest level"):
+        write_nrml(strong, tmp_path / "model.xml", format="lognormal")
+    with pytest.raises(InvalidArgumentError, match="pga or pgv"):
+        write_nrml(found.assign_attrs(measure="pga_ratio"), tmp_path / "model.xml")
+    with pytest.raises(InvalidArgumentError, match="format"):
+        write_nrml(found, tmp_path / "model.xml", format="logistic")
