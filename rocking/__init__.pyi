@@ -14,6 +14,8 @@ from ._dimensional.block import Block as Block
 from ._dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._evidence.free_rocking import identify_free_rocking as identify_free_rocking
+from ._evidence.old_rocks import survival as survival
+from ._evidence.old_rocks import unexceeded as unexceeded
 from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from ._excitation.pulses import SinusoidalPulse as SinusoidalPulse
 from ._excitation.pulses import SmoothPulse as SmoothPulse

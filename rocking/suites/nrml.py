@@ -4,8 +4,8 @@ The curves of a suite are not monotone, so that they are written with `format="d
 levels. On request the lognormal fits are written with `format="continuous"`, `shape="logncdf"`. OpenQuake takes the
 mean m and the standard deviation s of the intensity itself there, not of its logarithm: its function
 `openquake.risklib.scientific.FragilityFunctionContinuous` computes beta^2 = ln(1 + s^2/m^2) and the median
-m^2/sqrt(m^2 + s^2). For a median x and a dispersion beta therefore m = x exp(beta^2/2), s = m sqrt(exp(beta^2) - 1). Its
-unit of PGA is g, of PGV cm/s.
+m^2/sqrt(m^2 + s^2). For a median x and a dispersion beta therefore m = x exp(beta^2/2), s = m sqrt(exp(beta^2) - 1).
+Its unit of PGA is g, of PGV cm/s.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ NUMBERS: dict[str, Any] = {
     "width": 0.5, "height": 2.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
     "frequency_parameter": 2.0, "pulse_frequency": 10.0, "cycles": 2.0, "phase": 0.5,
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
-    "vertical_scale": 1.0, "periods": [0.5, 0.1], "damping": 0.1, "participation": [1.3, -0.3], "tail": 1.0,
+    "vertical_scale": 1.0, "years": 100.0, "annual_rate": [1e-2, 1e-4], "probability": 0.9, "periods": [0.5, 0.1], "damping": 0.1, "participation": [1.3, -0.3], "tail": 1.0,
     "intensity": [3.0, 9.0], "demand": 0.5, "confidence": 0.9, "restitution_step": 0.05,
     "hazard_curve": ([1.0, 10.0], [1e-2, 1e-4]),
     "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,
@@ -97,6 +97,9 @@ FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.
 OBJECTS: dict[str, Any] = {
     "pulse": "sine", "motion": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
     "record": RECORD, "records": [RECORD, noise(2)], "blocks": BLOCK, "column": BLOCK,
+    "pulse": "sine", "excitation": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
+    "motion": RECORD, "record": RECORD, "records": [RECORD, noise(2)], "blocks": BLOCK, "body": BLOCK,
+    "motions": [noise(k) for k in range(4)], "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
     "fragility": FRAGILITY, "argument": Orientation.L0,
     "group_set": GroupSet.RIGID_SMALL_ROTATION, "problem": Problem(0.3, 2.0, 5.0, 10.0), "groups": Groups(5.0, 0.6),

@@ -178,6 +178,14 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         [{"motion": "sine", "duration": 5.0, "samples": 10} | PROBLEM,
          {"motion": UPWARDS, "vertical_scale": 1.0, "duration": 5.0, "samples": 10} | OF_RECORD],
     ),
+    "record_response": (rocking.peak_response, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
+    "survival": (
+        rocking.survival,
+        [{"fragility": None, "intensity": [1.0, 2.0], "annual_rate": [1e-2, 1e-3], "years": 10.0}],
+    ),
+    "unexceeded": (rocking.unexceeded, [{"body": BLOCK, "motions": [RECORD], "probability": 0.9}]),
+    "suite_sensitivity": (rocking.suites.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
+    "time_history": (rocking.time_history, [{"pulse": "sine", "duration": 5.0, "samples": 10} | PROBLEM]),
 }  # fmt: skip
 """Public functions with arguments that they accept."""
 

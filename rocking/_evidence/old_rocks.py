@@ -1,0 +1,135 @@
+"""What rocks that still stand say about the hazard: probabilities of survival, and motions that they have not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.special import ndtri
+
+from rocking._base.errors import InvalidArgumentError, in_range, number
+from rocking._base.units import Scalar
+from rocking._dimensional.record_scales import scale_thresholds
+from rocking._excitation.records.record import Record
+from rocking._model.block import AbstractBlock
+from rocking.suites.hazard import annual_rate as rate_of
+
+MAX_YEARS = 1e9
+"""Longest age of a rock [year]."""
+
+
+def survival(fragility: xr.Dataset, *, intensity: ArrayLike, annual_rate: ArrayLike, years: Scalar) -> xr.Dataset:
+    """Probability that a rock has stood for some years, under each branch of a hazard model.
+
+    Overturning by earthquakes is a Poisson process of the rate nu = integral of P(x) abs(dH(x)), as
+    `rocking.suites.annual_rate` has it, so that the probability of none in t years is exp(-nu t) (Brune 1996; Baker et al.
+    2013, eq. 1). A branch under which it is small contradicts the rock.
+
+    Parameters
+    ----------
+    fragility : xarray.Dataset
+        Result of `rocking.fragility`; its fitted curves are used.
+    intensity : array_like (levels,)
+        Intensities of the hazard curves, at least two, > 0, ascending, in the measure and unit of the fragility.
+    annual_rate : array_like (levels,) or (branches, levels)
+        Annual rates of exceedance [1/year], > 0, not increasing, of one branch or of several.
+    years : float
+        Age of the rock in its present form [year], [0, 1e9].
+
+    Returns
+    -------
+    xarray.Dataset
+        `survival` [-] and `annual_rate` [1/year] over `branch` and the dimensions of the medians of the fragility; nan
+        where there is no curve. `survival_lower`, if every intensity above the highest one overturns the rock.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described.
+
+    References
+    ----------
+    Brune J. N. (1996), Precariously balanced rocks and ground-motion maps for Southern California, Bulletin of the
+    Seismological Society of America 86(1A), 43-54. Baker J. W., Abrahamson N. A., Whitney J. W., Board M. P., Hanks
+    T. C. (2013), Use of fragile geologic structures as indicators of unexceeded ground motions and direct constraints
+    on probabilistic seismic hazard analysis, Bulletin of the Seismological Society of America 103(3), 1898-1911.
+    """
+    time = number("years", years, 0.0, MAX_YEARS, unit="year")
+    rates = np.atleast_2d(in_range("annual_rate", annual_rate, 0.0, np.inf, closed="neither", unit="1/year"))
+    if rates.ndim != 2:
+        raise InvalidArgumentError("annual_rate", rates.shape, "shape (levels,) or (branches, levels)")
+    found = xr.concat([rate_of(fragility, (intensity, branch)) for branch in rates], "branch")
+    result = xr.Dataset(
+        {
+            "annual_rate": found["annual_rate"],
+            "survival": np.exp(-time * found["annual_rate"]),
+            "survival_lower": np.exp(-time * found["annual_rate_upper"]),
+        },
+        attrs={"years": time, "measure": fragility.attrs.get("measure", "")},
+    )
+    for name in ("survival", "survival_lower"):
+        result[name].attrs = {"units": "1", "long_name": "probability that the rock has not been overturned"}
+    return result if np.ndim(annual_rate) > 1 else result.isel(branch=0)
+
+
+def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: Scalar = 0.95) -> xr.Dataset:
+    """Pairs of PGA and PGV that a rock that stands has, with a probability, not seen.
+
+    Every record is scaled to the lowest factor at which it overturns the rock. The logarithm of its PGA there is fitted
+    by a line over that of PGV/PGA, which scaling does not change, ln PGA = a + b ln(PGV/PGA), with a standard deviation
+    s (Purvance et al. 2008). At the ratio of each record the pair that overturns with the probability P is that of
+    a + b ln(PGV/PGA) + s z(P), z the quantile of the normal distribution.
+
+    Parameters
+    ----------
+    body : Block
+        The rock.
+    motions : sequence of Record
+        At least four records that overturn it, of different PGV/PGA.
+    probability : float
+        P that a motion of the pair overturns the rock [-], (0, 1).
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `record`: `overturning_acceleration` [m/s2] and `overturning_velocity` [m/s] of the scaled records, nan for
+        one that does not overturn the rock up to ten times the scale of uplift; `unexceeded_acceleration` and
+        `unexceeded_velocity` of the line; and `intercept`, `slope` and `dispersion` [-], a (for PGA in m/s2, PGV/PGA in
+        s), b and s.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described, or too few records overturn the rock.
+
+    References
+    ----------
+    Purvance M. D., Anooshehpoor A., Brune J. N. (2008), Freestanding block overturning fragilities: numerical simulation
+    and experimental validation, Earthquake Engineering & Structural Dynamics 37(5), 791-808.
+    """
+    share = number("probability", probability, 0.0, 1.0, closed="neither")
+    pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))
+    lowest = np.array([next(iter(scale_thresholds(one, body).scale.tolist()), np.nan) for one in motions])
+    over = np.isfinite(lowest)
+    x, y = np.log(pgv / pga), np.log(lowest * pga)
+    if over.sum() < 4 or np.ptp(x[over]) == 0.0:
+        allowed = "four records or more that overturn the rock, of different PGV/PGA"
+        raise InvalidArgumentError("motions", f"{over.sum()} records that overturn it", allowed)
+    slope, intercept = np.polyfit(x[over], y[over], 1)
+    line = intercept + slope * x
+    dispersion = float(np.sqrt(((y - line)[over] ** 2).sum() / (over.sum() - 2)))
+    level = np.exp(line + dispersion * ndtri(share))
+    names = {
+        "overturning_acceleration": ("m s-2", lowest * pga, "PGA of the record at the lowest factor that overturns"),
+        "overturning_velocity": ("m s-1", lowest * pgv, "PGV of the record at the lowest factor that overturns"),
+        "unexceeded_acceleration": ("m s-2", level, "PGA that overturns with the probability"),
+        "unexceeded_velocity": ("m s-1", level * pgv / pga, "PGV that overturns with the probability"),
+    }
+    return xr.Dataset(
+        {name: ("record", values, {"units": unit, "long_name": text}) for name, (unit, values, text) in names.items()}
+        | {"intercept": ((), intercept), "slope": ((), slope), "dispersion": ((), dispersion)},
+        {"record": ("record", [one.name for one in motions])},
+        {"probability": share},
+    )

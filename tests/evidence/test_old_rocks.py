@@ -1,0 +1,50 @@
+"""Survival of old rocks: worked by hand for a step, and records at the scale that overturns."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rocking
+from rocking._base.errors import InvalidArgumentError
+from rocking._evidence.old_rocks import survival, unexceeded
+from tests.suites.motions import noise
+
+STEP = xr.Dataset({"median_intensity": ("model", [4.0]), "dispersion": ("model", [0.0])}, {"model": ["lognormal"]})
+
+
+def test_a_rock_that_falls_above_an_intensity_worked_by_hand():
+    """H = 1e-3 (2/x)^2 a year: of x > 4 there are 2.5e-4 a year, less those above 20, 1e-5: exp(-2.4e-4 x 10,000)."""
+    x = np.array([1.0, 2.0, 5.0, 20.0])
+    rate = 1e-3 * (2.0 / x) ** 2
+    found = survival(STEP, intensity=x, annual_rate=np.stack([rate, 0.1 * rate]), years=1e4)
+    np.testing.assert_allclose(found["annual_rate"].sel(model="lognormal"), [2.5e-4, 2.5e-5], rtol=6e-3)
+    np.testing.assert_allclose(found["survival"].sel(model="lognormal"), [math.exp(-2.5), math.exp(-0.25)], rtol=2e-2)
+    alone = survival(STEP, intensity=x, annual_rate=rate, years=1e4)
+    assert "branch" not in alone.dims
+    xr.testing.assert_allclose(alone["survival"], found["survival"].isel(branch=0))
+    assert survival(STEP, intensity=x, annual_rate=rate, years=0.0)["survival"].item() == 1.0
+
+
+def test_pairs_that_overturn_are_those_of_the_thresholds():
+    block = rocking.Block(0.4, 1.6)
+    motions = [noise(k) for k in range(5)]
+    found = unexceeded(block, motions, probability=0.5)
+    first = block.response(motions[0]).thresholds.scale[0]
+    assert found["overturning_acceleration"][0].item() == pytest.approx(first * motions[0].peak_acceleration)
+    assert np.log(found["overturning_acceleration"]).mean().item() == pytest.approx(
+        np.log(found["unexceeded_acceleration"]).mean().item()
+    )
+    more = unexceeded(block, motions, probability=0.95)
+    ratio = np.log(more["unexceeded_velocity"] / found["unexceeded_velocity"])
+    np.testing.assert_allclose(ratio, 1.6448536 * found["dispersion"], rtol=1e-6)
+
+
+def test_refusals():
+    with pytest.raises(InvalidArgumentError, match="years"):
+        survival(STEP, intensity=[1.0, 2.0], annual_rate=[1e-2, 1e-3], years=-1.0)
+    with pytest.raises(InvalidArgumentError, match="annual_rate"):
+        survival(STEP, intensity=[1.0, 2.0], annual_rate=[1e-2, math.nan], years=1.0)
+    with pytest.raises(InvalidArgumentError, match="four records"):
+        unexceeded(rocking.Block(0.4, 1.6), [noise(1), noise(2)])
