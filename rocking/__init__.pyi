@@ -13,6 +13,7 @@ from ._boundary.tracing import overturning_boundary as overturning_boundary
 from ._dimensional.block import Block as Block
 from ._dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
 from ._dimensional.rigid_body import RigidBody as RigidBody
+from ._evidence.calibration import calibrate as calibrate
 from ._evidence.free_rocking import identify_free_rocking as identify_free_rocking
 from ._evidence.old_rocks import survival as survival
 from ._evidence.old_rocks import unexceeded as unexceeded

@@ -106,8 +106,8 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
 
     References
     ----------
-    Purvance M. D., Anooshehpoor A., Brune J. N. (2008), Freestanding block overturning fragilities: numerical simulation
-    and experimental validation, Earthquake Engineering & Structural Dynamics 37(5), 791-808.
+    Purvance M. D., Anooshehpoor A., Brune J. N. (2008), Freestanding block overturning fragilities: numerical
+    simulation and experimental validation, Earthquake Engineering & Structural Dynamics 37(5), 791-808.
     """
     share = number("probability", probability, 0.0, 1.0, closed="neither")
     pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))

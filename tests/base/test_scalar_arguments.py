@@ -84,6 +84,13 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "Record.resampled": (RECORD.resampled, [{"time_step": 0.005}]),
     "paper.discounted_integral": (
         paper.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
+    "calibrate": (
+        rocking.calibrate,
+        [{"motions": [RECORD, UPWARDS], "outcomes": np.array([True, False]), "alpha": (0.1, 0.2),
+          "half_diagonal": (0.5, 1.0), "restitution": (0.8, 0.9), "points": 2, "folds": 2, "confidence": 0.9}],
+    ),
+    "closed_form.discounted_integral": (
+        closed_form.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
     ),
     "paper.first_uplift_phase": (paper.first_uplift_phase, [{"pulse": "sine", "amplitude": 2.0}]),
     "paper.impacts_in_pulse": (

@@ -15,7 +15,7 @@ STEP = xr.Dataset({"median_intensity": ("model", [4.0]), "dispersion": ("model",
 
 
 def test_a_rock_that_falls_above_an_intensity_worked_by_hand():
-    """H = 1e-3 (2/x)^2 a year: of x > 4 there are 2.5e-4 a year, less those above 20, 1e-5: exp(-2.4e-4 x 10,000)."""
+    """H = 1e-3 (2/x)^2 a year: of x > 4 there are 2.5e-4 a year, and none in 10,000 years with exp(-2.5)."""
     x = np.array([1.0, 2.0, 5.0, 20.0])
     rate = 1e-3 * (2.0 / x) ** 2
     found = survival(STEP, intensity=x, annual_rate=np.stack([rate, 0.1 * rate]), years=1e4)

@@ -1,0 +1,158 @@
+"""Parameters of a planar block from outcomes of tests on a shaking table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import xlogy
+from scipy.stats import chi2
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import InvalidArgumentError, in_range, integer, number
+from rocking._base.units import Scalar
+from rocking._excitation.records.record import Record
+from rocking._solver.records.record_response import record_response
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+SEED = 0
+"""Of the order in which tests are divided into folds."""
+
+
+def calibrate(
+    motions: Sequence[Record],
+    outcomes: ArrayLike,
+    *,
+    alpha: tuple[float, float],
+    half_diagonal: tuple[float, float],
+    restitution: tuple[float, float],
+    points: int = 12,
+    folds: int = 5,
+    confidence: Scalar = 0.95,
+) -> xr.Dataset:
+    """The block whose responses agree best with the outcomes of tests, and how well it predicts others.
+
+    A test counts as a Bernoulli trial: the model is right with the probability 1 - e, the same for all tests. The
+    likelihood (1 - e)^k e^(n - k) of k right ones among n, with its e = 1 - k/n, is evaluated on a grid, and on a
+    second one between the neighbours of the best point. The interval of a parameter holds the points whose profile
+    likelihood is within that of chi-squared with one degree of freedom (Wilks 1938). Points are not interpolated, so
+    that intervals of few points are too narrow where almost all tests are predicted right.
+
+    Parameters
+    ----------
+    motions : sequence of Record
+        Measured motions of the table, one for each test.
+    outcomes : array_like of bool (tests,)
+        Whether the body overturned.
+    alpha, half_diagonal, restitution : (float, float)
+        Ends of the grid: slenderness angle [rad], (0, 1.5]; R [m], > 0; eta [-], [0, 1]. p^2 = 3 g/(4 R).
+    points : int
+        Points along each parameter [-], 2 to 50.
+    folds : int
+        Parts of the cross validation [-], 2 to the number of tests.
+    confidence : float
+        Of the intervals [-], (0, 1).
+
+    Returns
+    -------
+    xarray.Dataset
+        `alpha` [rad], `half_diagonal` [m], `restitution` [-] of the best block, the middle one of several that are as
+        good, with `_lower` and `_upper`; `right`, its share of right outcomes. `validated`, `validated_pga` and
+        `validated_pgv`: shares of right predictions of tests that were left out of the fit (on the first grid), of the
+        model and of the best threshold of PGA and PGV.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an argument is not as described, or all tests have the same outcome.
+
+    References
+    ----------
+    Wilks S. S. (1938), The large-sample distribution of the likelihood ratio for testing composite hypotheses, Annals
+    of Mathematical Statistics 9(1), 60-62.
+    """
+    fell = np.asarray(outcomes)
+    if fell.dtype != np.bool_ or fell.shape != (len(motions),) or fell.all() or not fell.any():
+        allowed = f"{len(motions)} truth values, one for each motion, not all equal"
+        raise InvalidArgumentError("outcomes", outcomes, allowed)
+    count = integer("points", points, 2, 50)
+    parts = integer("folds", folds, 2, len(motions))
+    level = number("confidence", confidence, 0.0, 1.0, closed="neither")
+    ranges = {
+        "alpha": _ends("alpha", alpha, 1e-3, 1.5),
+        "half_diagonal": _ends("half_diagonal", half_diagonal, 1e-3, 1e4),
+        "restitution": _ends("restitution", restitution, 0.0, 1.0),
+    }
+    first = _grid([np.linspace(ends[0], ends[1], count) for ends in ranges.values()])
+    overturns = _predicted(motions, first)
+    best = _middle(first, (overturns == fell).sum(axis=1))
+    finer = []
+    for value, (low, high) in zip(best, ranges.values(), strict=True):
+        step = (high - low) / (count - 1)
+        finer.append(np.linspace(max(low, value - step), min(high, value + step), count))
+    second = _grid(finer)
+    blocks = np.concatenate([first, second])
+    right = np.concatenate([(overturns == fell).sum(axis=1), (_predicted(motions, second) == fell).sum(axis=1)])
+    best = _middle(blocks, right)
+    likelihood = xlogy(right, right / fell.size) + xlogy(fell.size - right, 1.0 - right / fell.size)
+    inside = blocks[2.0 * (likelihood.max() - likelihood) <= chi2.ppf(level, 1)]
+    found: dict[str, Any] = {"right": right.max() / fell.size}
+    for k, name in enumerate(ranges):
+        found |= {name: best[k], f"{name}_lower": inside[:, k].min(), f"{name}_upper": inside[:, k].max()}
+    pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))
+    for suffix, rules in (("", overturns), ("_pga", _above(pga)), ("_pgv", _above(pgv))):
+        found[f"validated{suffix}"] = _validated(rules, fell, parts)
+    return xr.Dataset({name: ((), float(value)) for name, value in found.items()}, attrs={"confidence": level})
+
+
+def _ends(name: str, value: tuple[float, float], low: float, high: float) -> Array:
+    ends = in_range(name, value, low, high)
+    if ends.shape != (2,) or ends[0] >= ends[1]:
+        raise InvalidArgumentError(name, value, "two ends of a range, ascending")
+    return ends
+
+
+def _grid(axes: list[Array]) -> Array:
+    return np.stack([one.ravel() for one in np.meshgrid(*axes, indexing="ij")], axis=1)
+
+
+def _predicted(motions: Sequence[Record], blocks: Array) -> Flags:
+    """Whether each block (blocks, 3) overturns under each motion: (blocks, tests)."""
+    alpha, half_diagonal, eta = blocks.T
+    p = np.sqrt(0.75 * STANDARD_GRAVITY / half_diagonal)
+    found = [
+        record_response(
+            motion,
+            frequency_parameter=p,
+            slenderness=STANDARD_GRAVITY * np.tan(alpha) / motion.peak_acceleration,
+            restitution=eta,
+            alpha=alpha,
+        ).overturned
+        for motion in motions
+    ]
+    return np.stack(found, axis=1).astype(bool)
+
+
+def _middle(blocks: Array, right: NDArray[np.intp]) -> Array:
+    """Of the blocks with most right outcomes the one next to their mean, in the units of the spread of all."""
+    equal = blocks[right == right.max()]
+    distance = (((equal - equal.mean(axis=0)) / np.ptp(blocks, axis=0)) ** 2).sum(axis=1)
+    return np.asarray(equal[distance.argmin()])
+
+
+def _above(values: Array) -> Flags:
+    """Rules that a test overturns from each of the values on, and none: (rules, tests)."""
+    return np.asarray(values >= np.append(np.sort(values), np.inf)[:, None])
+
+
+def _validated(rules: Flags, fell: Flags, folds: int) -> float:
+    """Share of right predictions of the tests of each fold by the first of the best rules on the others."""
+    fold = np.random.default_rng(SEED).permutation(fell.size) % folds
+    right = rules == fell
+    chosen = [right[right[:, fold != k].sum(axis=1).argmax()] & (fold == k) for k in range(folds)]
+    return float(np.sum(chosen) / fell.size)
