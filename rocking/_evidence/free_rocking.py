@@ -102,7 +102,7 @@ def identify_free_rocking(
     """
     t, theta, sides = _checked(time, rotation, edges)
     level = number("confidence", confidence, 0.0, 1.0, closed="neither")
-    offset, noise = _rest(theta)
+    offset, noise, rests = _rest(theta)
     flights, impacts = _flights(t, theta - offset, noise)
     needed = MIN_IMPACTS * sides
     if impacts.size < needed:
@@ -122,7 +122,8 @@ def identify_free_rocking(
         if count == len(flights):
             break
         starts, count = [fit.x], count + count // 2
-        flights = _flights(t, theta - fit.x[0], noise)[0]  # the first offset is that of a body that may rock on
+        if not rests:  # the first offset is inaccurate
+            flights = _flights(t, theta - fit.x[0], noise)[0]
     model, impacts = _trace(t[used], fit.x, sign, sides, count)
     if fit.x[3 : 3 + sides].max() >= math.log(0.999 * MAX_ROTATION):
         raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
@@ -151,11 +152,12 @@ def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, A
     return t, theta, integer("edges", edges, 1, 2)
 
 
-def _rest(theta: Array) -> tuple[float, float]:
-    """Rotation at rest and noise, from third differences: the median at the end, the middle of a body that rocks on."""
+def _rest(theta: Array) -> tuple[float, float, bool]:
+    """Rotation at rest, the median at the end or the middle if the body rocks on; noise; and whether it comes to rest."""
     noise = float(np.median(np.abs(np.diff(theta, 3))) / (0.6745 * math.sqrt(20.0)))  # of normal errors
     end, half = theta[-max(theta.size // 10, 3) :], theta[theta.size // 2 :]
-    return float(np.median(end) if np.std(end) < LEVEL * noise else 0.5 * (half.max() + half.min())), noise
+    rests = bool(np.std(end) <= LEVEL * noise)
+    return float(np.median(end) if rests else 0.5 * (half.max() + half.min())), noise, rests
 
 
 def _flights(t: Array, theta: Array, noise: float) -> tuple[list[NDArray[np.intp]], Array]:
