@@ -153,7 +153,7 @@ def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, A
 
 
 def _rest(theta: Array) -> tuple[float, float, bool]:
-    """Rotation at rest, the median at the end or the middle if the body rocks on; noise; and whether it comes to rest."""
+    """Rotation at rest, the median at the end or the middle if the body rocks on; noise; whether it comes to rest."""
     noise = float(np.median(np.abs(np.diff(theta, 3))) / (0.6745 * math.sqrt(20.0)))  # of normal errors
     end, half = theta[-max(theta.size // 10, 3) :], theta[theta.size // 2 :]
     rests = bool(np.std(end) <= LEVEL * noise)
