@@ -24,8 +24,8 @@ def survival(fragility: xr.Dataset, *, intensity: ArrayLike, annual_rate: ArrayL
     """Probability that a rock has stood for some years, under each branch of a hazard model.
 
     Overturning by earthquakes is a Poisson process of the rate nu = integral of P(x) abs(dH(x)), as
-    `rocking.suites.annual_rate` has it, so that the probability of none in t years is exp(-nu t) (Brune 1996; Baker et al.
-    2013, eq. 1). A branch under which it is small contradicts the rock.
+    `rocking.suites.annual_rate` has it, so that the probability of none in t years is exp(-nu t) (Brune 1996; Baker et
+    al. 2013, eq. 1). A branch under which it is small contradicts the rock.
 
     Parameters
     ----------

@@ -75,8 +75,8 @@ NUMBERS: dict[str, Any] = {
     "amplitude": 4.0, "time": 0.5, "velocity": 0.5, "rotation": 0.5, "scaled": 0.5, "impact_time": 1.5,
     "phi": [0.5, 7.0], "falling": 1.0, "growing": 0.5, "constant": 0.2, "most": 2, "impacts": 1,
     "start_phase": 1.0, "impact_phase": 3.0, "impact_velocity": 0.5,
-    "width": 0.4, "depth": 0.3, "diameter": 0.4, "height": 1.6, "mass_height": 0.7, "offset": 0.0, "friction": 0.5,
-    "offset_width": 0.01, "offset_depth": 0.01, "pga": 3.0, "pgv": 0.4, "periods": (0.3, 1.0), "seed": 1,
+    "depth": 0.3, "diameter": 0.4, "mass_height": 0.7, "offset": 0.0, "friction": 0.5,
+    "offset_width": 0.01, "offset_depth": 0.01, "pga": 3.0, "pgv": 0.4, "seed": 1,
     "hazard": ([1.0, 10.0], [1e-2, 1e-4]),
     "exponents": {"a_g/g": 1, "alpha": -2}, "largest": 2, "cos_alpha": math.cos(0.3),
 }  # fmt: skip
@@ -99,9 +99,7 @@ RECORD, BLOCK = noise(1), rocking.Block(0.5, 2.0)
 FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.0, 16.0])
 OBJECTS: dict[str, Any] = {
     "pulse": "sine", "motion": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
-    "record": RECORD, "records": [RECORD, noise(2)], "blocks": BLOCK, "column": BLOCK,
-    "pulse": "sine", "excitation": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
-    "motion": RECORD, "record": RECORD, "records": [RECORD, noise(2)], "outcomes": np.arange(4) > 1,
+    "record": RECORD, "records": [RECORD, noise(2)], "outcomes": np.arange(4) > 1,
     "blocks": BLOCK, "body": BLOCK,
     "motions": [noise(k) for k in range(4)], "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,

@@ -34,6 +34,7 @@ PEAKS = {"peak_rotation": [1.0, 2.0], "restitution": [0.8, 0.9]}
 RIGID = paper.GroupSet.RIGID_SMALL_ROTATION
 SCALED = {"motion": RECORD, "scale": 1.0, "restitution": 0.9}
 
+
 class Hump(rocking.SmoothPulse):
     """A family of one's own."""
 
@@ -84,13 +85,11 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "Record.resampled": (RECORD.resampled, [{"time_step": 0.005}]),
     "paper.discounted_integral": (
         paper.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
+    ),
     "calibrate": (
         rocking.calibrate,
         [{"motions": [RECORD, UPWARDS], "outcomes": np.array([True, False]), "alpha": (0.1, 0.2),
           "half_diagonal": (0.5, 1.0), "restitution": (0.8, 0.9), "points": 2, "folds": 2, "confidence": 0.9}],
-    ),
-    "closed_form.discounted_integral": (
-        closed_form.discounted_integral, [{"pulse": "sine", "frequency_ratio": 5.0, "start_phase": 1.0}],
     ),
     "paper.first_uplift_phase": (paper.first_uplift_phase, [{"pulse": "sine", "amplitude": 2.0}]),
     "paper.impacts_in_pulse": (
@@ -145,14 +144,12 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "paper.restitution_exponent": (paper.restitution_exponent, [PEAKS | {"axis": 0}]),
     "paper.admissible_exponents": (
         paper.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
+    ),
     "identify_free_rocking": (
         rocking.identify_free_rocking, [{"time": TRACE[0], "rotation": TRACE[1], "edges": 1, "confidence": 0.9}],
     ),
     "isolated_motion": (
         rocking.isolated_motion, [{"record": RECORD, "period": 0.5, "damping": 0.1, "tolerance": 0.01}],
-    ),
-    "orientation.admissible_exponents": (
-        orientation.admissible_exponents, [{"target": Orientation.L0, "factors": {}, "largest": 2}],
     ),
     "overturning_boundary": (
         rocking.overturning_boundary, [{"motion": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32}],
@@ -185,14 +182,11 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         [{"motion": "sine", "duration": 5.0, "samples": 10} | PROBLEM,
          {"motion": UPWARDS, "vertical_scale": 1.0, "duration": 5.0, "samples": 10} | OF_RECORD],
     ),
-    "record_response": (rocking.peak_response, [{"motion": RECORD, "threads": 1} | OF_RECORD]),
     "survival": (
         rocking.survival,
         [{"fragility": None, "intensity": [1.0, 2.0], "annual_rate": [1e-2, 1e-3], "years": 10.0}],
     ),
     "unexceeded": (rocking.unexceeded, [{"body": BLOCK, "motions": [RECORD], "probability": 0.9}]),
-    "suite_sensitivity": (rocking.suites.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
-    "time_history": (rocking.time_history, [{"pulse": "sine", "duration": 5.0, "samples": 10} | PROBLEM]),
 }  # fmt: skip
 """Public functions with arguments that they accept."""
 
@@ -231,7 +225,7 @@ OPTIONAL = {
     "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
     "restitution", "scale", "vertical_scale", "highest", "highest_amplitude", "size", "peak_acceleration", "period",
     "depth", "diameter", "mass_height", "mass", "friction", "pgv",
-    "restitution", "scale", "tail", "vertical_scale", "highest", "size", "peak_acceleration", "period",
+    "tail",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 
