@@ -10,8 +10,8 @@ import inspect
 import re
 import textwrap
 from collections.abc import Iterable, Iterator
-from operator import attrgetter
 from pathlib import Path
+from pkgutil import resolve_name
 from types import ModuleType
 from typing import Any
 
@@ -42,7 +42,7 @@ def python_names() -> Iterator[str]:
     """Names at the top of `rocking`, their members, and what the reference documents besides them."""
     yield from names_of("rocking", rocking)
     for name in re.findall(r"^ +(_\w+\.[\w.]+)$", REFERENCE.read_text(encoding="utf-8"), flags=re.MULTILINE):
-        yield from names_of(f"rocking.{name}", attrgetter(name)(rocking))
+        yield from names_of(f"rocking.{name}", resolve_name(f"rocking.{name}"))
 
 
 def names_of(name: str, value: Any) -> Iterator[str]:
