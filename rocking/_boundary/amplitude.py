@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,15 +19,19 @@ from rocking._excitation.records.vertical import check_one_vertical_scale, highe
 from rocking._model.checks import check_number, check_one_alpha
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION
-from rocking._model.response import Response
+from rocking._model.response import Outcome, Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import frequency_parameter_range, record_response
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 LOWEST_WITH_VERTICAL = 0.1
 """Lowest amplitude tried under a record with a vertical component [-], which can lift the block below 1."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Thresholds(EqualByValue):
     """Amplitudes at which the outcome for a block changes, ascending; all arrays (thresholds,).
 
@@ -47,6 +51,30 @@ class Thresholds(EqualByValue):
     overturns_above: NDArray[np.bool_]
     outcome: NDArray[np.int8]
     impacts: NDArray[np.int32]
+
+    def __repr__(self) -> str:
+        """The changes of outcome in words."""
+        changes = [
+            f"{'overturns' if above else 'survives'} above a = {value:.6g}"
+            for value, above in zip(self.amplitude.tolist(), self.overturns_above.tolist(), strict=True)
+        ]
+        return f"<rocking.Thresholds: {', '.join(changes) or 'no amplitude was found that overturns the block'}>"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row for each threshold, with the name of the outcome."""
+        import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
+
+        columns = {one.name: getattr(self, one.name) for one in fields(self)}
+        return pd.DataFrame(columns | {"outcome": [Outcome(code).name for code in self.outcome.tolist()]})
+
+    def to_xarray(self) -> xr.Dataset:
+        """The same over the dimension `threshold`."""
+        import xarray as xr  # noqa: PLC0415
+
+        about = {"amplitude": {"units": "1", "long_name": "amplitude a = a_g/(g tan alpha)"}}
+        return xr.Dataset(
+            {one.name: ("threshold", getattr(self, one.name), about.get(one.name)) for one in fields(self)}
+        )
 
 
 def thresholds(

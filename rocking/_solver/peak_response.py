@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import threading
-from functools import lru_cache
-from typing import Any
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from rocking._excitation.records.record import Record as Recording
 from rocking._model.checks import check_groups, check_number
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
+from rocking._model.labelled import is_labelled, labelled_response
 from rocking._model.parameters import TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
@@ -27,6 +28,9 @@ from rocking._solver.records.record_response import record_response, solve_pulse
 from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
 from rocking._solver.stages.state import StageState, stage_state
 from rocking._solver.state import BODY_CELL, EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
@@ -65,6 +69,13 @@ def _new_step_state(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.
 solver_state = SolverState()
 
 
+@overload
+def peak_response(
+    motion: str | AbstractPulse | Recording, *, slenderness: xr.DataArray, **others: Any
+) -> xr.Dataset: ...
+
+
+@overload
 def peak_response(
     motion: str | AbstractPulse | Recording,
     *,
@@ -77,7 +88,22 @@ def peak_response(
     tolerance: float | None = None,
     threads: int | None = None,
     stop: StopFlag | None = None,
-) -> Response:
+) -> Response: ...
+
+
+def peak_response(  # type: ignore[misc]  # of labelled arguments the names are checked here
+    motion: str | AbstractPulse | Recording,
+    *,
+    slenderness: ArrayLike,
+    frequency_ratio: ArrayLike | None = None,
+    frequency_parameter: ArrayLike | None = None,
+    restitution: ArrayLike,
+    alpha: ArrayLike | None = None,
+    vertical_scale: ArrayLike | None = None,
+    tolerance: float | None = None,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> Response | xr.Dataset:
     """Peak rotation and final outcome of blocks under a ground motion, exact to rounding. The arguments broadcast.
 
     Consecutive cells that differ in restitution only, as along the last axis, share the first flight.
@@ -113,7 +139,8 @@ def peak_response(
     Returns
     -------
     Response
-        Arrays of the broadcast shape. Times are p t from the start of the motion.
+        Arrays of the broadcast shape. Times are p t from the start of the motion. Arguments of xarray broadcast by the
+        names of their dimensions and give an `xarray.Dataset` of the same fields; of dask-backed ones it is lazy.
 
     Raises
     ------
@@ -124,6 +151,17 @@ def peak_response(
     StoppedError
         If `stop` was set.
     """
+    arguments = {
+        "slenderness": slenderness,
+        "frequency_ratio": frequency_ratio,
+        "frequency_parameter": frequency_parameter,
+        "restitution": restitution,
+        "alpha": alpha,
+        "vertical_scale": vertical_scale,
+    }
+    if is_labelled(*arguments.values()):
+        options = {"tolerance": tolerance, "threads": threads, "stop": stop}
+        return labelled_response(partial(peak_response, motion), arguments, options)
     if isinstance(motion, Recording):
         reject_given("a record", frequency_ratio=frequency_ratio, tolerance=tolerance)
         return record_response(

@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pytest
 
+import rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.amplitude import thresholds
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._solver.peak_response import peak_response
+from tests.suites.motions import noise
 
 WINDOW = (0.3, 20.0)
 
@@ -76,3 +78,35 @@ def test_what_is_out_of_range_is_named(name, value):
     groups = {"slenderness": 0.4, "restitution": 0.9, "alpha": None} | {name: value}
     with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
         critical_frequency_ratio("sine", window=WINDOW, **groups)
+
+
+def test_thresholds_in_words_and_tables():
+    found = rocking.thresholds("sine", frequency_ratio=2.0, restitution=0.9)
+    assert repr(found) == (
+        "<rocking.Thresholds: overturns above a = 1.22518, survives above a = 2.3144, overturns above a = 2.3499>"
+    )
+    assert found.to_pandas().outcome.tolist() == ["OVERTURNED_AFTER_IMPACT"] * 2 + ["OVERTURNED_DIRECTLY"]
+    assert found.to_xarray().amplitude.values.tolist() == found.amplitude.tolist()
+    none = rocking.thresholds("sine", frequency_ratio=9.0, restitution=0.9, highest_amplitude=1.5)
+    assert repr(none) == "<rocking.Thresholds: no amplitude was found that overturns the block>"
+    assert none.to_pandas().empty
+
+
+def test_thresholds_of_a_record_are_those_of_the_block():
+    record = noise(1)
+    block = rocking.Block(0.5, 2.0)
+    found = rocking.thresholds(
+        record, frequency_parameter=block.frequency_parameter, restitution=0.9, alpha=block.alpha
+    )
+    scales = block.response(record, restitution=0.9).thresholds
+    uplift = block.uplift_acceleration / record.peak_acceleration
+    assert found.amplitude.size
+    assert found.amplitude * uplift == pytest.approx(scales.scale, rel=2e-6)
+    at = rocking.peak_response(
+        record,
+        frequency_parameter=block.frequency_parameter,
+        restitution=0.9,
+        alpha=block.alpha,
+        slenderness=1.0 / found.amplitude,
+    )
+    assert at.outcome.tolist() == found.outcome.tolist()

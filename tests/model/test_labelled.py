@@ -1,0 +1,61 @@
+"""Labelled arguments: broadcast by name, equal bits, units; lazy with dask."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rocking
+from rocking import InvalidArgumentError
+from tests.suites.motions import noise
+
+S = xr.DataArray([0.3, 0.5, 0.8], dims="site", coords={"site": ["a", "b", "c"]})
+OMEGA = xr.DataArray([2.0, 5.0], dims="period")
+RECORD = noise(1)
+
+
+def test_dimensions_broadcast_by_name_and_give_the_bits_of_arrays():
+    found = rocking.peak_response("sine", slenderness=S, frequency_ratio=OMEGA, restitution=0.9, alpha=0.2)
+    plain = rocking.peak_response(
+        "sine", slenderness=S.values[:, None], frequency_ratio=OMEGA.values, restitution=0.9, alpha=0.2
+    )
+    assert isinstance(found, xr.Dataset)
+    assert found.peak_rotation.dims == ("site", "period")
+    for name in ("peak_rotation", "outcome", "impacts", "overturned", "residual_energy"):
+        np.testing.assert_array_equal(found[name].values, getattr(plain, name))
+    assert found.peak_rotation.attrs["units"] == "1"
+    assert found.site.values.tolist() == ["a", "b", "c"]
+    assert float(found.restitution) == 0.9
+    other = rocking.peak_response("sine", slenderness=S, frequency_ratio=OMEGA, restitution=0.9, alpha=0.2)
+    xr.testing.assert_identical(found, other)
+
+
+def test_a_record_takes_them_too():
+    found = rocking.peak_response(RECORD, slenderness=S, frequency_parameter=OMEGA, restitution=0.9)
+    plain = rocking.peak_response(
+        RECORD, slenderness=S.values[:, None], frequency_parameter=OMEGA.values, restitution=0.9
+    )
+    np.testing.assert_array_equal(found.outcome.values, plain.outcome)
+
+
+@pytest.mark.parametrize(
+    ("others", "text"),
+    [
+        ({"frequency_ratio": S.assign_coords(site=["a", "b", "d"])}, "equal indexes of a dimension"),
+        ({"frequency_ratio": np.array([2.0, 3.0, 4.0])}, "a number or an xarray.DataArray"),
+        ({"frequency_ratio": -OMEGA}, "frequency_ratio"),
+        ({}, "`frequency_ratio` = None"),
+    ],
+)
+def test_what_does_not_fit_is_refused(others, text):
+    with pytest.raises(InvalidArgumentError, match=text):
+        rocking.peak_response("sine", slenderness=S, restitution=0.9, **others)
+
+
+def test_dask_arrays_stay_lazy_and_give_the_same_bits():
+    pytest.importorskip("dask.array")
+    found = rocking.peak_response(
+        "sine", slenderness=S.chunk(site=1), frequency_ratio=OMEGA.chunk(period=1), restitution=0.9
+    )
+    assert found.peak_rotation.chunks == ((1, 1, 1), (1, 1))
+    plain = rocking.peak_response("sine", slenderness=S, frequency_ratio=OMEGA, restitution=0.9)
+    np.testing.assert_array_equal(found.peak_rotation.compute(), plain.peak_rotation)
