@@ -13,7 +13,7 @@ from rocking._solver.peak_response import peak_response
 from rocking.paper import overturning_amplitudes
 from tests.workflow_fixtures import PROJECT
 from workflow.figures import figure_08, figure_13
-from workflow.figures.spectrum_curves import STRAIGHT, Block, branches, peaks, rows_of
+from workflow.figures.spectrum_curves import STRAIGHT, SpectrumBlock, branches, peaks, rows_of
 
 CAPTIONS = (PROJECT / "docs/figures.md").read_text(encoding="utf-8")
 FIGURES = yaml.safe_load((PROJECT / "workflow/config/paper.yaml").read_text(encoding="utf-8"))["figures"]
@@ -76,7 +76,7 @@ def test_main_branches_rise_to_alpha(figure_8: xr.Dataset, figure_13_data: xr.Da
 
 @pytest.mark.parametrize(("slenderness", "degrees", "inside"), [(0.3, 30, (2.72, 2.80)), (0.45, 10, (1.885, 1.925))])
 def test_narrow_branches_are_found(slenderness: float, degrees: int, inside: tuple[float, float]) -> None:
-    found = branches(Block(2 * ("sine"), 2 * slenderness, 0.85, float(np.radians(degrees))), WINDOW)
+    found = branches(SpectrumBlock("sine", slenderness, 0.85, float(np.radians(degrees))), WINDOW)
     narrow = found[0]
     assert len(found) == 2
     assert narrow.overturns_beyond == (True, True)
@@ -86,7 +86,7 @@ def test_narrow_branches_are_found(slenderness: float, degrees: int, inside: tup
 
 def test_branches_agree_with_the_thresholds_of_outcome() -> None:
     block = {"slenderness": 0.45, "restitution": 0.85, "alpha": 0.3}
-    found = branches(Block(2 * ("cosine"), 0.9, 0.85, 0.3), (0.5, 8.0))
+    found = branches(SpectrumBlock("cosine", 0.9, 0.85, 0.3), (0.5, 8.0))
     edges = critical_frequency_ratio("cosine", window=(0.5, 8.0), **block).frequency_ratio
     ends = [
         end for one in found for end, at in zip(one.frequency_ratio[[0, -1]], one.overturns_beyond, strict=True) if at
@@ -95,7 +95,7 @@ def test_branches_agree_with_the_thresholds_of_outcome() -> None:
 
 
 def test_curves_are_straight_between_their_points() -> None:
-    block = Block(2 * ("sine"), 1.2, 0.9)
+    block = SpectrumBlock("sine", 1.2, 0.9)
     (curve,) = branches(block, (2.0, 12.0))
     share = np.array([0.21, 0.5, 0.83])[:, None]
     omega = curve.frequency_ratio[:-1] ** (1 - share) * curve.frequency_ratio[1:] ** share

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from rocking.paper.overturning import limit_amplitude
 from rocking.paper.peak import case_1_2_peak_by_pulse
 from rocking.plot.style import WIDTH, shades
-from workflow.figures.spectrum_curves import Block, curve_variables, rows_of
+from workflow.figures.spectrum_curves import SpectrumBlock, curve_variables, rows_of
 from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
@@ -39,7 +39,7 @@ def data(
     frequency_ratio : mapping
         low and high [-] of what is shown.
     """
-    blocks = [Block(2 * pulse, 2 * s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
+    blocks = [SpectrumBlock(pulse, s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
     # theta/alpha times 1/a is g theta/a_g
     curves = xr.Dataset(curve_variables(blocks, frequency_ratio, [block.slenderness for block in blocks]))
     names = ("pulse", "slenderness", "restitution")

@@ -76,11 +76,11 @@ def data(
     pulses = [read_dataset(path).pulse.attrs["pulse_name"] for path in boundaries]
     blocks = [Block.from_slenderness_angle(alpha, R) for R in half_diagonal]
     rows = [
-        {"pulse": i, "block": j, "period": period, **row}
+        {"pulse": i, "block": j, "period": one, **row}
         for i, pulse in enumerate(pulses)
         for j, block in enumerate(blocks)
-        for period in period
-        for row in block_thresholds(pulse, block, period, restitution)
+        for one in period
+        for row in block_thresholds(pulse, block, one, restitution)
     ]
     frequency_ratio = np.geomspace(FEWEST, max(WIDEST.values()), NODES)
     safe = np.array([upper_safe_region(pulse, frequency_ratio, restitution, alpha) for pulse in pulses])

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.plot.style import BLACK, WIDTH, shades
-from workflow.figures.spectrum_curves import Block, curve_variables, peaks, rows_of
+from workflow.figures.spectrum_curves import SpectrumBlock, curve_variables, peaks, rows_of
 from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
@@ -40,11 +40,11 @@ def data(
         low and high [-] of what is shown.
     """
     angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
-    blocks = [Block(2 * pulse, 2 * s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]
+    blocks = [SpectrumBlock(pulse, s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]
     scale = [block.slenderness * float(scale_of(np.array(block.alpha))) for block in blocks]
     curves = xr.Dataset(curve_variables(blocks, frequency_ratio, scale))
     slender = [
-        curve_slenderness * peaks(Block(2 * PULSES[pulse], 2 * curve_slenderness, restitution), omega)
+        curve_slenderness * peaks(SpectrumBlock(PULSES[pulse], curve_slenderness, restitution), omega)
         for pulse, curve_slenderness, omega in zip(
             curves.curve_pulse.values,
             curves.curve_slenderness.values,

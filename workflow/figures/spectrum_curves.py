@@ -31,7 +31,7 @@ ROUNDS = 40
 """Times that intervals are halved: the shortest one is far below the resolution of the boundary [-]."""
 
 
-class Block(NamedTuple):
+class SpectrumBlock(NamedTuple):
     """What a spectrum is computed for."""
 
     pulse: str
@@ -48,7 +48,7 @@ class Branch(NamedTuple):
     overturns_beyond: tuple[bool, bool]  # whether the block overturns beyond its lower and its upper end
 
 
-def peaks(block: Block, frequency_ratio: Floats) -> Floats:
+def peaks(block: SpectrumBlock, frequency_ratio: Floats) -> Floats:
     """max |theta|/alpha [-] of a block at several omega, nan where it overturns."""
     return peak_response(
         block.pulse,
@@ -59,7 +59,7 @@ def peaks(block: Block, frequency_ratio: Floats) -> Floats:
     ).peak_rotation
 
 
-def branches(block: Block, window: tuple[float, float]) -> list[Branch]:
+def branches(block: SpectrumBlock, window: tuple[float, float]) -> list[Branch]:
     """Every range of omega in `window` on which the block survives, sampled until it is straight between its points."""
     found = critical_frequency_ratio(
         block.pulse,
@@ -77,7 +77,7 @@ def branches(block: Block, window: tuple[float, float]) -> list[Branch]:
     ]
 
 
-def sampled(block: Block, ends: tuple[float, float], overturns_beyond: tuple[bool, bool]) -> Branch:
+def sampled(block: SpectrumBlock, ends: tuple[float, float], overturns_beyond: tuple[bool, bool]) -> Branch:
     """The points of one branch; at an end beyond which the block overturns, the last point at which it survives."""
     low, high = (
         _last_surviving(block, end, inwards) if beyond else end
@@ -102,20 +102,20 @@ def sampled(block: Block, ends: tuple[float, float], overturns_beyond: tuple[boo
     return Branch(omega, y, overturns_beyond)
 
 
-def _last_surviving(block: Block, boundary: float, inwards: int) -> float:
+def _last_surviving(block: SpectrumBlock, boundary: float, inwards: int) -> float:
     """The point next to the boundary at which the block survives, at a few times its resolution at most."""
     omega = boundary * (1 + inwards * RESOLUTION * 2.0 ** np.arange(10))
     return float(omega[np.flatnonzero(np.isfinite(peaks(block, omega)))[0]])
 
 
 def curve_variables(
-    blocks: Sequence[Block], window: Mapping[str, float], scale: Sequence[float]
+    blocks: Sequence[SpectrumBlock], window: Mapping[str, float], scale: Sequence[float]
 ) -> dict[str, xr.Variable]:
     """The spectra of several blocks as variables over `curve` and `point`.
 
     Parameters
     ----------
-    blocks : sequence of Block
+    blocks : sequence of SpectrumBlock
     window : mapping
         low and high of omega [-].
     scale : sequence of float
