@@ -76,7 +76,7 @@ mutants: .venv/project ## mutation test: change single operators and constants, 
 	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)
 
 # Extras `seismic` and `slurm` are optional: they are not locked.
-LOCKED := service plot mesh workflow docs dev
+LOCKED := service plot mesh dask workflow docs dev
 
 RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from distributed import Client
 
 import rocking
 from rocking import InvalidArgumentError
@@ -52,10 +53,18 @@ def test_what_does_not_fit_is_refused(others, text):
 
 
 def test_dask_arrays_stay_lazy_and_give_the_same_bits():
-    pytest.importorskip("dask.array")
     found = rocking.peak_response(
         "sine", slenderness=S.chunk(site=1), frequency_ratio=OMEGA.chunk(period=1), restitution=0.9
     )
     assert found.peak_rotation.chunks == ((1, 1, 1), (1, 1))
     plain = rocking.peak_response("sine", slenderness=S, frequency_ratio=OMEGA, restitution=0.9)
     np.testing.assert_array_equal(found.peak_rotation.compute(), plain.peak_rotation)
+
+
+def test_workers_of_a_cluster_give_the_same_bits():
+    slenderness = xr.DataArray(np.linspace(0.2, 0.9, 40), dims="block").chunk(block=10)
+    groups = {"frequency_ratio": OMEGA, "restitution": 0.9, "alpha": 0.2}
+    with Client(n_workers=2, threads_per_worker=1, dashboard_address=None):
+        found = rocking.peak_response("sine", slenderness=slenderness, **groups).compute()
+    plain = rocking.peak_response("sine", slenderness=slenderness.compute(), **groups)
+    xr.testing.assert_identical(found.drop_vars("slenderness", errors="ignore"), plain.drop_vars("slenderness"))

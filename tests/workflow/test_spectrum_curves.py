@@ -86,7 +86,7 @@ def test_narrow_branches_are_found(slenderness: float, degrees: int, inside: tup
 
 def test_branches_agree_with_the_thresholds_of_outcome() -> None:
     block = {"slenderness": 0.45, "restitution": 0.85, "alpha": 0.3}
-    found = branches(SpectrumBlock("cosine", 0.9, 0.85, 0.3), (0.5, 8.0))
+    found = branches(SpectrumBlock("cosine", 0.45, 0.85, 0.3), (0.5, 8.0))
     edges = critical_frequency_ratio("cosine", window=(0.5, 8.0), **block).frequency_ratio
     ends = [
         end for one in found for end, at in zip(one.frequency_ratio[[0, -1]], one.overturns_beyond, strict=True) if at
@@ -95,7 +95,7 @@ def test_branches_agree_with_the_thresholds_of_outcome() -> None:
 
 
 def test_curves_are_straight_between_their_points() -> None:
-    block = SpectrumBlock("sine", 1.2, 0.9)
+    block = SpectrumBlock("sine", 0.6, 0.9)
     (curve,) = branches(block, (2.0, 12.0))
     share = np.array([0.21, 0.5, 0.83])[:, None]
     omega = curve.frequency_ratio[:-1] ** (1 - share) * curve.frequency_ratio[1:] ** share
