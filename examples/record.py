@@ -44,7 +44,7 @@ plt.show()
 # Many blocks under one record: arguments broadcast as those of numpy.
 
 heights = np.linspace(1.0, 6.0, 200)  # m
-blocks = [rocking.Block(width=2 * (0.15 * height), height=height) for height in heights]
+blocks = [rocking.Block(width=0.3 * height, height=height) for height in heights]
 many = rocking.peak_response(
     motion,
     frequency_parameter=[one.frequency_parameter for one in blocks],

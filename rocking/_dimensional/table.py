@@ -66,9 +66,8 @@ def read_table(text: str, pulse: str | AbstractPulse, restitution: float | str =
     Parameters
     ----------
     text : str
-        CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`; the sizes
-        may be `width` and `height`, the period `period`. Columns may be separated by semicolons;
-        numbers have decimal points. Names are kept with their blanks.
+        CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`. Columns
+        may be separated by semicolons; numbers have decimal points. Names are kept with their blanks.
     pulse : str or AbstractPulse
         The pulse.
     restitution : float or "momentum"
