@@ -51,7 +51,7 @@ def overturning_boundary(
     frequency_ratio : (float, float)
         Window of omega [-], 0 < low < high.
     slenderness : (float, float)
-        Window of 1/a [-], 0 < low < high <= 1.
+        Window of g tan(alpha)/a_g = 1/a [-], 0 < low < high <= 1: depends on the motion, unlike h/b.
     nodes : int
         Nodes in each direction on which regions are first looked for, 16 to 4001.
     stop : StopFlag, optional

@@ -56,8 +56,10 @@ def time_history(
 
     Parameters
     ----------
-    motion, slenderness, frequency_ratio, frequency_parameter, restitution, alpha, vertical_scale
+    motion, frequency_ratio, frequency_parameter, restitution, alpha, vertical_scale
         As for `peak_response`; scalars.
+    slenderness : float
+        g tan(alpha)/a_g = 1/a [-], [1e-12, inf): depends on the motion, unlike h/b.
     duration : float, optional
         Duration, > 0: [tau] under a pulse, [s] under a record. By default the motion and 8/p after it; if the block
         overturns, until |theta|/alpha = 4 or |theta| = pi/2.

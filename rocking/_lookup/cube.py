@@ -132,8 +132,11 @@ class Cube:
 
         Parameters
         ----------
-        slenderness, frequency_ratio : array_like
-            1/a > 0 and omega > 0 [-]; from 1/a = 1 on there is no uplift, also outside of the cubes.
+        slenderness : array_like
+            g tan(alpha)/a_g = 1/a [-], > 0: depends on the motion, unlike h/b; no uplift from 1 on, also outside of the
+            cubes.
+        frequency_ratio : array_like
+            omega = omega_g/p [-], > 0.
         restitution : array_like, optional
             eta [-], [0, 1]; optional if there is one cube only.
         alpha : array_like, optional

@@ -85,7 +85,7 @@ SLENDERNESS = Parameter(
     1e-12,
     math.inf,
     "left",
-    "dimensionless slenderness",
+    "slenderness (depends on the motion, unlike h/b)",
 )
 """From 1 on the block does not uplift. The lower end is an acceleration of 1e12 g tan(alpha)."""
 

@@ -114,8 +114,8 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         A name of `PULSE_NAMES`, with a leading minus for the opposite sign; a pulse; or a recorded ground motion, which
         is linear between its samples and zero after the last.
     slenderness : array_like
-        g tan(alpha)/a_g = 1/a [-], [1e-12, inf), which depends on the motion, unlike the h/b of a block: its peak
-        acceleration over that of uplift, inverted. No uplift from 1 on.
+        g tan(alpha)/a_g = 1/a [-], [1e-12, inf): depends on the motion, unlike h/b. It is the acceleration of uplift
+        over the peak acceleration of the motion; no uplift from 1 on.
     frequency_ratio : array_like
         omega = omega_g/p [-], [1e-9, 1e9]; of a pulse.
     frequency_parameter : array_like

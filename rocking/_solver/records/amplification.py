@@ -34,8 +34,10 @@ def record_amplification(
 
     Parameters
     ----------
-    motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale, threads, stop
-        As for `record_response`.
+    motion, frequency_parameter, restitution, alpha, vertical_scale, threads, stop
+        As for `peak_response`.
+    slenderness : array_like
+        g tan(alpha)/PGA [-], [1e-12, inf): depends on the motion, unlike h/b.
 
     Returns
     -------
@@ -46,7 +48,7 @@ def record_amplification(
     Raises
     ------
     InvalidArgumentError, StoppedError
-        As for `record_response`.
+        As for `peak_response`.
     """
     given = {
         "frequency_parameter": frequency_parameter,

@@ -61,8 +61,8 @@ def record_response(
     frequency_parameter : array_like
         p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step of the motion.
     slenderness : array_like
-        g tan(alpha)/PGA [-], [1e-12, inf), with the peak acceleration PGA of the motion; without a vertical component
-        no uplift from 1 on. To scale the horizontal component by a factor, divide by it.
+        g tan(alpha)/PGA [-], [1e-12, inf): depends on the motion, unlike h/b, through its peak acceleration PGA.
+        Without a vertical component no uplift from 1 on. To scale the horizontal component by a factor, divide by it.
     restitution : array_like
         Coefficient of restitution eta [-], [0, 1].
     alpha : array_like, optional
