@@ -134,7 +134,7 @@ def test_slenderness_is_said_to_depend_on_the_motion_wherever_it_is_asked_for() 
     group = typer.main.get_command(app)
     for name in ("response", "history", "spectrum"):
         (option,) = [one for one in group.commands[name].params if one.name == "slenderness"]  # type: ignore[attr-defined]
-        assert said in option.help  # type: ignore[attr-defined]
+        assert said in option.help
     for function in (rocking.peak_response, rocking.time_history, rocking.overturning_boundary, Cube.response):
         text = inspect.getdoc(function) or ""
         assert said in text.partition("\nslenderness : ")[2].split("\n\n")[0][:200], function
