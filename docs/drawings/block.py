@@ -1,12 +1,12 @@
 """The block at rest and rotated, with its symbols and their names, to scale."""
 
 import math
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Arc, Polygon, Rectangle
-from numpy.typing import ArrayLike
 
 from rocking.plot.style import BLUE, GREY, VERMILION
 
@@ -26,7 +26,7 @@ for ax, points, title in zip(axes, (corners, rotated), ("at rest", "rocking abou
     ax.set_axis_off()
 
 
-def arrow(ax: Axes, start: ArrayLike, end: ArrayLike, style: str = "<->", color: str = "black") -> None:
+def arrow(ax: Axes, start: Any, end: Any, style: str = "<->", color: str = "black") -> None:
     """Draw a line with heads between two points."""
     ax.annotate("", end, start, arrowprops={"arrowstyle": style, "color": color, "shrinkA": 0, "shrinkB": 0})
 

@@ -76,7 +76,7 @@ def server_port(smoke_results: Path) -> Iterator[int]:
 
 def test_every_command_has_a_test() -> None:
     assert len(MAKE) + len(CURL) + len(ROCKING) + len(PICTURES) + len(PIP) == len(COMMANDS)
-    assert len(PYTHON_BLOCKS) == 4
+    assert len(PYTHON_BLOCKS) == 5
     assert MAKE
     assert CURL
     assert ROCKING
@@ -128,7 +128,7 @@ def test_command_line(command: list[str]) -> None:
     assert f"`{done.stdout.splitlines()[0]}`" in README
 
 
-@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize("number", [0, 1, 2])
 def test_python_blocks_with_output(number: int, capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, object] = {}
     exec(PYTHON_BLOCKS[number], names)
@@ -165,7 +165,7 @@ def test_data_set_block(
     smoke_results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(smoke_results.parent)
-    exec(PYTHON_BLOCKS[2], {})
+    exec(PYTHON_BLOCKS[3], {})
     assert "peak rotation 0.5" in capsys.readouterr().out
 
 
@@ -173,7 +173,7 @@ def test_data_set_block(
 def test_cube_block(smoke_results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(smoke_results.parent)
     names: dict[str, Any] = {}
-    exec(PYTHON_BLOCKS[3], names)
+    exec(PYTHON_BLOCKS[4], names)
     assert names["found"].outcome == rocking.Outcome.SAFE
 
 
