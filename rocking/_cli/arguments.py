@@ -175,15 +175,9 @@ def read_block(options: SizeOptions) -> Block:
     Raises
     ------
     InvalidArgumentError
-        If one is missing, given twice, or not allowed.
+        If one is missing or not allowed.
     """
-    sizes = {}
-    for name in ("width", "height"):
-        half, whole = getattr(options, f"half_{name}"), getattr(options, name)
-        if half is not None and whole is not None:
-            raise InvalidArgumentError(name, whole, f"one of --{name} and --half-{name}")
-        sizes[name] = 0.5 * _positive(options, name) if half is None else _positive(options, f"half_{name}")
-    return Block(2 * sizes["width"], 2 * sizes["height"])
+    return Block(_positive(options, "width"), _positive(options, "height"))
 
 
 def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
