@@ -133,7 +133,9 @@ def assess(
     columns["warnings"] = _warnings(given, columns)
     order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
-    return Assessment(kept, tuple(names.tolist()), HIGHEST_FACTOR)
+    each = [one for one in given for _ in one.directions]
+    ordered = tuple(each[k] for k in order)
+    return Assessment(kept, tuple(names.tolist()), HIGHEST_FACTOR, ordered, factors[order])
 
 
 def _least(values: Array) -> Array:

@@ -26,6 +26,11 @@ class Column:
     meaning: str
     aliases: tuple[str, ...] = ()
 
+    @property
+    def label(self) -> str:
+        """The name with its unit, in the header of a table."""
+        return self.name if self.unit in ("", "-", "bool") else f"{self.name} [{self.unit}]"
+
 
 INPUTS = (
     Column(

@@ -81,6 +81,9 @@ class Object:
     def __post_init__(self) -> None:
         if (self.width is None) == (self.diameter is None) or (self.diameter is not None and self.depth is not None):
             raise InvalidArgumentError("width", self.width, "a width, with or without a depth; or a diameter")
+        for name in ("name", "pedestal", "notes"):
+            if not isinstance(getattr(self, name), str):
+                raise InvalidArgumentError(name, getattr(self, name), "a text")
         checked: dict[str, float] = {}
         for name in ("width", "height", "depth", "diameter", "mass_height"):
             value = getattr(self, name)

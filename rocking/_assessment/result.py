@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -15,7 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.objects import Object
+from rocking._assessment.tables import BadRow
 from rocking._base.equality import EqualByValue
+from rocking._datasets.csv_text import csv_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,11 +35,17 @@ class Assessment(EqualByValue):
         The motions of the site.
     highest_factor : float
         Highest factor on these motions that was searched [-].
+    objects : tuple of Object
+        The object of each row.
+    factors : float array (rows, motions)
+        Lowest factor on each motion that overturns the object, nan where none up to `highest_factor` does [-].
     """
 
     columns: Mapping[str, NDArray[Any]]
     motions: tuple[str, ...]
     highest_factor: float
+    objects: tuple[Object, ...]
+    factors: NDArray[np.float64]
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -63,18 +70,18 @@ class Assessment(EqualByValue):
         }
         return xr.Dataset({name: ("row", column, about[name]) for name, column in columns.items()})
 
-    def to_csv(self, path: str | PathLike[str] | None = None) -> str:
-        """The table as CSV with units in its header, written to a file if a path is given."""
-        text = io.StringIO(newline="")
-        writer = csv.writer(text, lineterminator="\n")
-        units = {one.name: one.unit for one in OUTPUTS}
-        writer.writerow(
-            [f"{name} [{units[name]}]" if units[name] not in ("", "-", "bool") else name for name in self.columns]
-        )
-        writer.writerows([["" if value is None else value for value in row.values()] for row in self.rows])
+    def to_csv(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> str:
+        """The table as CSV with units in its header, written to a file if a path is given.
+
+        Rows of the table of objects that were not read follow at the end, with the verdict "not read" and the reason
+        among the warnings. Text that a spreadsheet would take for a formula has a leading apostrophe.
+        """
+        added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
+        rows: list[dict[str, Any]] = [*self.rows, *added]
+        text = csv_text({one.label: [row.get(one.name) for row in rows] for one in OUTPUTS})
         if path is not None:
-            Path(path).write_text(text.getvalue(), encoding="utf-8")
-        return text.getvalue()
+            Path(path).write_text(text, encoding="utf-8", newline="")
+        return text
 
     def __repr__(self) -> str:
         """How many rows have each verdict, and the worst."""

@@ -111,18 +111,23 @@ def read_objects(source: str | PathLike[str]) -> ObjectTable:
         raise InvalidArgumentError("objects", str(path), f"a file that can be read ({error.strerror})") from None
     if path.suffix.lower() in (".xlsx", ".ods"):
         return objects_of_rows(_sheet(raw))
+    return objects_of_text(raw, json=path.suffix.lower() == ".json")
+
+
+def objects_of_text(raw: bytes, *, json: bool) -> ObjectTable:
+    """Objects from the bytes of a text, JSON or CSV; the errors of `read_objects`."""
     try:
         text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("cp1252", "replace")  # what older spreadsheets write
-    return objects_of_json(text) if path.suffix.lower() == ".json" else objects_of_csv(text)
+    return objects_of_json(text) if json else objects_of_csv(text)
 
 
 def objects_of_json(text: str) -> ObjectTable:
     """Objects from JSON: a list of objects with the names of the columns as keys; numbers are in SI units."""
     try:
         given = json.loads(text)
-    except json.JSONDecodeError as error:
+    except (ValueError, RecursionError) as error:  # also integers of thousands of digits, brackets within brackets
         raise InvalidArgumentError("objects", str(error), "JSON") from None
     if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
         raise InvalidArgumentError("objects", type(given).__name__, "a list of objects, one for each row")
@@ -144,14 +149,17 @@ def objects_of_csv(text: str) -> ObjectTable:
         raise InvalidArgumentError("objects", f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
     tables = []
     for delimiter in DELIMITERS:
-        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
         try:
+            rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
             header = _header(rows)
-        except InvalidArgumentError:
+        except (InvalidArgumentError, csv.Error):
             continue
         tables.append((len(header.columns), rows))
     if not tables:
-        _header(list(csv.reader(io.StringIO(text, newline=""))))  # raises with what was found
+        try:
+            _header(list(csv.reader(io.StringIO(text, newline=""))))  # raises with what was found
+        except csv.Error as error:
+            raise InvalidArgumentError("objects", str(error), "CSV") from None
     return objects_of_rows(max(tables, key=lambda one: one[0])[1])
 
 
