@@ -12,6 +12,7 @@ from typing import Annotated
 
 import typer
 
+from rocking._cli.assess import assess
 from rocking._cli.fragility import fragility
 from rocking._cli.identify import identify
 from rocking._cli.options import (
@@ -136,6 +137,7 @@ def boundary(
 
 
 app.command()(record)
+app.command()(assess)
 app.command()(fragility)
 app.command()(identify)
 app.add_typer(plot, name="plot")

@@ -62,12 +62,16 @@ class Params:
 
 
 @contextmanager
-def option_errors() -> Iterator[None]:
-    """Convert an invalid argument into an error of the command line that names the option."""
+def option_errors(hints: Mapping[str, str] | None = None) -> Iterator[None]:
+    """Convert an invalid argument into an error of the command line that names the option.
+
+    `hints` names the options of arguments that have other names.
+    """
     try:
         yield
     except InvalidArgumentError as error:
-        option = "--" + error.parameter.split("[")[0].split(",")[0].replace("_", "-")
+        argument = error.parameter.split("[")[0].split(",")[0]
+        option = (hints or {}).get(argument, "--" + argument.replace("_", "-"))
         errors = error.errors if isinstance(error, SeveralArgumentsError) else [error]
         texts = [f"{len(errors)} values are not allowed"] if len(errors) > 1 else []
         texts += [_error_text(one) for one in errors[:MAX_ERRORS]]

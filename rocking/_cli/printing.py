@@ -395,4 +395,9 @@ def _text(value: Any) -> str:
         return " ".join(_text(one) for one in value)
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return "-" if value is None else str(value)
+    return "-" if value is None else printable(str(value))
+
+
+def printable(text: str) -> str:
+    """A text without control characters, which a terminal would obey."""
+    return "".join(one if one.isprintable() else "\ufffd" for one in text)

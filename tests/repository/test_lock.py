@@ -81,7 +81,7 @@ def test_no_requirement_is_stated_twice() -> None:
 
 
 @pytest.mark.parametrize(
-    ("folder", "extras"), [("rocking", ("plot", "mesh", "seismic", "workflow")), ("api", ("service",))]
+    ("folder", "extras"), [("rocking", ("plot", "mesh", "report", "seismic", "workflow")), ("api", ("service",))]
 )
 def test_what_the_package_imports_is_required(folder: str, extras: tuple[str, ...]) -> None:
     distributions = metadata.packages_distributions()
