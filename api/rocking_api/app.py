@@ -23,6 +23,7 @@ from rocking_api.models.blocks import BlockRows
 from rocking_api.models.pulses import BODIES
 from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
+    assess,
     blocks,
     control_map,
     datasets,
@@ -48,7 +49,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
-    *(pulses, metadata, suites),
+    *(assess, pulses, metadata, suites),
     *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 

@@ -178,6 +178,7 @@ def test_openapi_describes_every_route(client):
     described = client.get("/openapi.json").json()
     assert set(described["paths"]) == {
         "/v1/response",
+        "/v1/assess",
         "/v1/spectrum",
         "/v1/map",
         "/v1/overturning",

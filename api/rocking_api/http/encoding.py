@@ -73,7 +73,12 @@ def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) ->
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
     """Columns as CSV, see `csv_text`."""
-    return Response(csv_text(columns), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+    return text_response(csv_text(columns), name)
+
+
+def text_response(text: str, name: str) -> Response:
+    """Text of `csv_text`."""
+    return Response(text, media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
 
 def csv_stream(columns: Mapping[str, Column], name: str) -> Response:

@@ -1,0 +1,97 @@
+"""Many objects at a site: which of them its motions overturn."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+
+from rocking._assessment.assess import assess
+from rocking._assessment.site import Site
+from rocking._assessment.tables import ObjectTable, objects_of_text
+from rocking._base.errors import InvalidArgumentError
+from rocking._numba.cancellation import StopFlag
+from rocking_api.http.batch import body_form
+from rocking_api.http.encoding import MEDIA_TYPES, Form, json_response, negotiated_form, text_response
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.assess import AssessParams, AssessResponse
+from rocking_api.service import ServiceDep
+
+router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+
+MAX_OBJECTS = 2000
+"""Most rows of a table [-]."""
+
+MAX_BODY = 1024 * 1024
+"""Largest table [bytes]."""
+
+_FORMS: tuple[Form, ...] = ("json", "csv")
+
+_ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}
+
+
+@router.post(
+    "/assess",
+    summary="Many objects at a site",
+    response_model=AssessResponse,
+    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "description": "table of objects; the columns are those of `rocking.Object`",
+            "content": {
+                MEDIA_TYPES["json"]: {
+                    "schema": {"type": "array", "items": {"type": "object"}, "maxItems": MAX_OBJECTS},
+                    "example": [_ROW],
+                },
+                MEDIA_TYPES["csv"]: {
+                    "schema": {"type": "string"},
+                    "example": "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n",
+                },
+            },
+        }
+    },
+)
+async def post_assess(params: Annotated[AssessParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Which objects the motions of a site overturn, from which factor on these motions, the worst first.
+
+    The table is CSV with units in its header or cells, or a JSON list of objects in SI units. The response has the
+    format of the body, or that of `format` or `Accept`; CSV ends with the rows that were not read.
+    """
+    given = body_form(request, _FORMS)
+    form = negotiated_form(request, params.format, _FORMS, default=given)
+    params.check()
+    site = params.site
+    body = await service.read_body(request, MAX_BODY)
+    table = await service.run_parser(lambda _: _read(body, given), request, large=True)
+    return await service.run_heavy(params, lambda stop: _assess(params, site, table, form, stop), request)
+
+
+def _read(body: bytes, form: Form) -> ObjectTable:
+    table = objects_of_text(body, json=form == "json")
+    count = len(table.objects) + len(table.bad_rows)
+    if count > MAX_OBJECTS:
+        raise TooLargeError("objects", count, f"at most {MAX_OBJECTS}")
+    if not table.objects:
+        reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
+        raise InvalidArgumentError("objects", reasons, "one object or more")
+    return table
+
+
+def _assess(params: AssessParams, site: Site, table: ObjectTable, form: Form, stop: StopFlag) -> Response:
+    found = assess(table.objects, site, sensitivity=params.sensitivity, stop=stop)
+    if form == "csv":
+        return text_response(found.to_csv(bad_rows=table.bad_rows), "assessment")
+    return json_response(
+        AssessResponse.model_validate(
+            {
+                "query": params,
+                "rows": found.rows,
+                "motions": found.motions,
+                "highest_factor": found.highest_factor,
+                "bad_rows": [vars(one) for one in table.bad_rows],
+                "skipped": table.skipped,
+            }
+        )
+    )
