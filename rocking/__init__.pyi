@@ -4,6 +4,7 @@ from . import suites as suites
 from ._assessment.assess import assess as assess
 from ._assessment.objects import Object as Object
 from ._assessment.site import Site as Site
+from ._assessment.tables import read_objects as read_objects
 from ._assessment.uncertainty import overturning_probability as overturning_probability
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RockingError as RockingError

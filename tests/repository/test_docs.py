@@ -85,6 +85,7 @@ def test_example(name, smoke_results, monkeypatch, capsys, tmp_path):
 def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
     (tmp_path / "results").symlink_to(smoke_results)
     (tmp_path / "workflow").symlink_to(ROOT / "workflow")
+    (tmp_path / "collection.csv").symlink_to(DOCS / "howto/collection.csv")
     monkeypatch.chdir(tmp_path)
     text, names = page.read_text(), {}
     for block in re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
@@ -100,6 +101,7 @@ def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
 def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     """Each `rocking` command of start and how-to pages runs, apart from the server and long tables."""
     (tmp_path / "workflow").symlink_to(ROOT / "workflow")
+    (tmp_path / "collection.csv").symlink_to(DOCS / "howto/collection.csv")
     monkeypatch.chdir(tmp_path)
     fleet = re.search(r"```text\n(name,.*?)```", (DOCS / "howto/fleet.md").read_text(), re.DOTALL)
     assert fleet
