@@ -18,6 +18,7 @@ VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["versi
 
 FOLDERS = (
     ".ci",
+    ".github",
     "api",
     "benchmarks",
     "docs",
