@@ -16,7 +16,7 @@ PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy to build from, because the build writes files next to its sources."""
     source = tmp_path_factory.mktemp("source")
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source)
     for folder in PACKAGES.values():
         shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))

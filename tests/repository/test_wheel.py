@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
-from tests.wheel_fixtures import PACKAGES
+from tests.wheel_fixtures import PACKAGES, ROOT
 
 REQUIRED = {
     "lazy-loader",
@@ -63,6 +63,17 @@ def test_requirements_without_extras_are_those_of_the_package(metadata: Message)
             assert marker is not None
             assert marker.evaluate({"extra": extra})
             assert not marker.evaluate({"extra": ""})
+
+
+def test_description_is_the_readme_without_links_that_an_index_cannot_follow(metadata: Message) -> None:
+    assert metadata["Description-Content-Type"] == "text/markdown"
+    description = str(metadata.get_payload())
+    links = re.findall(r"\]\(([^)]*)\)", description)
+    assert links
+    assert [link for link in links if not link.startswith("https://")] == []
+    readme = (ROOT / "README.md").read_text()
+    assert re.findall(r"```.*?```", description, re.DOTALL) == re.findall(r"```.*?```", readme, re.DOTALL)
+    assert re.findall(r"^#.*", description, re.MULTILINE) == re.findall(r"^#.*", readme, re.MULTILINE)
 
 
 def test_serve_without_its_packages_names_the_extra(wheel: Path, tmp_path: Path) -> None:

@@ -1,0 +1,32 @@
+"""What archives and package indexes are told of the project agrees, and is stated in one place each."""
+
+import re
+import runpy
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text()
+
+
+@pytest.mark.parametrize("name", ["codemeta.json", ".zenodo.json"])
+def test_files_of_archives_repeat_the_citation(name: str) -> None:
+    expected = runpy.run_path(str(ROOT / "docs" / "metadata.py"))["files"]()
+    assert (ROOT / name).read_text() == expected[name], "written anew by: python docs/metadata.py"
+
+
+def test_project_and_citation_agree() -> None:
+    assert PROJECT["keywords"] == CITATION["keywords"]
+    assert PROJECT["license"] == CITATION["license"]
+    assert [author["name"] for author in PROJECT["authors"]] == [author["name"] for author in CITATION["authors"]]
+
+
+def test_open_fields_are_in_files_that_exist() -> None:
+    names = re.findall(r"`(\.?\w+\.\w+)`", CONTRIBUTING.partition("## Open until publication")[2])
+    assert "CITATION.cff" in names
+    assert [name for name in names if not (ROOT / name).is_file()] == []
