@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify test browser serve docs bench stress slurm deploy-check fuzz mutants lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify test browser serve docs bench stress slurm deploy-check fuzz mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -75,20 +75,46 @@ fuzz: .venv/project ## send 5,000 random requests to the service; three minutes 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)
 
+UV := $(or $(shell command -v uv),build/uv/bin/uv)
+
+build/uv/bin/uv:
+	$(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv
+
+oldest: ## run the solver's tests with the lowest versions that pyproject.toml allows (PYTHON=3.12: another Python)
+newest: ## the same with the newest versions (PRERELEASE=allow: pre-releases, too)
+
+# The environments are made below build/; the tools of the tests are the newest. The last line says what failed.
+oldest: RESOLUTION := lowest-direct
+newest: RESOLUTION := highest
+oldest newest: $(UV)
+	$(UV) venv --quiet --clear --python $(PYTHON) build/$@
+	$(UV) pip compile pyproject.toml --extra service --python $(PYTHON) --resolution $(RESOLUTION) \
+	    --prerelease $(or $(PRERELEASE),if-necessary-or-explicit) --no-annotate --no-header --quiet --output-file build/$@.txt
+	$(UV) pip install --quiet --python build/$@ --requirement build/$@.txt pytest hypothesis mpmath python-flint
+	$(UV) pip install --quiet --python build/$@ --no-deps --editable .
+	@export VIRTUAL_ENV=build/$@ NUMBA_CACHE_DIR='$(CURDIR)/build/$@/kernels'; \
+	$(UV) run --no-project python -m pytest -q tests/solver >build/$@.log 2>&1; status=$$?; \
+	echo "$@: $$(tail -n 1 build/$@.log) $$(grep -E '^(FAILED|ERROR) ' build/$@.log | cut -d ' ' -f 2 | tr '\n' ' ')"; \
+	exit $$status
+
+wheel: $(UV) ## build dist/, check its metadata, install the wheel into an empty environment and ask one question
+	rm -rf dist
+	$(UV) build --quiet --out-dir dist
+	$(UV) tool run --quiet twine check --strict dist/*
+	$(UV) run --quiet --isolated --no-project --python $(PYTHON) --with dist/*.whl \
+	    rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
+
 # Extras `seismic` and `slurm` are optional: they are not locked.
 LOCKED := service plot mesh dask workflow docs dev
 
 RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
 
-lock: ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, deploy/service.lock
-	@test -x '$(UV)' || { $(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv; }
+lock: $(UV) ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, deploy/service.lock
 	$(RESOLVE) $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
 	$(RESOLVE) --extra service --constraint environment.lock --output-file deploy/service.lock
 
 environment: .venv/project ## make the environment .venv and compile the kernels
 	@:
-
-UV := $(or $(shell command -v uv),build/uv/bin/uv)
 
 results/manifest.json: | .venv/project
 	$(MAKE) reproduce
