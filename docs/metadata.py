@@ -1,4 +1,4 @@
-"""Write codemeta.json and .zenodo.json, which repeat CITATION.cff for archives of software: `python docs/metadata.py`."""
+"""Write codemeta.json and .zenodo.json, which repeat CITATION.cff for archives: `python docs/metadata.py`."""
 
 import json
 from pathlib import Path

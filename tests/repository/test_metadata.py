@@ -30,3 +30,12 @@ def test_open_fields_are_in_files_that_exist() -> None:
     names = re.findall(r"`(\.?\w+\.\w+)`", CONTRIBUTING.partition("## Open until publication")[2])
     assert "CITATION.cff" in names
     assert [name for name in names if not (ROOT / name).is_file()] == []
+
+
+def test_article_cites_what_it_lists_and_names_pages_that_exist() -> None:
+    article = (ROOT / "paper.md").read_text().partition("\n---\n")[2]
+    listed = re.findall(r"^@\w+\{(\w+),", (ROOT / "paper.bib").read_text(), re.MULTILINE)
+    assert set(re.findall(r"@(\w+)", article)) == set(listed)
+    pages = re.findall(r"`(docs/[\w./-]+)`", article)
+    assert pages
+    assert [page for page in pages if not (ROOT / page).exists()] == []
