@@ -54,7 +54,7 @@ def test_warnings_under_a_pulse(client, width, height, acceleration, period, tex
     http = client.get("/v1/blocks/response", params=sizes | motion).json()
     found = command_line(
         *("response", "--pulse", "sine", "--width", f"{width}m", "--height", f"{height}m"),
-        *("--peak-acceleration", f"{acceleration!r} m/s2", "--pulse-period", f"{period}s"),
+        *("--peak-acceleration", f"{acceleration!r} m/s2", "--period", f"{period}s"),
     )
     assert_same(python, http, *found)
     places = [next(k for k, warning in enumerate(python.warnings) if text in warning) for text in texts]

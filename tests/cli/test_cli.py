@@ -24,7 +24,7 @@ from rocking._solver.peak_response import peak_response
 GROUPS = ["--pulse", "sine", "--slenderness", "0.4", "--frequency-ratio", "5", "--restitution", "0.85"]
 UNITS = [
     "--pulse", "sine", "--width", "0.4m", "--height", "160 cm", "--peak-acceleration", "4 m/s^2",
-    "--pulse-period", "500 ms", "--restitution", "momentum",
+    "--period", "500 ms", "--restitution", "momentum",
 ]  # fmt: skip
 
 
@@ -120,7 +120,7 @@ def test_history_of_a_given_length():
 
 WHOLE = [
     "--pulse", "sine", "--width", "40 cm", "--height", "1.6m", "--peak-acceleration", "400 gal",
-    "--pulse-period", "0.5s",
+    "--period", "0.5s",
 ]  # fmt: skip
 BLOCK = rocking.Block(0.4, 1.6)
 
@@ -405,7 +405,7 @@ def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
         (["response", *UNITS[:3], "20", *UNITS[4:]], "--width", "missing unit: write 20m (such as 0.3 m"),
         (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--width", "0.6 m"),
         (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--width", "(0, inf)"),
-        (["response", *UNITS[:8], *UNITS[10:]], "--pulse-period", "required"),
+        (["response", *UNITS[:8], *UNITS[10:]], "--period", "required"),
         (["history", *GROUPS, "--samples", "1"], "--samples", "[2,"),
         (["spectrum", "--pulse", "sine", "--slenderness", "0.4", "--restitution", "0.85", "--points", "1"],
          "--points", "[2,"),

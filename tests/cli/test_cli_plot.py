@@ -30,7 +30,7 @@ AMPLITUDE = ["--peak-acceleration", "0.5g"]
         ["fragility", str(SUITE)],
         ["record", NAPA, *BLOCK[2:], "--scale", "1.2", "--duration", "8s"],
     ],
-    ids=lambda command: f"{command[0]} {'units' if '--half-width' in command else 'groups'}",
+    ids=lambda command: f"{command[0]} {'units' if '--width' in command else 'groups'}",
 )
 def test_a_picture_in_a_file(command, tmp_path):
     path = tmp_path / "picture.png"

@@ -91,7 +91,7 @@ def test_package_import_is_lazy() -> None:
     "command",
     [
         "response --pulse sine --slenderness 0.4 --frequency-ratio 5 --restitution 0.85",
-        "response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --pulse-period 0.5s",
+        "response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s",
         "record workflow/motions/napa_HNE.csv --width 0.2m --height 1m",
     ],
 )
