@@ -243,12 +243,9 @@ def _blocks(given: Any) -> tuple[Block, ...]:
 
 
 def _block(section: str, given: Any) -> Block:
-    """A block of its half sizes or whole sizes."""
-    whole = [name for name in ("width", "height") if isinstance(given, Mapping) and name in given]
-    keys = [name if name in whole else f"half_{name}" for name in ("width", "height")]
-    _keys(section, given, keys)
-    sizes = {key: positive(f"{section}.{key}", given[key], "m") for key in keys}
-    return Block(*(0.5 * size if key in whole else size for key, size in sizes.items()))
+    """A block of its width and height."""
+    _keys(section, given, ("width", "height"))
+    return Block(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:

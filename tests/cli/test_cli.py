@@ -184,8 +184,8 @@ def test_boundary_of_a_block_in_si_units():
 
 
 TABLE = """name,width [cm],height [m],peak_acceleration (gal),period [ms],restitution
-statue,40,0.8,400,500,
-cabinet,40,0.8,800,500,0.9
+statue,40,1.6,400,500,
+cabinet,40,1.6,800,500,0.9
 
 """
 
@@ -203,8 +203,6 @@ def test_table_of_blocks(tmp_path):
     assert as_json["outcome"] == [row["outcome"] for row in rows]
     piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE.replace(",", ";"))
     assert read_csv(piped.stdout) == rows
-    path.write_text(TABLE.replace("period", "period"))
-    assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == rows
     path.write_text(TABLE.splitlines()[0])
     assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []
 
@@ -214,7 +212,7 @@ def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path)
     path = tmp_path / "blocks.csv"
     with path.open("w", newline="") as stream:
         writer = csv.writer(stream)
-        writer.writerows([TABLE.splitlines()[0].split(","), *([name, 40, 0.8, 400, 500, 0.9] for name in names)])
+        writer.writerows([TABLE.splitlines()[0].split(","), *([name, 40, 1.6, 400, 500, 0.9] for name in names)])
     table = ("response", "--pulse", "sine", "--blocks")
     piped = CliRunner().invoke(app, [*table, "-"], input=path.read_bytes())
     assert piped.exit_code == 0

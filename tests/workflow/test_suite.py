@@ -148,7 +148,7 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run
     assert [*problems(copy)] == []
 
 
-def test_sizes_of_blocks_are_half_or_whole_in_metres_or_with_units() -> None:
+def test_sizes_of_blocks_are_in_metres_or_with_units() -> None:
     configuration = yaml.safe_load(CONFIGURATION.read_text())["suite"]
     same = [
         {"width": 0.5, "height": 2.0},
@@ -174,7 +174,7 @@ def test_sizes_of_blocks_are_half_or_whole_in_metres_or_with_units() -> None:
         (
             "blocks",
             [{"width": 0.4, "height": -2.0}],
-            "suite.blocks[0].half_height = -1.0: allowed: (0, inf) [m]",
+            "suite.blocks[0].height = -2.0: allowed: (0, inf) [m]",
         ),
         ("blocks", [{"width": "20", "height": 1.0}], "suite.blocks[0].width = '20': allowed: missing unit: write 20m"),
         ("restitution", "plastic", "suite.restitution = 'plastic'"),
