@@ -178,7 +178,7 @@ def test_single_block_and_limit_state_have_no_dimension(noisy):
     assert short.exceedances.dims == ("intensity",)
     assert short.overturned.dims == ("intensity", "record")
     np.testing.assert_array_equal(full.exceedances[0, 0], short.exceedances)
-    assert float(short.width) == pytest.approx(BLOCK.half_width)
+    assert float(short.width) == pytest.approx(BLOCK.width)
 
 
 def test_fit_of_stored_outcomes_is_that_of_the_run(noisy):
