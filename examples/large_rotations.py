@@ -29,7 +29,7 @@ plt.show()
 # half of the pulse brings it back.
 
 edges = rocking.thresholds("sine", alpha=np.radians(20), **groups)
-print(edges)
+print(edges.amplitude)
 back = rocking.time_history("sine", slenderness=1 / (edges.amplitude[1] * 1.1), alpha=np.radians(20), **groups)
 rocking.plot.history(back)
 plt.show()

@@ -32,4 +32,4 @@ plt.show()
 # %%
 # ``rocking._excitation.pulses.register(burst)`` makes it known by its name, also to a service of this process.
 
-print(rocking.thresholds(burst, frequency_ratio=3.0, restitution=0.85))
+print(rocking.thresholds(burst, frequency_ratio=3.0, restitution=0.85).amplitude)

@@ -400,7 +400,7 @@ def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
         (["response", *GROUPS, "--width", "2m"], "--slenderness", "either groups"),
         (["response", *GROUPS, "--json", "--csv"], "--csv", "one of --json and --csv"),
         (["response", *UNITS[:3], "20", *UNITS[4:]], "--width", "missing unit: write 20m (such as 0.3 m"),
-        (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--width", "0.6 m"),
+        (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--width", "0.3 m"),
         (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--width", "(0, inf)"),
         (["response", *UNITS[:8], *UNITS[10:]], "--period", "required"),
         (["history", *GROUPS, "--samples", "1"], "--samples", "[2,"),

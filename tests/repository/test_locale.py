@@ -49,7 +49,7 @@ RESPONSE = ("-m", "rocking._cli", "response", "--pulse", "sine", "--csv", "--blo
 @pytest.mark.parametrize("file", ["-", "blocs_é.csv"])
 def test_names_pass_from_files_and_standard_input(folder, file):
     (folder / "blocs_é.csv").write_text(BLOCKS, encoding="utf-8")
-    assert "\nStèle é,0.1,0.5," in run(folder, *RESPONSE, file, PYTHONPATH=str(ROOT))
+    assert "\nStèle é,0.2,1.0," in run(folder, *RESPONSE, file, PYTHONPATH=str(ROOT))
 
 
 @pytest.mark.slow
