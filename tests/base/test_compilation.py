@@ -17,7 +17,7 @@ from numba.core.types.functions import BaseFunction
 import rocking
 from rocking import precompile
 from rocking._base.errors import InvalidArgumentError
-from rocking._boundary import trends
+from rocking._boundary import matching
 from rocking._datasets.cube import write_dataset
 from rocking._excitation.pulses import SinusoidalPulse
 from rocking._excitation.sinusoids import MAX_SINUSOIDS
@@ -47,7 +47,7 @@ ENTRIES = (
     ),
     *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
     *(windows.group_points, lookup_kernel.interpolate_many),
-    *(trends.match_trends, trends.learn_trends, trends.follow_trends),
+    *(matching.match_trends, matching.learn_trends, matching.follow_trends),
 )
 
 

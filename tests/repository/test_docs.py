@@ -8,9 +8,11 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 import yaml
 from typer.testing import CliRunner
@@ -33,7 +35,7 @@ PRINTED = {
     "figure_8": [],
     "fragility": ["median 5.40 m/s2"],
     "free_rocking": ["restitution 0.9197"],
-    "large_rotations": ["6.06624767, 7.45218141"],
+    "large_rotations": ["6.06624767 7.45218141"],
     "map_with_boundaries": ["400 never uplift"],
     "own_body": [],
     "own_family": ["3.08448126"],
@@ -109,6 +111,9 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     hammer = re.search(r"```text\n(time .*?)```", (DOCS / "howto/pulse.md").read_text(), re.DOTALL)
     assert hammer
     Path("hammer.csv").write_text(hammer[1])
+    trace: dict[str, Any] = {}
+    exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/identify.md").read_text(), re.DOTALL)[0], trace)
+    np.savetxt("trace.csv", np.column_stack([trace["time"], np.degrees(trace["rotation"])]), delimiter=",")
     pages = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md"))]
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]
