@@ -321,9 +321,9 @@ def test_many_blocks_as_json_and_csv(client):
 def test_all_wrong_numbers_of_a_json_body_are_named_with_units(client):
     row = {"width": 0.4, "height": "tall", "peak_acceleration": 4.0, "period": "short"}
     response = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [row, row | {"height": 1.6}]})
-    problem = assert_problem(response, 422, "blocks[0].half_height")
+    problem = assert_problem(response, 422, "blocks[0].height")
     assert problem["errors"] == [
-        {"name": "blocks[0].half_height", "value": "tall", "allowed": "a number [m]"},
+        {"name": "blocks[0].height", "value": "tall", "allowed": "a number [m]"},
         {"name": "blocks[0].period", "value": "short", "allowed": "a number [s]"},
         {"name": "blocks[1].period", "value": "short", "allowed": "a number [s]"},
     ]
@@ -384,7 +384,7 @@ def test_types_of_a_body_and_of_the_response_are_those_that_are_offered(client):
     ("body", "kind", "name"),
     [
         ('{"blocks": []}', "application/json", "blocks"),
-        ('{"blocks": [{"width": 2}]}', "application/json", "blocks[0].half_height"),
+        ('{"blocks": [{"width": 2}]}', "application/json", "blocks[0].height"),
         (TABLE.replace("[cm]", ""), "text/csv", "blocks, header"),
         (TABLE.replace("80", "tall"), "text/csv", "blocks, line 2, height"),
         (TABLE.replace("0.2,", "1e9,"), "text/csv", "width"),

@@ -15,7 +15,8 @@ from rocking._history.time_history import time_history
 from rocking._solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 
-BLOCK = {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
+BLOCK = {"pulse": "sine"} | GROUPS
 SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 50}
 ROUTES = {
     "/v1/spectrum": SPECTRUM,
@@ -135,7 +136,7 @@ def test_overturning_as_csv_and_netcdf(client):
 
 def test_history_equals_the_solver(client):
     result = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
-    expected = time_history(**BLOCK, samples=50)
+    expected = time_history(BLOCK["pulse"], **GROUPS, samples=50)
     for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
         assert result[name] == expected[name].values.tolist()
     assert result["outcome"] == "SAFE"
@@ -158,7 +159,13 @@ def test_history_as_csv_and_netcdf(client):
 def test_history_with_the_reactions_of_the_ground(client):
     requested = BLOCK | {"alpha_deg": 20, "samples": 50, "contact": "true"}
     result = client.get("/v1/history", params=requested).json()
-    expected = time_history(**BLOCK, alpha=np.radians(20), samples=50, contact=True)
+    expected = time_history(
+        BLOCK["pulse"],
+        **{key: BLOCK[key] for key in BLOCK if key != "pulse"},
+        alpha=np.radians(20),
+        samples=50,
+        contact=True,
+    )
     for name in ("horizontal_reaction", "normal_reaction", "friction_demand", "friction_demand_over_slope"):
         assert result["contact"][name] == expected[name].values.tolist()
     assert result["contact"]["largest_friction_demand"] == expected.largest_friction_demand

@@ -137,7 +137,7 @@ def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(clie
     assert missing["allowed"] == "required in the query, or in a JSON body"
     blocks = {"blocks": [{"width": 0.4}], "colour": 1}
     problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
-    assert "`blocks[0].half_height` is missing in the body" in problem["detail"]
+    assert "`blocks[0].height` is missing in the body" in problem["detail"]
     assert "there is no parameter `colour` in the body" in problem["detail"]
 
 

@@ -120,7 +120,7 @@ def test_a_size_out_of_range_is_told_as_it_was_typed(open_page):
     page = open_page()
     page.locator("#width").fill("30000")
     page.locator("#ask").click()
-    expect(page.locator("#width-problem")).to_have_text("width is 30000; allowed: [0.0002, 20000] [m]")
+    expect(page.locator("#width-problem")).to_have_text("width is 30000; allowed: [0.0001, 10000] [m]")
 
 
 def test_the_motion_is_previewed_with_its_period(open_page):

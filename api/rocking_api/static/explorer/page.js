@@ -50,14 +50,8 @@ function showFieldError({ parameter, value, allowed, message }, form) {
   if (!place) return false;
   const name = parameter.replaceAll("_", " ");
   if (parameter === "record") markField(place, inTermsOf(form, message));
-  else if (name.startsWith("half ")) markField(place, `${name.slice(5)} is ${doubled(String(value))}; allowed: ${doubled(allowed)}`);
   else markField(place, value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`);
   return true;
-}
-
-/** A text about a half size as one about the whole: each number twice. */
-function doubled(text) {
-  return text.replace(/\d+(\.\d+)?(e[-+]?\d+)?/g, (digits) => String(2 * Number(digits)));
 }
 
 /** The message of a reader, which names arguments, with the labels of the fields of the form. */

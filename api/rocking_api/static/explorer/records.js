@@ -74,7 +74,7 @@ function upload(route, params) {
 /** Parameters of the routes, in SI units. */
 function paramsOf() {
   const text = (name) => form.elements[name].value.trim();
-  const quantity = (name) => toSI(name, `${text(name) || "?"} ${form.elements[`${name}_unit`].value}`, 0.5);
+  const quantity = (name) => toSI(name, `${text(name) || "?"} ${form.elements[`${name}_unit`].value}`);
   const [scale, restitution] = ["scale", "restitution"].map((name) => text(name).replace(",", "."));
   return {
     name: file.name.slice(0, 200),

@@ -17,14 +17,14 @@ export function split(text) {
 }
 
 /** A quantity in SI units; other text is passed on, for the service to refuse. */
-export function toSI(name, text, share = 1) {
+export function toSI(name, text) {
   const { value, unit } = split(text);
   const read = Number(value.replace(",", "."));
   const factor = UNITS[name][unit];
   if (value === MISSING) return "";
   if (!Number.isFinite(read)) return value;
   if (factor === undefined) return text.trim();
-  return Number((read * factor * share).toPrecision(15));
+  return Number((read * factor).toPrecision(15));
 }
 
 /** A quantity of SI units in the unit of another text, to four digits. */
