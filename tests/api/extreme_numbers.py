@@ -103,7 +103,7 @@ OBJECTS: dict[str, Any] = {
     "blocks": BLOCK, "body": BLOCK,
     "motions": [noise(k) for k in range(4)], "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
-    "fragility": FRAGILITY, "argument": Orientation.L0,
+    "fragility": FRAGILITY, "site": rocking.Site(pga=3.0, pgv=0.4), "argument": Orientation.L0,
     "group_set": GroupSet.RIGID_SMALL_ROTATION, "problem": Problem(0.3, 2.0, 5.0, 10.0), "groups": Groups(5.0, 0.6),
 }  # fmt: skip
 """Arguments that are no numbers."""
@@ -222,7 +222,7 @@ BODIES: dict[str, dict[str, Any]] = {
 }
 """Ordinary bodies of the routes by media type."""
 
-NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Restitution|Scalar)\b")
+NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Restitution|Scalar|Any)\b")
 
 
 class LateError(BaseException):

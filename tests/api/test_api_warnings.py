@@ -38,11 +38,11 @@ def assert_same(python, http, result, lines):
 
 
 PULSES = [
-    # half width [m], half height [m], peak acceleration [m/s2], period [s], texts of warnings in their order
-    (0.2, 0.8, 4.0, 0.5, []),
-    (0.2, 0.8, 4.65, 0.5, ["within 5 % of this peak acceleration", "within 5 % of this period"]),
-    (1.0, 0.5, 2.1 * 9.80665, 0.5, ["the block may slide", "restitution (2.4)", "wider than high"]),
-    (0.5, 0.5, 1.5 * 9.80665, 0.5, ["the block may slide", "no largest safe acceleration"]),
+    # width [m], height [m], peak acceleration [m/s2], period [s], texts of warnings in their order
+    (0.4, 1.6, 4.0, 0.5, []),
+    (0.4, 1.6, 4.65, 0.5, ["within 5 % of this peak acceleration", "within 5 % of this period"]),
+    (2.0, 1.0, 2.1 * 9.80665, 0.5, ["the block may slide", "restitution (2.4)", "wider than high"]),
+    (1.0, 1.0, 1.5 * 9.80665, 0.5, ["the block may slide", "no largest safe acceleration"]),
 ]
 
 
@@ -62,13 +62,13 @@ def test_warnings_under_a_pulse(client, width, height, acceleration, period, tex
 
 
 RECORDS = [
-    # half width [m], half height [m], factor, texts of warnings in their order
-    (0.25, 1.0, 0.5, ["not monotone"]),
+    # width [m], height [m], factor, texts of warnings in their order
+    (0.5, 2.0, 0.5, ["not monotone"]),
     (
-        *(0.1, 0.5, 0.87),
+        *(0.2, 1.0, 0.87),
         ["accumulate to rest", "sampled", "the peak is not determined by this record", "within 5 %", "not monotone"],
     ),
-    (1.2, 0.6, 6.0, ["restitution (2.4)", "wider than high"]),
+    (2.4, 1.2, 6.0, ["restitution (2.4)", "wider than high"]),
 ]
 
 

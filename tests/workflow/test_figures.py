@@ -142,15 +142,15 @@ def test_integration_in_si_units_overturns_on_the_side_that_figure_9_states(smok
 def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
     small, large = (Block.from_slenderness_angle(np.radians(20), R) for R in (0.5, 1.0))
     period = 1.1
-    one = list(figure_09.thresholds(pulse, small, period, 0.85))
-    other = list(figure_09.thresholds(pulse, large, period * np.sqrt(2), 0.85))  # p goes with 1/sqrt(R)
+    one = list(figure_09.block_thresholds(pulse, small, period, 0.85))
+    other = list(figure_09.block_thresholds(pulse, large, period * np.sqrt(2), 0.85))  # p goes with 1/sqrt(R)
     assert len(one) == len(other) >= 3
     for a, b in zip(one, other, strict=True):
         assert a["frequency_ratio"] == pytest.approx(b["frequency_ratio"], rel=1e-14)
         assert a["amplitude"] == pytest.approx(b["amplitude"], rel=1e-11)
         assert a["acceleration"] == pytest.approx(a["amplitude"] * small.uplift_acceleration, rel=1e-14)
     # and do not with dimensions: at one period the thresholds of the two blocks differ
-    same_period = next(iter(figure_09.thresholds(pulse, large, period, 0.85)))
+    same_period = next(iter(figure_09.block_thresholds(pulse, large, period, 0.85)))
     assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
 
 
