@@ -57,7 +57,9 @@ def solve(chunk: dict[str, Any]) -> tuple[NDArray[np.void], float]:
     inputs: dict[str, Any] = dict(zip(INPUTS, cells, strict=True))
     if chunk["record"]:
         inputs["frequency_parameter"] = inputs.pop("frequency_ratio")
-        call = partial(rocking.peak_response, read_motion(chunk["pulse"]), threads=1)
+        # before version 1.0 records had a function of their own
+        of_record = getattr(rocking, "record_response", rocking.peak_response)
+        call = partial(of_record, read_motion(chunk["pulse"]), threads=1)
     else:
         call = partial(rocking.peak_response, chunk["pulse"], threads=1)
     call(**{name: values[: values.size // 50] for name, values in inputs.items()})  # compiled before the time is taken

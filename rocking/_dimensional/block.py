@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, final, overload
 
 from numpy.typing import ArrayLike
 
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import needed, reject_given
 from rocking._base.units import Scalar
 from rocking._dimensional.curves import (
     block_boundary,
@@ -214,18 +214,12 @@ class RespondingBlock(geometry.AbstractBlock):
         restitution: Restitution,
     ) -> BlockProblem | tuple[Record, Scalar]:
         """The problem under a pulse, or the record and its factor."""
-        of_pulse: dict[str, Scalar | None] = {"peak_acceleration": peak_acceleration, "period": period}
         if isinstance(motion, Record):
-            for name, value in of_pulse.items():
-                if value is not None:
-                    raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
+            reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
             return motion, 1.0 if scale is None else scale
-        if scale is not None:
-            raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
-        if peak_acceleration is None or period is None:
-            missing = next(name for name, value in of_pulse.items() if value is None)
-            raise InvalidArgumentError(missing, None, "a number, for a pulse")
-        return BlockProblem(self, motion, peak_acceleration, period, restitution)
+        reject_given("a pulse: state `peak_acceleration`", scale=scale)
+        strength = needed("a pulse", peak_acceleration=peak_acceleration)
+        return BlockProblem(self, motion, strength, needed("a pulse", period=period), restitution)
 
 
 @final

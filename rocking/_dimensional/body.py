@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer, positive
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer, needed, positive, reject_given
 from rocking._base.units import Scalar, Values
 from rocking._boundary.tracing import trace_curves
 from rocking._dimensional.body_problem import BodyProblem, checked_restitution
@@ -359,21 +359,14 @@ class RespondingBody(AbstractBody):
     ) -> tuple[BodyProblem, dict[str, Array], tuple[Hashable, ...]]:
         """The checked problem, its arguments as arrays, and the names of the dimensions of labelled ones."""
         eta = checked_restitution(restitution)
-        of_pulse = {"peak_acceleration": peak_acceleration, "period": period}
         given: dict[str, Values]
         if isinstance(motion, Record):
-            for name, value in of_pulse.items():
-                if value is not None:
-                    raise InvalidArgumentError(name, value, "nothing for a record: state `scale`")
+            reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
             given = {"scale": 1.0 if scale is None else scale}
         else:
-            if scale is not None:
-                raise InvalidArgumentError("scale", scale, "nothing for a pulse: state `peak_acceleration`")
-            given = {}
-            for name, value in of_pulse.items():
-                if value is None:
-                    raise InvalidArgumentError(name, None, "a number, for a pulse")
-                given[name] = value
+            reject_given("a pulse: state `peak_acceleration`", scale=scale)
+            strength = needed("a pulse", peak_acceleration=peak_acceleration)
+            given = {"peak_acceleration": strength, "period": needed("a pulse", period=period)}
         checked = {name: check(STRENGTHS[name], value) for name, value in given.items()}
         if isinstance(motion, Record):
             acceleration, times = checked["scale"] * motion.peak_acceleration, np.ones(())

@@ -30,7 +30,7 @@ GRID = np.union1d(np.linspace(1.0 / HIGHEST, 1.0, 2001), np.geomspace(1.0 / HIGH
 """1/a [-] of the nodes of `rocking.thresholds`, from uplift on."""
 
 COARSE = 128
-"""Every so manyth node is solved first, a power of two.
+"""Number of intervals between the nodes that are solved first, a power of two.
 
 An interval between two nodes is then halved if, at a multiple of their variation there, the margin can reach zero and
 the peak rotation alpha: for the margin once for each flight up to `MOST_FLIGHTS`, since each impact makes the outcome
@@ -44,7 +44,7 @@ MOST_FLIGHTS = 16
 PEAK_VARIATION = 16.0
 
 CLOSE = 32
-"""So many nodes below the first that overturns are all solved: layers of outcomes lie close together there."""
+"""Number of nodes below the first that overturns that are all solved: layers of outcomes lie close together there."""
 
 BALANCED = 1.0
 """|theta|/alpha of a body that is balanced on an edge, and of one that overturns."""
