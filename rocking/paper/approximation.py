@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -21,8 +23,8 @@ def kappa_lambda(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> tuple[Arra
     """Coefficients kappa of e^-tau and lambda of e^tau [-], (3.26), which make (3.24) and (3.25) equal."""
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     phi = omega * EXPANSION_TIME + uplift_phase(a)
-    kappa = -np.e * omega / 2 * (np.cos(phi) + omega * np.sin(phi))  # (3.26)
-    lambda_ = omega / (2 * np.e) * (np.cos(phi) - omega * np.sin(phi))  # (3.26)
+    kappa = -math.e * omega / 2 * (np.cos(phi) + omega * np.sin(phi))  # (3.26)
+    lambda_ = omega / (2 * math.e) * (np.cos(phi) - omega * np.sin(phi))  # (3.26)
     return np.asarray(kappa), np.asarray(lambda_)
 
 
@@ -38,7 +40,7 @@ def exponential_series(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: A
     """kappa e^-tau + lambda e^tau [-] to second order about tau = 1, (3.25)."""
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     kappa, lambda_ = kappa_lambda(a, omega)
-    decaying, growing, step = kappa / np.e, lambda_ * np.e, tau - EXPANSION_TIME
+    decaying, growing, step = kappa / math.e, lambda_ * math.e, tau - EXPANSION_TIME
     with np.errstate(over="ignore", invalid="ignore"):
         return np.asarray((decaying + growing) * (1 + step**2 / 2) + (growing - decaying) * step)  # (3.25)
 
