@@ -33,7 +33,7 @@ IN_TURN = ("group", "make", "group", "run")
 TOO_LATE = "after its end"
 
 STAGES = (
-    ("overturning/*",), ("overturning/sine",), ("spectra/*",), ("spectra/cosine",), ("figures/figure-1*",),
+    ("overturning/*",), ("overturning/sine-*",), ("spectra/*",), ("spectra/cosine-*",), ("figures/figure-1*",),
     ("figures/figure-0*", "claims"), ("claims",), ("figures/table-1",), ("manifest",), ("checks/*",),
     ("check_results",),
 )  # fmt: skip

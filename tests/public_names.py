@@ -23,8 +23,7 @@ import rocking
 from rocking._cli.app import app as command_line
 from rocking._datasets.cube import AXES, OPTIONAL_VARIABLES, SAMPLES, VARIABLES
 from rocking._model.fields import COLUMN_FIELDS, RESPONSE_FIELDS
-from workflow.scripts.overturning import described
-from workflow.scripts.overturning_part import curves_of
+from workflow.scripts.overturning import curves_of, described
 
 STORED = Path(__file__).parent / "data" / "public_names.txt"
 REFERENCE = Path(__file__).parents[1] / "docs/reference/python.md"
@@ -128,7 +127,7 @@ def http_names() -> Iterator[str]:
 
 def column_names() -> Iterator[str]:
     """Fields of responses, columns of tables, variables of data sets."""
-    curves = next(curves_of("sine", [0.85], 0.0, nodes=16))
+    curves = curves_of("sine", 0.85, 0.0, nodes=16)
     yield entry("fields of a response", [field.name for field in RESPONSE_FIELDS])
     yield entry("columns of a table", [field.name for field in COLUMN_FIELDS])
     yield entry("variables of a spectrum cube", [*AXES, *SAMPLES, *VARIABLES, *OPTIONAL_VARIABLES])

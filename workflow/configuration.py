@@ -25,21 +25,15 @@ from pydantic import (
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._model.fields import DERIVED_FIELDS
-from rocking._spectra.bands import HALO_ABOVE, HALO_BELOW, bands
 from rocking.suites.configuration import suite_configuration
 from workflow.pulses import configured_pulse, different
 from workflow.scripts.axes import steps_between
 
-HALO = HALO_BELOW + HALO_ABOVE
-
 NODES = 200_000_000
-"""Largest number of nodes of a tile, of a cube, or of the boundary grids of one pulse, which are in memory together."""
+"""Largest number of nodes of the cubes of a tenth of the restitution, which are in memory together."""
 
 BYTES = 95
-"""Memory per node while a tile is computed [bytes], measured from 0.5 to 12 million nodes."""
-
-TILE_NODES = 12_000_000
-"""Nodes that are computed for a tile, about, unless the configuration states `tile_rows`: 1.3 GB and some minutes."""
+"""Memory per node while cubes are solved [bytes], measured from 0.5 to 12 million nodes."""
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
@@ -252,9 +246,6 @@ def _by_name(pulses: list[Any]) -> dict[str, Any]:
     return {**different(pulses)}
 
 
-OPTIONAL = {"tile_rows": integer(1, NODES)}
-"""Rows of the spectrum cubes that one job computes; the products do not depend on it."""
-
 DATA_SETS = {
     "title": leaf("a text", lambda value: isinstance(value, str)),
     "pulses": Annotated[several(Annotated[Any, PlainValidator(_pulse)]), AfterValidator(_by_name)],
@@ -301,7 +292,7 @@ def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
         return
     of_paper = not PAPER.keys().isdisjoint(config)
     try:
-        section(OPTIONAL, **DATA_SETS, **(PAPER if of_paper else {})).model_validate(config, context={"folder": folder})
+        section(**DATA_SETS, **(PAPER if of_paper else {})).model_validate(config, context={"folder": folder})
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key, value = ".".join(map(str, first["loc"])) or "configuration", first["input"]
@@ -337,25 +328,22 @@ def _listed(value: Any) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
-def tile_bands(config: Mapping[str, Any]) -> list[tuple[int, int]]:
-    """The bands of rows of the spectrum cubes, one for each tile."""
-    return bands(_rows(config), _tile_rows(config))
+def tenths(config: Mapping[str, Any]) -> dict[str, list[float]]:
+    """The restitutions by tenth, such as `0.8` for those from 0.80 to 0.89; 1 is in the last."""
+    found: dict[str, list[float]] = {}
+    for eta in config["restitution"]:
+        found.setdefault(f"0.{min(round(100 * eta) // 10, 9)}", []).append(eta)
+    return found
 
 
-def nodes_of_tile(config: Mapping[str, Any]) -> int:
-    """Nodes that are computed for the largest tile, with its halo."""
-    return min(_tile_rows(config) + HALO, _rows(config)) * _nodes_of_row(config) * len(config["restitution"])
+def nodes_of_part(config: Mapping[str, Any]) -> int:
+    """Most nodes of the cubes of a tenth of the restitution."""
+    return nodes_of_cube(config) * max(map(len, tenths(config).values()))
 
 
 def nodes_of_cube(config: Mapping[str, Any]) -> int:
     """Nodes of the cube of one restitution."""
     return _rows(config) * _nodes_of_row(config)
-
-
-def _tile_rows(config: Mapping[str, Any]) -> int:
-    """Most rows of a tile, by default so many that it has about `TILE_NODES` nodes with its halo."""
-    of_row = _nodes_of_row(config) * len(config["restitution"])
-    return int(config.get("tile_rows") or max(TILE_NODES // of_row - HALO, 1))
 
 
 def _rows(config: Mapping[str, Any]) -> int:
@@ -368,18 +356,16 @@ def _nodes_of_row(config: Mapping[str, Any]) -> int:
 
 def _too_large(config: Mapping[str, Any]) -> Iterator[str]:
     """Grids that do not fit into memory, from their sizes."""
-    grid, boundary, etas = config["grid"], config["boundary"], len(config["restitution"])
-    limit = f"allowed: {NODES:,}"
-    for what, nodes in (("one restitution", nodes_of_cube(config)), ("a tile", nodes_of_tile(config))):
-        if nodes > NODES:
-            axes = f"{len(grid['alpha_deg'])} alpha_deg x {_rows(config)} slenderness"
-            axes += f" x {grid['frequency_ratio']['points']} frequency_ratio x {etas} restitution"
-            needed, most = (f"{count * BYTES / 1e9:.0f} GB" for count in (nodes, NODES))
-            yield f"grid = {axes}: {nodes:,} nodes in {what}, {needed}; {limit}, {most}"
-            return
-    for key in ("nodes", "nodes_rigid"):
-        if (nodes := boundary[key] ** 2 * etas) > NODES:
-            yield f"boundary.{key} = {boundary[key]}: {nodes:,} nodes with {etas} restitution; {limit}"
+    grid, nodes = config["grid"], nodes_of_part(config)
+    if nodes > NODES:
+        axes = f"{len(grid['alpha_deg'])} alpha_deg x {_rows(config)} slenderness"
+        axes += f" x {grid['frequency_ratio']['points']} frequency_ratio"
+        together = max(map(len, tenths(config).values()))
+        needed, most = (f"{count * BYTES / 1e9:.0f} GB" for count in (nodes, NODES))
+        yield (
+            f"grid = {axes}: {nodes:,} nodes with {together} restitution in one tenth, {needed}; "
+            f"allowed: {NODES:,}, {most}"
+        )
 
 
 def _not_made(config: Mapping[str, Any]) -> Iterator[str]:

@@ -6,7 +6,7 @@ taken for a current one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -29,15 +29,7 @@ def forget_damaged_parts(folder: Path) -> Iterator[str]:
             yield f"{part}: {damage}"
 
 
-def delete_former_parts(parts: Sequence[Path], product: str) -> None:
-    """Delete what interrupted runs with other code or settings left of a product, beside its current parts.
-
-    Parameters
-    ----------
-    parts : sequence of paths
-        All current parts of the product.
-    product : str
-        Start of the names of its parts, up to a hyphen.
-    """
-    for former in set(parts[0].parent.glob(f"{product}-*.nc")) - set(parts):
+def delete_former_parts(part: Path) -> None:
+    """Delete what interrupted runs with other code or settings left of a part, beside the current one."""
+    for former in set(part.parent.glob(f"{part.name.rsplit('.', 2)[0]}.*.nc")) - {part}:
         former.unlink()

@@ -29,7 +29,7 @@ from rocking._datasets.cube import read_dataset, write_dataset
 from rocking._lookup.cube import Points, open_cube
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra
-from workflow.scripts import overturning, overturning_part
+from workflow.scripts import overturning
 from workflow.scripts.axes import stepped
 
 Vector = NDArray[np.float64]
@@ -60,15 +60,8 @@ def build_cubes(folder: Path, config: dict[str, Any], scales: tuple[float, ...])
     """Yield the cube of each grid and the time it took [s]."""
     curves = folder / "boundaries.nc"
     progress("grid size: boundaries")
-    window, eta, parts = config["boundary"], [RESTITUTION], []
-    for angle in ANGLES:
-        parts.append(folder / f"{PULSE}-{angle:g}.nc")
-        nodes = window["nodes_rigid"] if angle else window["nodes"]
-        axis = {name: window[name] for name in ("slenderness", "frequency_ratio")}
-        overturning_part.main(
-            pulse=PULSE, samples=[], restitution=eta, alpha_deg=angle, nodes=nodes, **axis, part=parts[-1]
-        )
-    overturning.main(pulse=PULSE, samples=[], restitution=eta, parts=parts, boundaries=[curves], provenance={})
+    settings = config["boundary"] | {"alpha_deg": ANGLES, "restitution": RESTITUTION}
+    overturning.main(pulse=PULSE, samples=[], **settings, boundaries=curves, provenance={})
     boundary, angles = read_dataset(curves), [math.radians(angle) for angle in ANGLES]
     for scale in scales:
         plane = axes(config, scale)

@@ -27,8 +27,8 @@ HALVINGS = 12
 
 
 def refine_chords(
-    chains: Chains, etas: Floats, classify: Classify, *, largest: float, uncounted: Floats, end: float
-) -> list[tuple[Chains, float, float, int]]:
+    chains: Chains, classify: Classify, *, largest: float, uncounted: float, end: float
+) -> tuple[Chains, float, float, int]:
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
     Regions of many impacts lie side by side with equal codes, and a chord can join two of them. It is taken out: the
@@ -38,25 +38,23 @@ def refine_chords(
     ----------
     chains : Chains
         The curves.
-    etas : float array (restitutions,)
-        Their restitutions, ascending [-].
     classify : Classify
         The solver, with region codes.
     largest : float
         Distance in the plane of 1/a and log omega [-].
-    uncounted : float array (restitutions,)
+    uncounted : float
         The same for regions of many impacts [-].
     end : float
         Width in log omega of the chords that end a region, which are not halved [-].
 
     Returns
     -------
-    list of (chains, error, uncounted_error, unknown)
-        For each restitution the curves, bounds of the largest distance of a chord from its curve, without regions of
+    chains, error, uncounted_error, unknown
+        The curves, bounds of the largest distance of a chord from its curve, without regions of
         many impacts and for these, and the number of chords whose curve was not found at the middle.
     """
-    errors: list[tuple[Floats, NDArray[np.bool_], Floats]] = []
-    unknown: list[Floats] = []
+    error = uncounted_error = 0.0
+    unknown = 0
     todo = np.ones(max(chains.chain.size - 1, 0), dtype=bool)
     for _ in range(HALVINGS):
         todo &= (
@@ -67,35 +65,26 @@ def refine_chords(
         first = np.flatnonzero(todo)
         bend, spread = _bend(chains, first)
         sure = (np.abs(bend) + spread < SURE * largest) & ~_uncounted(chains, first)
-        errors.append((chains.eta[first[sure]], np.zeros(sure.sum(), dtype=bool), (np.abs(bend) + spread)[sure]))
+        error = (np.abs(bend) + spread)[sure].max(initial=error)
         first, bend = first[~sure], bend[~sure]
         if not first.size:
             break
         many = _uncounted(chains, first)
-        most = np.where(many, uncounted[np.searchsorted(etas, chains.eta[first])], largest)
+        most = np.where(many, uncounted, largest)
         middle, found, distance = _middles(chains, first, bend, most, classify)
         wrong = ~found & many
-        unknown.append(middle.eta[~found & ~wrong])
+        unknown += int(np.sum(~found & ~wrong))
         chains = chains.divide(first[wrong] + 1)
         middle.chain = chains.chain[first]
         close = ~found | (distance <= most)
-        errors.append((middle.eta[found & close], many[found & close], distance[found & close]))
+        error = distance[found & close & ~many].max(initial=error)
+        uncounted_error = distance[found & close & many].max(initial=uncounted_error)
         cut = first[~close]
         chains = chains.insert(cut + 1, middle.take(np.flatnonzero(~close)))
         todo = np.zeros(chains.chain.size - 1, dtype=bool)
         place = cut + np.arange(cut.size)
         todo[place] = todo[place + 1] = True
-    at, many, distance = (np.concatenate(each) for each in zip(*errors, strict=True))
-    lost = np.concatenate([np.empty(0), *unknown])
-    return [
-        (
-            chains.take(np.flatnonzero(chains.eta == eta)).without_points(),
-            float(distance[(at == eta) & ~many].max(initial=0.0)),
-            float(distance[(at == eta) & many].max(initial=0.0)),
-            int((lost == eta).sum()),
-        )
-        for eta in etas
-    ]
+    return chains.without_points(), float(error), float(uncounted_error), unknown
 
 
 def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:

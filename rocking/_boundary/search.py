@@ -118,26 +118,20 @@ def counted_code(found: Outcomes) -> Codes:
 
 
 class Work:
-    """Impacts that the solver has followed, and blocks, at each restitution: what the search for curves has cost.
+    """Impacts that the solver has followed, and blocks: what the search for curves has cost.
 
-    Parameters
+    Attributes
     ----------
-    etas : float array (restitutions,)
-        Ascending, each once [-].
+    done : int
+        Their number so far.
     """
 
-    def __init__(self, etas: Floats) -> None:
-        self._etas = etas
-        self._done = np.zeros(etas.size)
+    def __init__(self) -> None:
+        self.done = 0
 
-    def add(self, eta: Floats, impacts: NDArray[np.int32]) -> None:
-        """Count blocks and their impacts, arrays of one shape."""
-        which = np.searchsorted(self._etas, eta.ravel())
-        self._done += np.bincount(which, 1.0 + impacts.ravel(), self._etas.size)
-
-    def at(self, eta: float) -> float:
-        """Impacts and blocks at one restitution so far."""
-        return float(self._done[np.searchsorted(self._etas, eta)])
+    def add(self, impacts: NDArray[np.int32]) -> None:
+        """Count blocks, and their impacts."""
+        self.done += impacts.size + int(impacts.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +174,7 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
         cells = [contiguous_array(group).ravel() for group in groups]
         records, margin = solve(*cells)
         if work is not None:
-            work.add(cells[2], records["impacts"])
+            work.add(records["impacts"])
         codes = code_of(Found(*(records[name] for name in ("outcome", "impacts", "chatter"))))
         return codes.reshape(groups[0].shape), margin.reshape(groups[0].shape)
 

@@ -60,17 +60,14 @@ SEARCHES = 4
 
 
 class Tracer:
-    """Columns at some restitutions, and the joins between the regions of neighbouring ones.
-
-    The restitutions do not influence each other: they are traced side by side so that the solver gets many blocks in
-    one call.
+    """Columns, and the joins between the regions of neighbouring ones.
 
     Parameters
     ----------
     log_omega : float array (columns,)
         Lines omega = const of the grid, ascending [-].
-    etas : float array (restitutions,)
-        Restitutions, each once [-].
+    eta : float
+        Restitution [-].
     classify, classify_regions : Classify
         The solver with layer codes and with region codes.
     work : Work
@@ -79,28 +76,27 @@ class Tracer:
     Attributes
     ----------
     columns : list of Column
-        Of the lines of the grid, for one restitution after the other.
+        Of the lines of the grid.
     joins : dict of lists
         By panel, the index of its left column: pairs of ends of regions that follow each other on a curve.
-    thinnest : float array (restitutions,)
+    thinnest : float
         Width in 1/a below which a region of many impacts is not resolved [-].
-    ends : float array (restitutions,)
+    end : float
         Distance in log omega within which the end of such a region is known [-].
-    chords : float array (restitutions,)
+    chord : float
         Largest distance of a chord from the curve of such a region [-].
     """
 
     def __init__(
-        self, log_omega: Floats, etas: Floats, classify: Classify, classify_regions: Classify, work: Work
+        self, log_omega: Floats, eta: float, classify: Classify, classify_regions: Classify, work: Work
     ) -> None:
-        self.size, self.etas = log_omega.size, etas
-        lines = np.arange(etas.size * self.size)
-        self.points = np.stack([np.zeros(lines.size), np.tile(log_omega, etas.size), np.repeat(etas, self.size)], 1)
+        self.size, self.eta = log_omega.size, eta
+        self.points = np.stack([np.zeros(self.size), log_omega, np.full(self.size, eta)], 1)
         self.classify = classify
         self.classify_regions = classify_regions
         self.work = work
         self.columns: list[Column] = []
-        self.panels = lines[lines % self.size != self.size - 1].tolist()
+        self.panels = [*range(self.size - 1)]
         self.joins: dict[int, list[tuple[Side, Side]]] = {}
         self._open: Counter[int] = Counter()
         self._tried: set[tuple[int, int, float, int]] = set()
@@ -112,37 +108,32 @@ class Tracer:
         for k in self.panels:
             if k - 1 in smooth:
                 learn_smooth_slopes((self.columns[k - 1], self.columns[k], self.columns[k + 1]))
-        followed = {eta: self.work.at(eta) + EFFORT for eta in self.points[:: self.size, 2].tolist()}
-        halved = {eta: most + EFFORT for eta, most in followed.items()}
+        followed = self.work.done + EFFORT
+        halved = followed + EFFORT
         changed = set(self.panels)
         for _ in range(SEARCHES):
             changed |= self._follow(changed, followed)
             ends = self._join(changed, halved)
-            changed = self._beyond([end for end in ends if self.work.at(end.left.eta) <= followed[end.left.eta]])
+            changed = self._beyond(ends) if self.work.done <= followed else set()
             if not changed:
                 break
         else:
             self._join(changed, halved)
 
-    def open_ends(self, restitution: int) -> int:
-        """Places at which a region of a restitution ends, divides or begins that are known to a step of the grid."""
-        return sum(count for k, count in self._open.items() if k // self.size == restitution)
+    @property
+    def open_ends(self) -> int:
+        """Places at which a region ends, divides or begins that are known to a step of the grid."""
+        return self._open.total()
 
     def _classify_grid(self, rows: Floats) -> None:
         """Columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
-        log_omega, etas = self.points[: self.size, 1], self.points[:: self.size, 2]
         found = []
-        for part in np.array_split(np.arange(self.size), math.ceil(rows.size * etas.size / BATCH_SIZE)):
-            # the restitution varies fastest: such blocks share the first flight
-            grid = rows.T[part, :, None], log_omega[part, None, None], etas
-            x, lines = (
-                each.transpose(2, 0, 1)
-                for each in np.broadcast_arrays(grid[0], part[:, None, None] + self.size * np.arange(etas.size))
-            )
-            codes, margin = (each.transpose(2, 0, 1) for each in self.classify(*grid))
+        for part in np.array_split(np.arange(self.size), math.ceil(rows.size / BATCH_SIZE)):
+            x, lines = np.broadcast_arrays(rows.T[part], part[:, None])
+            codes, margin = self.classify(x, *self.points[part, 1:, None].swapaxes(0, 1))
             edge = np.diff(codes) != 0
-            ends = np.ones((*edge.shape[:2], 1), dtype=bool)
-            kept = np.concatenate([ends, edge], 2) | np.concatenate([edge, ends], 2)
+            ends = np.ones((part.size, 1), dtype=bool)
+            kept = np.concatenate([ends, edge], 1) | np.concatenate([edge, ends], 1)
             found.append(Nodes(lines[kept], x[kept], codes[kept], margin[kept]))
             many = (codes == UNCOUNTED) | (impacts_of_code(codes) >= 2)
             inner = many[..., 1:] | many[..., :-1]
@@ -152,31 +143,25 @@ class Tracer:
             found.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
         nodes = Nodes.merged(found)
         self._resolve_layers(nodes)
-        self.lines = Lines(self.points, self.classify, np.repeat(self.thinnest, self.size))
+        self.lines = Lines(self.points, self.classify, np.full(self.size, self.thinnest))
         columns = self.lines.add(nodes)
         self.columns = [columns[k] for k in range(len(self.points))]
 
     def _resolve_layers(self, nodes: Nodes) -> None:
         """Choose how finely regions of many impacts are resolved, from how many of their ends the nodes show."""
         many = without_layers(nodes.codes) == UNCOUNTED
-        ends = nodes.line[1:][(many[1:] != many[:-1]) & (np.diff(nodes.line) == 0)]
-        layered = np.bincount(ends // self.size, minlength=self.etas.size) > LAYERED * self.size
-        coarse = layered | (self.etas > NEARLY_ELASTIC)
-        self.thinnest = np.where(coarse, UNCOUNTED_THINNEST, THINNEST)
-        self.ends = np.where(coarse, UNCOUNTED_END, END)
-        self.chords = np.where(coarse, UNCOUNTED_CHORD, CHORD)
+        ends = np.count_nonzero((many[1:] != many[:-1]) & (np.diff(nodes.line) == 0))
+        coarse = ends > LAYERED * self.size or self.eta > NEARLY_ELASTIC
+        fine = THINNEST, END, CHORD
+        self.thinnest, self.end, self.chord = (UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD) if coarse else fine
 
-    def _follow(self, panels: Iterable[int], most: dict[float, float]) -> set[int]:
+    def _follow(self, panels: Iterable[int], most: int) -> set[int]:
         """Look in each column for the regions of its neighbours; the panels whose columns changed."""
         changed: set[int] = set()
         todo = set(panels)
-        while todo:
+        while todo and self.work.done < most:
             wanted: dict[int, list[Floats]] = defaultdict(list)
-            matched = {
-                k: match_thresholds(self.columns[k], self.columns[k + 1])
-                for k in sorted(todo)
-                if self.work.at(self.columns[k].eta) < most[self.columns[k].eta]
-            }
+            matched = {k: match_thresholds(self.columns[k], self.columns[k + 1]) for k in sorted(todo)}
             for k in [*matched, *reversed(matched)]:  # slopes pass from panel to panel in both directions
                 learn_slopes(self.columns[k], self.columns[k + 1], matched[k])
             for k, pairs in matched.items():
@@ -209,7 +194,7 @@ class Tracer:
                 panels |= {k - 1, k}
         return panels & set(self.panels)
 
-    def _join(self, lines: set[int], most: dict[float, float]) -> list[Panel]:
+    def _join(self, lines: set[int], most: int) -> list[Panel]:
         """Join the regions of neighbouring columns; the panels, or parts of them, in which one ends."""
         todo: list[Panel] = []
         for k in sorted(lines):
@@ -223,7 +208,7 @@ class Tracer:
                 learn_slopes(panel.left, panel.right, pairs)
                 self.joins[panel.line] += panel.sides(pairs)
                 for gap in panel.gaps(pairs):
-                    if gap.step > self._end_distance(gap) and self.work.at(gap.left.eta) < most[gap.left.eta]:
+                    if gap.step > self._end_distance(gap) and self.work.done < most:
                         halved.append(gap)
                     else:
                         self.joins[gap.line] += join_sides(gap.left, gap.right)
@@ -279,7 +264,7 @@ class Tracer:
 
     def _end_distance(self, panel: Panel) -> float:
         """Distance in log omega within which the ends of regions in a panel are known [-]."""
-        return float(self.ends[panel.line // self.size]) if panel.uncounted else END
+        return self.end if panel.uncounted else END
 
     def _beyond(self, ends: list[Panel]) -> set[int]:
         """Look for regions that end at a column of the grid beyond it, now that their course is known well."""

@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rocking._base.errors import integer
 from rocking._base.units import Scalar
@@ -20,7 +20,7 @@ from rocking._boundary.columns import THINNEST
 from rocking._boundary.search import Floats, Solve, Work, block_solver, classifier, layer_code, region_code
 from rocking._boundary.tracer import CHORD, END, Tracer
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check, check_number, check_one_alpha, check_window
+from rocking._model.checks import check_number, check_one_alpha, check_window
 from rocking._model.outcome_code import decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
@@ -89,71 +89,41 @@ def overturning_boundary(
     two impacts or more. From there it is followed in both directions. So a region can be missed only if it is narrower
     in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
     """
-    return overturning_boundaries(
-        motion,
-        restitution=check_number(RESTITUTION, restitution),
-        alpha=alpha,
-        frequency_ratio=frequency_ratio,
-        slenderness=slenderness,
-        nodes=nodes,
-        stop=stop,
-    )[0]
-
-
-def overturning_boundaries(
-    pulse: str | AbstractPulse,
-    *,
-    restitution: ArrayLike,
-    alpha: Scalar | None = None,
-    frequency_ratio: tuple[float, float] = (0.2, 15.0),
-    slenderness: tuple[float, float] = (0.02, 1.0),
-    nodes: int = 401,
-    stop: StopFlag | None = None,
-) -> list[xr.Dataset]:
-    """`overturning_boundary` for each of some coefficients of restitution (l,), bit by bit."""
-    etas = np.atleast_1d(check(RESTITUTION, restitution))
-    angle, made = check_one_alpha(alpha), as_pulse(pulse)
-    curves = trace_curves(block_solver(made, angle, stop), etas, frequency_ratio, slenderness, nodes)
-    for one in curves:
-        one.attrs = {"pulse": made.name, "restitution": one.attrs["restitution"], "alpha": angle} | one.attrs
-    return curves
+    eta, angle, made = check_number(RESTITUTION, restitution), check_one_alpha(alpha), as_pulse(motion)
+    curves = trace_curves(block_solver(made, angle, stop), eta, frequency_ratio, slenderness, nodes)
+    return curves.assign_attrs({"pulse": made.name, "restitution": eta, "alpha": angle} | curves.attrs)
 
 
 def trace_curves(
     solve: Solve,
-    etas: NDArray[np.float64],
+    eta: float,
     frequency_ratio: tuple[float, float],
     slenderness: tuple[float, float],
     nodes: int = 401,
-) -> list[xr.Dataset]:
-    """`overturning_boundaries` by any solver, whose slenderness is 1 at uplift."""
+) -> xr.Dataset:
+    """`overturning_boundary` by any solver, whose slenderness is 1 at uplift."""
     nodes = integer("nodes", nodes, 16, 4001)
     low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
     bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
     log_omega = np.linspace(np.log(low), np.log(high), nodes)
-    rows = _rows(bottom, top, nodes, log_omega.size)
-    unique, which = np.unique(etas, return_inverse=True)
-    work = Work(unique)
+    rows, work = _rows(bottom, top, nodes, log_omega.size), Work()
     classify, classify_regions = (classifier(solve, code, work) for code in (layer_code, region_code))
-    tracer = Tracer(log_omega, unique, classify, classify_regions, work)
+    tracer = Tracer(log_omega, eta, classify, classify_regions, work)
     tracer.trace(rows)
-    joins = (join for k in tracer.panels for join in tracer.joins[k])
-    refined = refine_chords(chains_of(joins), unique, classify_regions, largest=CHORD, uncounted=tracer.chords, end=END)
-    curves = [
-        _as_dataset(chains).assign_attrs(
-            restitution=float(eta),
-            chord_error=error,
-            uncounted_chord_error=uncounted_error,
-            thinnest_region=THINNEST,
-            thinnest_uncounted_region=float(tracer.thinnest[k]),
-            end_distance=float(tracer.ends[k]),
-            node_distance=float(np.diff(rows, axis=0).max()),
-            open_ends=tracer.open_ends(k),
-            unmeasured_chords=unknown,
-        )
-        for k, (eta, (chains, error, uncounted_error, unknown)) in enumerate(zip(unique, refined, strict=True))
-    ]
-    return [curves[k] for k in which]
+    chains = chains_of(join for k in tracer.panels for join in tracer.joins[k])
+    refined = refine_chords(chains, classify_regions, largest=CHORD, uncounted=tracer.chord, end=END)
+    chains, error, uncounted_error, unknown = refined
+    return _as_dataset(chains).assign_attrs(
+        restitution=eta,
+        chord_error=error,
+        uncounted_chord_error=uncounted_error,
+        thinnest_region=THINNEST,
+        thinnest_uncounted_region=tracer.thinnest,
+        end_distance=tracer.end,
+        node_distance=float(np.diff(rows, axis=0).max()),
+        open_ends=tracer.open_ends,
+        unmeasured_chords=unknown,
+    )
 
 
 def _rows(low: float, high: float, nodes: int, columns: int) -> Floats:

@@ -220,7 +220,7 @@ class RespondingBody(AbstractBody):
         window = frequency_window(period, lambda one: unit / one)
         problem, *_ = self._problem(motion, 1.0, unit, restitution=restitution)
         eta = float(problem.cells["eta"][0, 0])
-        (curves,) = trace_curves(problem.solver(0, stop), np.array([eta]), window, (0.02, 1.0))
+        curves = trace_curves(problem.solver(0, stop), eta, window, (0.02, 1.0))
         uplift = float(self.uplift_acceleration)
         curves.attrs |= {"pulse": problem.motion.name, "body": self.description, "uplift_acceleration": uplift}
         return with_si_axes(curves, uplift, unit)

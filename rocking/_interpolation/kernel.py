@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._interpolation.cells import ALPHA_ERROR, CELL_BYTES, FORM_BITS, INTERPOLATION_ERROR, RESTITUTION_ERROR
+from rocking._interpolation.slices import STENCIL_SIZE
 from rocking._interpolation.stencils import (
     OVERTURNS,
     SQUARED,
-    STENCIL_SIZE,
     Mesh,
     cell_of,
     lagrange_weights,

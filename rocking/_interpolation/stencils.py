@@ -11,15 +11,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError
+from rocking._interpolation.slices import STENCIL_SIZE
 from rocking._numba.compilation import FloatArray, contiguous_array, entry, kernel
 from rocking._numba.memory import load_float64, load_int32
 from rocking._numba.quads import load_quad, numbers_of, quad
-
-STENCIL_SIZE = 4
-"""Nodes of a stencil in one direction, and slices of a window: the interpolant is exact for cubics."""
 
 NO_STENCIL, PEAK, SQUARED, OVERTURNS = -1, 0, 1, 2
 """Values of `stencil`: not interpolated; interpolated peak; interpolated (1 - peak)^2; all overturn in the same way."""
@@ -136,34 +134,6 @@ def cell_of(axis: NodeAxis, value: float, x: float) -> int:
     while load_float64(nodes + 8 * cell) > value:
         cell -= 1
     return cell
-
-
-def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Index of the slice at or below each value, -1 outside of the slices; and whether the value is on that slice."""
-    value = np.asarray(value, dtype=np.float64)
-    below = np.searchsorted(slices, value, side="right") - 1
-    on_slice = np.append(slices, np.nan)[below] == value  # -1 selects nan, which equals nothing
-    return np.where((below < slices.size - 1) | on_slice, below, -1), on_slice
-
-
-@entry
-def slice_window(count: int, lower: int) -> tuple[int, int]:
-    """The slices from which the interval above slice `lower` is interpolated.
-
-    Parameters
-    ----------
-    count : int
-        Number of slices, at least 2.
-    lower : int
-        Slice below the interval, from 0 to `count` - 2.
-
-    Returns
-    -------
-    first, size : int
-        The two slices below and the two above the interval; at the ends the four outermost; all if there are fewer.
-    """
-    size = min(count, STENCIL_SIZE)
-    return min(max(lower - 1, 0), count - size), size
 
 
 @entry

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._interpolation.stencils import STENCIL_SIZE
+from rocking._interpolation.slices import STENCIL_SIZE
 from rocking._numba.compilation import jitable
 
 NODE_BYTES, ROW_BYTES = 8, 64

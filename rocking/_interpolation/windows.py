@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._interpolation.stencils import STENCIL_SIZE, slice_products, slice_window
+from rocking._interpolation.slices import STENCIL_SIZE, slice_window
+from rocking._interpolation.stencils import slice_products
 from rocking._numba.compilation import FloatArray, SimdVector, contiguous_array, entry, kernel
 from rocking._numba.simd import LANES, load, load_elements, select, splat, store
 

@@ -29,7 +29,7 @@ from rocking._interpolation.kernel import (
     Found,
     interpolate_many,
 )
-from rocking._interpolation.stencils import slice_index, slice_window
+from rocking._interpolation.slices import slice_index, slice_window
 from rocking._interpolation.windows import SLICE_WINDOW, group_points
 from rocking._lookup.cube_slice import CubeSlice, fetch_slice, open_slice
 from rocking._model.checks import broadcast_groups
@@ -259,7 +259,7 @@ class Cube:
                 continue
             index = np.flatnonzero(self.restitutions == restitution)
             one = self.slice_at(int(index[0])) if index.size else None
-            if one is None or not one.fits(own) or not np.array_equal(one.restitutions, own.restitutions):
+            if one is None or not one.fits(own):
                 return []
             slices.append(one)
         return slices

@@ -19,7 +19,8 @@ from rocking._datasets.checksum import sha256_of
 from rocking._datasets.cube import AXES, decode_spectrum, read_content, stored_pulse
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.cells import pack_cells
-from rocking._interpolation.stencils import STENCIL_SIZE, Mesh, slice_products
+from rocking._interpolation.slices import STENCIL_SIZE
+from rocking._interpolation.stencils import Mesh, slice_products
 from rocking._interpolation.strips import strips_of
 from rocking._interpolation.windows import SLICE_WINDOW, AngleAxis
 
@@ -40,7 +41,7 @@ class CubeSlice:
     restitution : float
         eta of this cube [-].
     restitutions : float array
-        eta of all cubes computed with this one [-], ascending.
+        eta of the cubes from which the interval above this one is interpolated [-], ascending.
     alpha, slenderness, frequency_ratio : float arrays
         The axes [rad], [-], [-].
     mesh : Mesh
@@ -182,7 +183,7 @@ def restitution_of(cube: xr.Dataset) -> float:
 
 
 def restitutions_of(cube: xr.Dataset) -> Array:
-    """eta of all cubes computed with a spectrum cube [-], ascending."""
+    """eta of the cubes from which the interval above a spectrum cube is interpolated, its own among them [-]."""
     return np.atleast_1d(cube.attrs.get("restitution_slices", restitution_of(cube)))
 
 

@@ -14,8 +14,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import one_of
-from rocking._datasets.cube import OPTIONAL_VARIABLES, build_spectrum_dataset
+from rocking._datasets.cube import DIMENSIONS, OPTIONAL_VARIABLES, build_spectrum_dataset
 from rocking._excitation.sampled import SampledPulse
+from rocking._interpolation.slices import windows_of
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking._model.checks import check, check_alpha
 from rocking._model.fields import CUBE_FIELDS
@@ -75,6 +76,30 @@ def spectra(
     pulse: str | SampledPulse,
     *,
     restitution: ArrayLike,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+    **grid: Any,
+) -> Iterator[xr.Dataset]:
+    """The spectrum cubes of one pulse (`rocking._datasets.cube`), one for each coefficient of restitution in turn.
+
+    Parameters
+    ----------
+    pulse, restitution, threads, stop, **grid
+        As for `solve_cubes`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range.
+    """
+    cubes = [*solve_cubes(pulse, restitution=restitution, threads=threads, stop=stop, **grid)]
+    return with_restitution_errors(pulse, cubes, threads=threads, stop=stop)
+
+
+def solve_cubes(
+    pulse: str | SampledPulse,
+    *,
+    restitution: ArrayLike,
     slenderness: ArrayLike,
     frequency_ratio: ArrayLike,
     alpha: ArrayLike = (0.0,),
@@ -83,7 +108,7 @@ def spectra(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Iterator[xr.Dataset]:
-    """The spectrum cubes of one pulse, one for each coefficient of restitution in turn (`rocking._datasets.cube`).
+    """The cubes without the errors of interpolation between restitutions, which `with_restitution_errors` adds.
 
     Parameters
     ----------
@@ -118,13 +143,59 @@ def spectra(
     for name in derived:
         one_of("derived", name, OPTIONAL_VARIABLES)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
-    layers, errors = _layers(grid, etas, angles, barred, derived)
-    errors |= _errors_between_slices(grid, layers, etas, angles)
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
-    for k, eta in enumerate(etas):
-        cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
-        layers[k].clear()  # the caller may keep the cube
-        yield cube.assign_attrs(restitution_slices=etas)
+    for first in range(0, etas.size, BATCH_SIZE):
+        batch = slice(first, first + BATCH_SIZE)
+        layers, errors = _layers(grid, etas[batch], angles, None if barred is None else barred[batch], derived)
+        for k, eta in enumerate(etas[batch]):
+            cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
+            layers[k].clear()  # the caller may keep the cube
+            yield cube
+
+
+def with_restitution_errors(
+    pulse: str | SampledPulse,
+    cubes: Sequence[xr.Dataset],
+    first: int = 0,
+    last: int | None = None,
+    *,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> Iterator[xr.Dataset]:
+    """Some of the cubes of `solve_cubes` in turn, in memory, with the errors of interpolation up to the next one.
+
+    Parameters
+    ----------
+    pulse : str or SampledPulse
+        As for `solve_cubes`.
+    cubes : sequence of xarray.Dataset
+        Cubes of ascending restitutions; those of `rocking._interpolation.slices.windows_of` (first, last) suffice. One
+        angle at a time is read.
+    first, last : int
+        First of the cubes that are wanted, and the one after the last of them; by default all.
+    threads, stop
+        As for `solve_cubes`.
+    """
+    etas = np.array([float(cube["restitution"]) for cube in cubes])
+    own = slice(first, etas.size if last is None else last)
+    rows, columns, angles = (cubes[0][name].values for name in ("slenderness", "frequency_ratio", "alpha"))
+    grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
+    errors = grid.no_errors(etas[own], angles)
+    wanted = [k for k in _interval_starts(etas, MAX_SPACING["restitution"]) if own.start <= k < own.stop]
+    for a, angle in enumerate(angles if wanted else ()):
+        layers = [GridLayer.stored(grid.mesh, cube.isel(alpha=a)) for cube in cubes]
+        kinds = [layer.kinds() for layer in layers]
+        intervals = [LevelInterval.of(layers, kinds, etas, 1, k) for k in wanted]
+        for k, error in zip(wanted, grid.errors_between_restitutions(intervals, float(angle)), strict=True):
+            errors[k - own.start, a] = error
+    for k, error in enumerate(errors, own.start):
+        cube = cubes[k].compute()
+        variables = {str(name): part.values for name, part in cube.data_vars.items()}
+        variables["restitution_error"] = _bounds(error)
+        axes = {name: cube[name].values for name in DIMENSIONS}
+        whole = build_spectrum_dataset(variables, pulse=pulse, restitution=float(etas[k]), axes=axes)
+        window = slice(*windows_of(etas.size, k, k + 1))
+        yield whole.assign_attrs(restitution_slices=etas[window])
 
 
 def _layers(
@@ -132,36 +203,19 @@ def _layers(
 ) -> tuple[list[list[GridLayer]], dict[str, Array]]:
     """The layers by restitution and angle, and the errors (l, k, n - 1, m - 1) of interpolation in their cells."""
     layers: list[list[GridLayer]] = [[] for _ in etas]
-    errors = grid.no_errors(etas, angles)
+    inside, by_angle, by_eta = (grid.no_errors(etas, angles) for _ in range(3))
     for a, angle in enumerate(angles):
-        for first in range(0, etas.size, BATCH_SIZE):
-            some = etas[first : first + BATCH_SIZE]
-            nodes = grid.nodes(some, angle)
-            further = {name: getattr(nodes, name) for name in derived}
-            for k in range(some.size):
-                bars = None if barred is None else barred[first + k, a]
-                layers[first + k].append(GridLayer.of(grid.mesh, nodes, k, bars, further))
-            made = [layers[first + k][a] for k in range(some.size)]
-            errors[first : first + some.size, a] = grid.errors_in_cells(made, some, angle)
-    return layers, {"interpolation_error": errors}
-
-
-def _errors_between_slices(
-    grid: _Grid, layers: Sequence[Sequence[GridLayer]], etas: Array, angles: Array
-) -> dict[str, Array]:
-    """The errors (l, k, n - 1, m - 1) of interpolation between a restitution or an angle and the next one."""
-    by_eta, by_angle = grid.no_errors(etas, angles), grid.no_errors(etas, angles)
+        nodes = grid.nodes(etas, angle)
+        further = {name: getattr(nodes, name) for name in derived}
+        for k, row in enumerate(layers):
+            row.append(GridLayer.of(grid.mesh, nodes, k, None if barred is None else barred[k, a], further))
+        inside[:, a] = grid.errors_in_cells([row[a] for row in layers], etas, angle)
     kinds = [[layer.kinds() for layer in row] for row in layers]
-    for a, angle in enumerate(angles):
-        along = [row[a] for row in layers], [row[a] for row in kinds]
-        intervals = [LevelInterval.of(*along, etas, 1, k) for k in _interval_starts(etas, MAX_SPACING["restitution"])]
-        for interval, error in zip(intervals, grid.errors_between_restitutions(intervals, angle), strict=True):
-            by_eta[interval.lower, a] = error
     for a in _interval_starts(angles, MAX_SPACING["alpha"]):
         # the equation of motion depends on alpha through its square only
         intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
         by_angle[:, a] = grid.errors_between_angles(intervals, etas)
-    return {"restitution_error": by_eta, "alpha_error": by_angle}
+    return layers, {"interpolation_error": inside, "restitution_error": by_eta, "alpha_error": by_angle}
 
 
 def _interval_starts(slices: Array, spacing: float) -> list[int]:
@@ -328,15 +382,21 @@ def _cube(
     variables = {field.name: np.stack([getattr(layer, field.name) for layer in layers]) for field in CUBE_FIELDS}
     variables |= {name: np.stack([layer.derived[name] for layer in layers]) for name in layers[0].derived}
 
-    def at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
-        return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
-
-    variables["stencil"] = at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
-    for name, error in errors.items():
-        largest = largest_in_neighbourhood(error)
-        largest[~((error <= MAX_ERROR) & np.isfinite(largest))] = np.nan
-        single = largest.astype(np.float32)
-        # rounded up to single precision: what is stored is still a bound
-        above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
-        variables[name] = at_corner(above, np.nan)
+    variables["stencil"] = _at_corner(np.stack([layer.stencil for layer in layers]), NO_STENCIL)
+    variables |= {name: _bounds(error) for name, error in errors.items()}
     return build_spectrum_dataset(variables, pulse=pulse, restitution=eta, axes=axes)
+
+
+def _at_corner(cells: ArrayLike, empty: float) -> NDArray[Any]:
+    """Values of cells (k, n - 1, m - 1) at their lower nodes (k, n, m)."""
+    return np.pad(cells, ((0, 0), (0, 1), (0, 1)), constant_values=empty)
+
+
+def _bounds(error: Array) -> NDArray[np.float32]:
+    """Errors (k, n - 1, m - 1) of cells as they are stored: largest of a neighbourhood, nan above `MAX_ERROR`."""
+    largest = largest_in_neighbourhood(error)
+    largest[~((error <= MAX_ERROR) & np.isfinite(largest))] = np.nan
+    single = largest.astype(np.float32)
+    # rounded up to single precision: what is stored is still a bound
+    above = np.where(single < largest, np.nextafter(single, np.float32(np.inf)), single)
+    return np.asarray(_at_corner(above, np.nan))

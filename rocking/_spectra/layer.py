@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._interpolation.stencils import (
@@ -80,6 +81,12 @@ class GridLayer:
             codes[barred] = NO_STENCIL
         further = {name: np.ascontiguousarray(values[..., k]) for name, values in (derived or {}).items()}
         return cls(mesh=mesh, **stored, stencil=codes.astype(np.int8), derived=further)
+
+    @classmethod
+    def stored(cls, mesh: Mesh, cube: xr.Dataset) -> GridLayer:
+        """The layer that a spectrum cube stores at one angle."""
+        stored: dict[str, Any] = {one.name: contiguous_array(cube[one.name].values) for one in CUBE_FIELDS}
+        return cls(mesh=mesh, **stored, stencil=contiguous_array(cube["stencil"].values[:-1, :-1]))
 
     @property
     def smooth(self) -> Flags:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._interpolation.stencils import SQUARED, lagrange_weight, slice_window
+from rocking._interpolation.slices import slice_window
+from rocking._interpolation.stencils import SQUARED, lagrange_weight
 from rocking._spectra.layer import UNKNOWN, Cells, GridLayer, peak_of
 
 Array = NDArray[np.float64]

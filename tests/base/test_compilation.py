@@ -45,7 +45,7 @@ ENTRIES = (
         sampling.sample_arcs,
         sampling.sample_free_rocking,
     ),
-    *(interpolation.lagrange_weight, interpolation.slice_window, interpolation.interpolate_cells),
+    *(interpolation.lagrange_weight, interpolation.interpolate_cells),
     *(windows.group_points, lookup_kernel.interpolate_many),
     *(matching.match_trends, matching.learn_trends, matching.follow_trends),
 )

@@ -7,7 +7,6 @@ import pytest
 
 from benchmarks.ablations import grids, motion, suite
 from benchmarks.ablations.ablation import Ablation
-from rocking._boundary.tracing import overturning_boundaries, overturning_boundary
 from rocking._solver import peak_response as solve
 from rocking._solver.peak_response import peak_response
 
@@ -41,16 +40,6 @@ def test_an_optimisation_saves_work_and_changes_nothing(
 def test_a_block_that_cannot_uplift_is_not_integrated() -> None:
     found = motion.no_uplift(8, COUNTS_ONLY)
     assert (found.done, found.without) == (0, 64)
-
-
-def test_boundaries_of_several_restitutions_are_those_of_each() -> None:
-    etas = [0.0, 0.6, 0.85, 0.95]
-    for pulse, alpha in (("sine", None), ("cosine", 0.35), ("ricker", None)):
-        together = overturning_boundaries(pulse, restitution=etas, alpha=alpha, nodes=41)
-        for eta, curves in zip(etas, together, strict=True):
-            alone = overturning_boundary(pulse, restitution=eta, alpha=alpha, nodes=41)
-            assert curves.identical(alone)
-            assert curves.restitution == eta
 
 
 def test_arcs_are_never_solved_a_second_time() -> None:

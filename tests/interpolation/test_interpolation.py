@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._interpolation.cells import pack_cells
+from rocking._interpolation.slices import STENCIL_SIZE, slice_index, slice_window
 from rocking._interpolation.stencils import (
     NO_STENCIL,
     OVERTURNS,
     PEAK,
     SQUARED,
-    STENCIL_SIZE,
     Mesh,
     cell_of,
     interpolate_cells,
@@ -20,9 +20,7 @@ from rocking._interpolation.stencils import (
     lagrange_weight,
     lagrange_weights,
     padded_weights,
-    slice_index,
     slice_products,
-    slice_window,
 )
 from rocking._interpolation.strips import STRIP_SIZE, STRIP_STEP, strips_of
 from rocking._interpolation.windows import AngleAxis, group_points

@@ -7,7 +7,8 @@ import pytest
 
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
-from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED, slice_window
+from rocking._interpolation.slices import slice_window
+from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
 from rocking._lookup.cube import MIN_CHUNK, SAFETY, Cube, Points
 from rocking._lookup.cube_slice import slice_of
 from rocking._model.outcome import Outcome

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib
-from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -25,8 +24,7 @@ from tests.workflow_fixtures import PROJECT, SMOKE
 from workflow.figures import figure_04, figure_09, figure_10, similar_histories
 from workflow.figures.boundary_lines import lines_of
 from workflow.scripts.figure import main
-from workflow.scripts.overturning import described
-from workflow.scripts.overturning_part import curves_of
+from workflow.scripts.overturning import curves_of, described
 
 CAPTIONS = (PROJECT / "docs/figures.md").read_text(encoding="utf-8")
 CONFIG = PROJECT / "workflow/config"
@@ -197,7 +195,7 @@ def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Datase
     files = {}
     for pulse in ("sine", "cosine"):
         window = {"nodes": 61, "slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
-        parts = [*chain(*(curves_of(pulse, [0.85], angle, **window) for angle in (0, 5, 10, 20)))]
+        parts = [curves_of(pulse, 0.85, angle, **window) for angle in (0, 5, 10, 20)]
         files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
         write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
     return figure_10.data(**files, restitution=0.85, alpha_deg=[5, 10, 20])

@@ -28,7 +28,7 @@ def configuration(pulses: list[Any]) -> dict[str, Any]:
     found: dict[str, Any] = yaml.safe_load(SMOKE.read_text())
     for name in ("figures", "claims"):
         del found[name]
-    found |= {"title": "Sampled pulses", "pulses": pulses, "restitution": [0.85], "tile_rows": 13}
+    found |= {"title": "Sampled pulses", "pulses": pulses, "restitution": [0.85]}
     found["grid"] |= {"alpha_deg": [0], "slenderness": {"breaks": [0.2, 0.8], "steps": [0.05]}}
     found["grid"]["frequency_ratio"]["points"] = 21
     found["boundary"] |= {"nodes": 41, "nodes_rigid": 31}
@@ -103,7 +103,7 @@ def test_data_sets_of_sampled_pulses(tmp_path: Path) -> None:
     triangle["acceleration"] = [0, 2, 1]  # other samples make the products of this pulse again
     written.write_text(yaml.safe_dump(configuration([triangle, ramp])))
     planned = snakemake(run, "--dry-run", configuration=written)
-    again = {"samples", "overturning_part", "overturning", "spectrum_tile", "spectra", "check_data_sets"}
+    again = {"samples", "overturning", "spectrum_part", "spectra", "check_data_sets"}
     assert rules_to_run(planned.stdout) == again | {"manifest", "check_results", "all"}, planned.stdout
     assert "of the triangle pulse" in planned.stdout
     assert "of the ramp pulse" not in planned.stdout

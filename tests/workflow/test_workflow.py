@@ -96,7 +96,7 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
         "rocking/paper/orientation.py": {"table_1", "claims"},
         "rocking/paper/scale_law.py": {"figure_scale_law", "claims"},
         "workflow/figures/figure_07.py": {"figure_07"},
-        "workflow/scripts/spectra.py": {"spectrum_tile", "spectra", "check_data_sets", "figure_scale_law", "claims"},
+        "workflow/scripts/spectra.py": {"spectrum_part", "spectra", "check_data_sets", "figure_scale_law", "claims"},
     }.items():
         before = (project / module).read_text()
         (project / module).write_text(before + "\n# a change\n")
@@ -130,7 +130,7 @@ def test_stored_manifests_are_those_of_their_configurations(path: Path) -> None:
 
 def test_data_sets_are_made_without_figures_and_claims(tmp_path: Path) -> None:
     configuration = yaml.safe_load(SMOKE.read_text())
-    for name in ("figures", "claims", "tile_rows"):
+    for name in ("figures", "claims"):
         del configuration[name]
     configuration |= {"title": "Data sets", "pulses": ["half_sine"], "restitution": [0.85]}
     configuration["grid"] |= {"slenderness": {"breaks": [0.2, 0.8], "steps": [0.05]}}

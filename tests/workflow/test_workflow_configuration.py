@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from tests.workflow_fixtures import PROJECT, SMOKE, snakemake
-from workflow.configuration import HALO, TILE_NODES, ConfigurationError, check, tile_bands
+from workflow.configuration import ConfigurationError, check, nodes_of_part, tenths
 
 CONFIGURATIONS = sorted((PROJECT / "workflow/config").glob("*.yaml"))
 MISSING = object()
@@ -55,10 +55,8 @@ def test_configurations_of_the_repository_are_accepted(path: Path) -> None:
         ("grid/frequency_ratio/low", "0.3", "grid.frequency_ratio.low = '0.3': allowed: a number"),
         ("grid/frequency_ratio/points", 161.0, "grid.frequency_ratio.points = 161.0: allowed: a whole number"),
         ("grid/frequency_ratio/points", 10**9, "points = 1000000000: allowed: a whole number from 4 to 200000000"),
-        ("grid/frequency_ratio/points", 10**7, "1,460,000,000 nodes in one restitution, 139 GB"),
+        ("grid/frequency_ratio/points", 10**7, "1,460,000,000 nodes with 1 restitution in one tenth, 139 GB"),
         ("grid/frequency_ratio/points", 10**7, "allowed: 200,000,000, 19 GB"),
-        ("grid/frequency_ratio/points", 1_200_000, "211,200,000 nodes in a tile, 20 GB; allowed: 200,000,000"),
-        ("tile_rows", 0, "tile_rows = 0: allowed: a whole number from 1"),
         ("grid/slenderness/steps", [1e-9], "grid.slenderness.steps.0 = 1e-09: allowed: a number from 1e-06"),
         ("grid/slenderness/steps", [1.25e-6], "720001 slenderness x 161 frequency_ratio"),
         ("grid/slenderness/steps", [0.4], "no multiple of the step 0.4"),
@@ -97,13 +95,10 @@ def test_invalid_value_is_refused_in_one_line(place: str, value: Any, message: s
     assert peak < 20e6  # no axis is made of what is refused
 
 
-def test_tiles_have_the_stated_rows_or_about_as_many_nodes_as_fit_into_memory() -> None:
-    assert tile_bands(smoke()) == [(0, 36), (36, 73)]
-    assert tile_bands(smoke("tile_rows", MISSING)) == [(0, 73)]
-    assert tile_bands(smoke("tile_rows", 1))[:2] == [(0, 1), (1, 2)]
-    atlas = yaml.safe_load((PROJECT / "workflow/config/atlas.yaml").read_text())
-    of_row = len(atlas["restitution"]) * len(atlas["grid"]["alpha_deg"]) * atlas["grid"]["frequency_ratio"]["points"]
-    assert all(0.8 < (last - first + HALO) * of_row / TILE_NODES <= 1.0 for first, last in tile_bands(atlas))
+def test_restitutions_are_solved_by_tenth() -> None:
+    several = smoke("restitution", [0.0, 0.09, 0.1, 0.29, 0.57, 0.58, 0.99, 1.0])
+    assert tenths(several) == {"0.0": [0.0, 0.09], "0.1": [0.1], "0.2": [0.29], "0.5": [0.57, 0.58], "0.9": [0.99, 1.0]}
+    assert nodes_of_part(several) == 2 * 2 * 73 * 161
 
 
 def test_workflow_ends_with_the_error_before_any_job(tmp_path: Path) -> None:

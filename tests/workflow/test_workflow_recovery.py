@@ -57,7 +57,7 @@ def replaced(path: Path) -> None:
 
 
 FAULTS = [
-    (CUBE, deleted, "spectra/sine"), (CUBE, flipped, "spectra/sine"), (CUBE, replaced, "spectra/sine"),
+    (CUBE, deleted, "spectra/sine-0.85"), (CUBE, flipped, "spectra/sine-0.85"), (CUBE, replaced, "spectra/sine-0.85"),
     (FIGURE, deleted, "figures/figure-04"), (FIGURE, flipped, "figures/figure-04"),
     (FIGURE, replaced, "figures/figure-04"), (DATA, emptied, "figures/figure-07"), ("claims.md", deleted, "claims"),
     ("claims.json", flipped, "claims"), ("manifest.json", deleted, "manifest"), ("manifest.json", emptied, "manifest"),
@@ -125,11 +125,11 @@ def test_damaged_record_is_deleted(spoil: Callable[[Path], None], run: Path) -> 
 
 def test_damaged_and_former_parts_are_deleted(tmp_path: Path) -> None:
     folder = tmp_path / "results/.parts/spectra"
-    names = ["sine-rows-0-36.a.nc", "sine-rows-36-73.a.nc", "sine-rows-0-36.b.nc", "sine_two-rows-0-36.b.nc"]
+    names = ["sine-0.8.a.nc", "sine-0.9.a.nc", "sine-0.8.b.nc", "sine_two-0.8.b.nc"]
     for name in names:
         write_dataset(xr.Dataset({"a": ("x", np.arange(100.0))}), folder / name)
     assert [*forget_damaged_parts(tmp_path)] == []
-    delete_former_parts([folder / name for name in names[:2]], "sine")
+    delete_former_parts(folder / names[0])
     assert {path.name for path in folder.iterdir()} == {*names[:2], names[3]}
     flipped(folder / names[0])
     (reason,) = forget_damaged_parts(tmp_path)
@@ -142,7 +142,7 @@ def test_each_missing_product_or_record_is_planned(run: Path) -> None:
                  *records_of(run, "figures/figure-07"), *records_of(run, "check_results")):  # fmt: skip
         path.unlink()
     planned = rules_to_run(snakemake(run, "--dry-run").stdout)
-    of_cube = {"spectrum_tile", "spectra", "figure_scale_law", "claims", "check_data_sets"}
+    of_cube = {"spectrum_part", "spectra", "figure_scale_law", "claims", "check_data_sets"}
     assert planned == of_cube | {"figure_04", "figure_07", "manifest", "check_results", "all"}
 
 
@@ -170,10 +170,10 @@ def test_run_that_is_killed_three_times_recovers_by_one_command(smoke_run: Path,
     for part in ("results", "logs", ".snakemake"):
         shutil.copytree(smoke_run / part, folder / part)
     before = content(folder)
-    for record in records_of(folder, "spectra/cosine"):
+    for record in records_of(folder, "spectra/cosine-0.85"):
         record.unlink()
     for what in KILLED:
-        assert interrupt(folder, what, lambda jobs: "spectrum_tile" in jobs).startswith("in spectrum_tile")
+        assert interrupt(folder, what, lambda jobs: "spectrum_part" in jobs).startswith("in spectrum_part")
     left = folder / "results/spectra/cosine/.eta-0.85.nc.abc.partial"
     left.parent.mkdir(exist_ok=True)
     left.touch()

@@ -12,6 +12,7 @@ os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.enviro
 
 from rocking._datasets.provenance import settings_digest
 from rocking._base.source_tree import SourceTree
+from rocking._interpolation.slices import windows_of
 from rocking.suites.configuration import DEFAULTS, suite_configuration
 from workflow import parts, records
 from workflow.configuration import (
@@ -19,9 +20,9 @@ from workflow.configuration import (
     ConfigurationError,
     check,
     nodes_of_cube,
-    nodes_of_tile,
+    nodes_of_part,
     restitutions,
-    tile_bands,
+    tenths,
 )
 from workflow.pulses import configured_pulse, different, samples_file
 from workflow.run_lock import RUN_ID, RunningError, acquire
@@ -61,14 +62,19 @@ def memory(megabytes):
     return lambda wildcards, attempt: math.ceil(attempt * megabytes)
 
 
+def named(eta):
+    """A restitution as in the names of files; a wildcard or a name stays as it is."""
+    return eta if isinstance(eta, str) else f"{eta:.2f}"
+
+
 def spectrum_files(pulse, etas):
     """Spectrum cubes of a pulse."""
-    return [f"results/spectra/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+    return [f"results/spectra/{pulse}/eta-{named(eta)}.nc" for eta in etas]
 
 
 def overturning_files(pulse, etas):
     """Boundaries of a pulse."""
-    return [f"results/overturning/{pulse}/eta-{float(eta):.2f}.nc" for eta in etas]
+    return [f"results/overturning/{pulse}/eta-{named(eta)}.nc" for eta in etas]
 
 
 def provenance(rule_name, scripts, settings, products):

@@ -1,9 +1,8 @@
-# Overturning boundaries, then spectrum cubes. Boundaries are traced by pulse and angle, cubes filled by pulse and band of
-# rows, each for all coefficients of restitution, which share the starts of the motions; one job of the pulse joins these
-# parts to the files of each restitution. These jobs have priority, as figures and claims depend on them.
-ETAS = [f"{eta:.2f}" for eta in config["restitution"]]
-ANGLES = {str(angle): angle for angle in config["grid"]["alpha_deg"]}
-BANDS = {f"{first}-{last}": (first, last) for first, last in tile_bands(config)}
+# Overturning boundaries, traced by pulse and restitution, then spectrum cubes: solved by pulse and tenth of the restitution,
+# whose blocks share the starts of their motions, and completed by pulse and restitution with the errors up to the next one.
+# Another restitution so repeats what depends on it. These jobs have priority, as figures and claims depend on them.
+ETAS = {f"{eta:.2f}": eta for eta in config["restitution"]}
+TENTHS = tenths(config)
 ENTRIES = [(configured_pulse(entry, CONFIG_FOLDER), entry) for entry in config["pulses"]]
 PULSES = list(different(pulse for pulse, _ in ENTRIES))
 # of the pulses given by samples: the file of the samples, which names their digest, and the entry of the configuration
@@ -13,32 +12,51 @@ SAMPLED = {pulse.name: entry for pulse, entry in ENTRIES if not isinstance(pulse
 
 wildcard_constraints:
     pulse="[a-z0-9_]+",
-    angle="|".join(map(re.escape, ANGLES)),
-    band="|".join(BANDS),
+    eta="|".join(map(re.escape, ETAS)),
+    tenth="|".join(TENTHS),
+    digest="[0-9a-f]{16}",
     samples="[0-9a-f]{16}",
 
 
-# the curves of one angle at all restitutions, of c2, which has the most
-PART_MB = 300 + 40 * len(ETAS)
-TILE_MB, CUBE_MB = (300 + BYTES * nodes / 1e6 for nodes in (nodes_of_tile(config), nodes_of_cube(config)))
-SPECTRUM_SETTINGS = {"grid": config["grid"], "restitution": config["restitution"]}
-SPECTRUM_PROVENANCE = provenance(
-    "spectra",
-    ["scripts/spectra.py", "scripts/spectrum_tile.py"],
-    SPECTRUM_SETTINGS,
-    [path for pulse in PULSES for path in spectrum_files(pulse, ETAS)],
-)
-OVERTURNING_SETTINGS = {
-    "boundary": config["boundary"],
-    "alpha_deg": config["grid"]["alpha_deg"],
-    "restitution": config["restitution"],
-}
+def window_of(eta):
+    """The restitutions from which the interval above one is interpolated."""
+    place = [*ETAS].index(eta)
+    return [*ETAS.values()][slice(*windows_of(len(ETAS), place, place + 1))]
+
+
+PART_MB, CUBE_MB = (300 + BYTES * nodes / 1e6 for nodes in (nodes_of_part(config), nodes_of_cube(config)))
+OVERTURNING_SETTINGS = {**config["boundary"], "alpha_deg": config["grid"]["alpha_deg"]}
 OVERTURNING_PROVENANCE = provenance(
     "overturning",
     ["scripts/overturning.py"],
     OVERTURNING_SETTINGS,
     [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
 )
+WINDOWS = {eta: window_of(eta) for eta in ETAS}
+SPECTRUM_PROVENANCE = {
+    eta: provenance(
+        "spectra",
+        ["scripts/spectra.py", "scripts/spectrum_part.py"],
+        {"grid": config["grid"], "restitution": window},
+        [path for pulse in PULSES for path in spectrum_files(pulse, [eta])],
+    )
+    for eta, window in WINDOWS.items()
+}
+# the cells that are not interpolated depend on the code of the boundaries too
+CUBE_CODE = {
+    "cubes": [one["code_sha256"] for one in SPECTRUM_PROVENANCE.values()][0],
+    "boundaries": OVERTURNING_PROVENANCE,
+    "grid": config["grid"],
+}
+
+
+def parts_of(etas):
+    """Paths of the parts with the cubes of some restitutions, with the pulse as a wildcard."""
+    return [
+        part_of(f"spectra/{{pulse}}-{tenth}", CUBE_CODE | {"restitution": some})
+        for tenth, some in TENTHS.items()
+        if {*some} & {*etas}
+    ]
 
 
 for pulse, _ in ENTRIES:
@@ -67,109 +85,83 @@ rule samples:
         "../scripts/samples.py"
 
 
-# one job for each pulse and angle traces the curves of all restitutions, which share the grid
-rule overturning_part:
-    input:
-        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
-    output:
-        part=temp(part_of("overturning/{pulse}-{angle}", OVERTURNING_PROVENANCE)),
-    log:
-        "logs/overturning/{pulse}-{angle}.log",
-    benchmark:
-        "logs/benchmarks/overturning-{pulse}-{angle}.tsv"
-    priority: 3
-    resources:
-        mem_mb=memory(PART_MB),
-        runtime=240,
-    params:
-        pulse=lambda wildcards: wildcards.pulse,
-        restitution=config["restitution"],
-        alpha_deg=lambda wildcards: ANGLES[wildcards.angle],
-        nodes=lambda wildcards: config["boundary"]["nodes_rigid" if ANGLES[wildcards.angle] else "nodes"],
-        slenderness=config["boundary"]["slenderness"],
-        frequency_ratio=config["boundary"]["frequency_ratio"],
-    message:
-        "Overturning boundaries of the {wildcards.pulse} pulse at {wildcards.angle} degrees"
-    script:
-        "../scripts/overturning_part.py"
-
-
 rule overturning:
     input:
-        parts=expand(rules.overturning_part.output.part, angle=ANGLES, allow_missing=True),
         samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
-        boundaries=overturning_files("{pulse}", ETAS),
-        record=record_of("overturning/{pulse}", OVERTURNING_PROVENANCE),
+        boundaries=overturning_files("{pulse}", ["{eta}"])[0],
+        record=record_of("overturning/{pulse}-{eta}", OVERTURNING_PROVENANCE),
     log:
-        "logs/overturning/{pulse}.log",
+        "logs/overturning/{pulse}-{eta}.log",
     benchmark:
-        "logs/benchmarks/overturning-{pulse}.tsv"
+        "logs/benchmarks/overturning-{pulse}-{eta}.tsv"
     priority: 3
-    localrule: True
     resources:
         mem_mb=memory(400),
-        runtime=30,
+        runtime=240,
     params:
+        **OVERTURNING_SETTINGS,
         pulse=lambda wildcards: wildcards.pulse,
-        restitution=config["restitution"],
+        restitution=lambda wildcards: ETAS[wildcards.eta],
         provenance=OVERTURNING_PROVENANCE,
     message:
-        "Overturning boundaries of the {wildcards.pulse} pulse"
+        "Overturning boundaries of the {wildcards.pulse} pulse at restitution {wildcards.eta}"
     script:
         "../scripts/overturning.py"
 
 
-rule spectrum_tile:
+rule spectrum_part:
     input:
-        boundaries=rules.overturning.output.boundaries,
+        boundaries=lambda wildcards: overturning_files(wildcards.pulse, TENTHS[wildcards.tenth]),
         samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
-        # the cells that are not interpolated depend on the code of the boundaries too
-        part=temp(part_of("spectra/{pulse}-rows-{band}", {**SPECTRUM_PROVENANCE, "boundaries": OVERTURNING_PROVENANCE})),
+        part=temp(f"{parts.FOLDER}/spectra/{{pulse}}-{{tenth}}.{{digest}}.nc"),
     log:
-        "logs/spectra/{pulse}-rows-{band}.log",
+        "logs/spectra/{pulse}-{tenth}.{digest}.log",
     benchmark:
-        "logs/benchmarks/spectra-{pulse}-rows-{band}.tsv"
+        "logs/benchmarks/spectra-{pulse}-{tenth}.{digest}.tsv"
     priority: 2
     resources:
-        mem_mb=memory(TILE_MB),
+        mem_mb=memory(PART_MB),
         runtime=240,
     params:
-        **SPECTRUM_SETTINGS,
+        grid=config["grid"],
+        restitution=lambda wildcards: TENTHS[wildcards.tenth],
         pulse=lambda wildcards: wildcards.pulse,
-        band=lambda wildcards: BANDS[wildcards.band],
     message:
-        "Spectrum cubes of the {wildcards.pulse} pulse, rows {wildcards.band}"
+        "Solving the spectrum cubes of the {wildcards.pulse} pulse at restitutions from {wildcards.tenth} on"
     script:
-        "../scripts/spectrum_tile.py"
+        "../scripts/spectrum_part.py"
 
 
 rule spectra:
     input:
-        tiles=expand(rules.spectrum_tile.output.part, band=BANDS, allow_missing=True),
+        parts=lambda wildcards: parts_of(WINDOWS[wildcards.eta]),
         samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
-        cubes=spectrum_files("{pulse}", ETAS),
-        record=record_of("spectra/{pulse}", SPECTRUM_PROVENANCE),
+        cube=spectrum_files("{pulse}", ["{eta}"])[0],
+        record=record_of("spectra/{pulse}-{eta}", CUBE_CODE),
     log:
-        "logs/spectra/{pulse}.log",
+        "logs/spectra/{pulse}-{eta}.log",
     benchmark:
-        "logs/benchmarks/spectra-{pulse}.tsv"
+        "logs/benchmarks/spectra-{pulse}-{eta}.tsv"
     priority: 3
     resources:
         mem_mb=memory(CUBE_MB),
         runtime=120,
     params:
         pulse=lambda wildcards: wildcards.pulse,
-        provenance=SPECTRUM_PROVENANCE,
+        restitution=lambda wildcards: ETAS[wildcards.eta],
+        window=lambda wildcards: WINDOWS[wildcards.eta],
+        provenance=lambda wildcards: SPECTRUM_PROVENANCE[wildcards.eta],
     message:
-        "Spectrum cubes of the {wildcards.pulse} pulse"
+        "Spectrum cube of the {wildcards.pulse} pulse at restitution {wildcards.eta}"
     script:
         "../scripts/spectra.py"
 
 
-RECORDS += [
-    *expand(rules.overturning.output.record, pulse=PULSES),
-    *expand(rules.spectra.output.record, pulse=PULSES),
-]
+RECORDS += expand(
+    [rules.overturning.output.record, rules.spectra.output.record],
+    pulse=PULSES,
+    eta=ETAS,
+)

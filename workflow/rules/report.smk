@@ -32,8 +32,8 @@ rule manifest:
 
 rule check_data_sets:
     input:
-        boundaries=rules.overturning.output.boundaries,
-        cubes=rules.spectra.output.cubes,
+        boundaries=overturning_files("{pulse}", ETAS),
+        cubes=spectrum_files("{pulse}", ETAS),
         tests=str(CHECKS / "test_data_sets.py"),
     output:
         report=f"{records.FOLDER}/checks/{{pulse}}.txt",

@@ -1,28 +1,28 @@
-"""Joins the overturning boundaries of one pulse at all slenderness angles: one file for each restitution."""
+"""Traces the overturning boundaries of one pulse and restitution, for the sine beside the closed forms."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from rocking._boundary.curves import join_curves
 from rocking._boundary.search import RESOLUTION
-from rocking._datasets.cube import (
-    AXES,
-    MODEL_RESULT,
-    VARIABLES,
-    describe,
-    read_dataset,
-    scalar_coordinates,
-    write_dataset,
-)
+from rocking._boundary.tracing import overturning_boundary
+from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.sampled import SampledPulse
-from workflow.parts import delete_former_parts
+from rocking._model.response import Outcome
 from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run
-from workflow.scripts.overturning_part import ACCURACY, unstacked
+
+ACCURACY = (
+    "chord_error", "uncounted_chord_error", "thinnest_region", "thinnest_uncounted_region",
+    "end_distance", "node_distance", "unmeasured_chords", "open_ends",
+)  # fmt: skip
+"""Attributes of `overturning_boundary` that state how accurate the curves are."""
 
 COUNTS = ("unmeasured_chords", "open_ends")
 """Attributes of which a file states the sum over the angles; of the others it states the largest."""
@@ -32,20 +32,36 @@ def main(
     *,
     pulse: str,
     samples: Path | list[Path],
-    restitution: Sequence[float],
-    parts: Sequence[Path],
-    boundaries: Sequence[Path],
+    restitution: float,
+    alpha_deg: Sequence[float],
+    nodes: int,
+    nodes_rigid: int,
+    slenderness: Mapping[str, float],
+    frequency_ratio: Mapping[str, float],
+    boundaries: Path,
     provenance: Mapping[str, str],
 ) -> None:
-    """Write the curves of each restitution [-] at all angles, one part for each angle, to `boundaries`."""
-    by_angle = [unstacked(read_dataset(path)) for path in parts]
+    """Trace the curves of a restitution [-] at all angles [deg], inside the configured window.
+
+    The first grid has `nodes` in each direction for the slender limit, `nodes_rigid` for other angles.
+    """
     shape = pulse_of_job(pulse, samples)
-    for eta, path, traced in zip(restitution, boundaries, zip(*by_angle, strict=True), strict=True):
-        joined = join_curves([one.drop_attrs(deep=False) for one in traced])
-        curves = described(joined, shape, eta).assign_attrs(accuracy_of(traced))
-        write_dataset(describe(curves, **provenance), path)
-        print(f"{path}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
-    delete_former_parts(parts, pulse)
+    window = {"slenderness": _ends(slenderness), "frequency_ratio": _ends(frequency_ratio)}
+    traced = [
+        curves_of(shape, restitution, angle, nodes=nodes_rigid if angle else nodes, **window) for angle in alpha_deg
+    ]
+    joined = join_curves([one.drop_attrs(deep=False) for one in traced])
+    curves = described(joined, shape, restitution).assign_attrs(accuracy_of(traced))
+    write_dataset(describe(curves, **provenance), boundaries)
+    print(f"{boundaries}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
+
+
+def curves_of(pulse: str | SampledPulse, restitution: float, alpha_deg: float, **window: Any) -> xr.Dataset:
+    """The boundary curves at one slenderness angle: ragged polylines, `row_size` points each."""
+    alpha = math.radians(alpha_deg)
+    traced = overturning_boundary(pulse, restitution=restitution, alpha=alpha or None, **window)
+    closed = _closed_forms(traced, traced.restitution, slender=alpha == 0.0) if pulse == "sine" else {}
+    return traced.assign(closed).assign(alpha=("curve", np.full(traced.sizes["curve"], alpha)))
 
 
 def accuracy_of(traced: Sequence[xr.Dataset]) -> dict[str, Any]:
@@ -73,9 +89,52 @@ def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float)
         "omega within which the ends of the latter are known: end_distance; largest distance of the nodes in 1/a, "
         "below which a region can be missed: node_distance; ends of regions that are known to a step of the grid "
         "only: open_ends.",
-        history="rocking._boundary.tracing.overturning_boundaries",
+        history="rocking._boundary.tracing.overturning_boundary",
         id=f"overturning/{name}/eta-{restitution:.2f}",
     )
+
+
+def _ends(window: Mapping[str, float]) -> tuple[float, float]:
+    return window["low"], window["high"]
+
+
+def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> dict[str, xr.Variable]:
+    """Slenderness by (3.10), (3.18), (3.20) with (3.21) at the frequency ratio of each traced point of that mode.
+
+    They hold for slender blocks under the sine; for any other block they are missing.
+    """
+    rows = traced.row_size.values
+    outcome, impacts = (np.repeat(traced[name].values, rows) for name in ("outcome", "impacts"))
+    s, omega = traced.slenderness.values, traced.frequency_ratio.values
+    expected = np.full(s.size, np.nan)
+    if slender:
+        from rocking.paper.overturning import overturning_amplitudes  # noqa: PLC0415  # 0.3 s, only for this block
+
+        closed = overturning_amplitudes(omega, restitution)
+        once = [1 / closed.falls_from, 1 / closed.safe_again]  # one impact: a curve of two branches, the nearer one
+        nearer = np.where(np.abs(once[0] - s) <= np.abs(once[1] - s), once[0], once[1])
+        nearer = np.where(np.isnan(once[0]), np.nan, nearer)
+        directly = outcome == Outcome.OVERTURNED_DIRECTLY
+        expected = np.where(directly, 1 / closed.direct, np.where(impacts == 1, nearer, np.nan))
+    island = np.where(np.isin(traced.impacts.values, (0, 1)), 0, 1).astype(np.int8)
+    return {
+        "closed_form_slenderness": xr.Variable(
+            "point",
+            expected,
+            {**MODEL_RESULT, "long_name": "slenderness of the boundary in closed form",
+             "equation": "3.10, 3.18, 3.20, 3.21",
+             "comment": "missing for overturning after three or more impacts, and for alpha > 0: no closed form"},
+        ),
+        "closed_form_difference": xr.Variable(
+            "point", s - expected, {**MODEL_RESULT, "long_name": "traced minus closed form slenderness"}
+        ),
+        "island": xr.Variable(
+            "curve",
+            island,
+            {"units": "1", "long_name": "overturning after three or more impacts, which no closed form knows",
+             "flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"},
+        ),
+    }  # fmt: skip
 
 
 if __name__ == "__main__":

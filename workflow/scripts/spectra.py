@@ -1,11 +1,12 @@
-"""Joins the tiles of the spectrum cubes of one pulse: one file for each coefficient of restitution."""
+"""Completes the spectrum cube of one pulse and restitution: measures the errors up to the next restitution."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
-from rocking._datasets.cube import describe, write_dataset
-from rocking._spectra.tiles import join_tiles
-from workflow.parts import delete_former_parts
+from rocking._datasets.cube import check_file, describe, write_dataset
+from rocking._datasets.netcdf import open_netcdf
+from rocking._spectra.cubes import with_restitution_errors
 from workflow.pulses import pulse_of_job
 from workflow.scripts.job import run
 
@@ -14,15 +15,25 @@ def main(
     *,
     pulse: str,
     samples: Path | list[Path],
-    tiles: Sequence[Path],
-    cubes: Sequence[Path],
+    restitution: float,
+    window: Sequence[float],
+    parts: Sequence[Path],
+    cube: Path,
     provenance: Mapping[str, str],
+    threads: int,
 ) -> None:
-    """Write the cube of each restitution to the corresponding path of `cubes`; tiles are in the order of their rows."""
-    for cube, path in zip(join_tiles(pulse_of_job(pulse, samples), tiles), cubes, strict=True):
-        write_dataset(describe(cube, **provenance), path, chunks={"alpha": 1})  # one angle can be read alone
-        print(f"{path}: {cube.outcome.size} cells, {int((cube.outcome > 1).sum())} overturned")
-    delete_former_parts(tiles, pulse)
+    """Write the cube of a restitution [-], interpolated up to the next one from those of the `window`, in the parts."""
+    for path in parts:
+        check_file(path)
+    with ExitStack() as stack:
+        # not kept in memory: one angle of a cube at a time is needed of the others
+        opened = [stack.enter_context(open_netcdf(path, cache=False)) for path in parts]
+        solved = [part.isel(restitution=k) for part in opened for k in range(part.sizes["restitution"])]
+        cubes = [one for one in solved if float(one["restitution"]) in window]
+        own = window.index(restitution)
+        (whole,) = with_restitution_errors(pulse_of_job(pulse, samples), cubes, own, own + 1, threads=threads)
+    write_dataset(describe(whole, **provenance), cube, chunks={"alpha": 1})  # one angle can be read alone
+    print(f"{cube}: {whole.outcome.size} cells, {int((whole.outcome > 1).sum())} overturned")
 
 
 if __name__ == "__main__":
