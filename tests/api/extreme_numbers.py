@@ -42,7 +42,7 @@ from tests.suites.motions import noise
 MEMORY = 2 * 1024**3
 """Limit of the writable memory of the process [bytes]."""
 
-SECONDS = 20.0
+SECONDS = 60.0
 """Time limit of a call [s]."""
 
 GRANTED = 0.3

@@ -76,7 +76,7 @@ def test_second_run_does_nothing(smoke_run: Path) -> None:
 def test_cubes_made_again_have_the_same_bytes(copy_of_run: Path) -> None:
     before = digests(copy_of_run / "results/spectra")
     shutil.rmtree(copy_of_run / "results/spectra/sine")
-    remade = snakemake(copy_of_run, "results/spectra/sine/eta-0.85.nc")
+    remade = snakemake(copy_of_run, *(f"results/spectra/sine/eta-{eta}.nc" for eta in ("0.85", "0.90")))
     assert remade.returncode == 0, remade.stdout
     assert digests(copy_of_run / "results/spectra") == before
 
@@ -103,6 +103,17 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
         changed = snakemake(copy_of_run, "--dry-run", project=project)
         assert rules_to_run(changed.stdout) == rules | report | {"manifest"}, changed.stdout
         (project / module).write_text(before)
+
+
+def test_another_restitution_leaves_the_boundaries_of_the_others(smoke_run: Path, tmp_path: Path) -> None:
+    written = tmp_path / "more.yaml"
+    written.write_text(
+        SMOKE.read_text().replace("restitution: [0.85, 0.90]\n\ngrid", "restitution: [0.85, 0.87, 0.90]\n\ngrid")
+    )
+    planned = snakemake(smoke_run, "--dry-run", configuration=written).stdout
+    of_cubes = {"spectrum_part", "spectra", "check_data_sets", "figure_scale_law", "claims"}
+    assert rules_to_run(planned) == of_cubes | {"overturning", "manifest", "check_results", "all"}, planned
+    assert {*re.findall(r"boundaries of the \w+ pulse at restitution (\S+)", planned)} == {"0.87"}
 
 
 @pytest.mark.parametrize("name", ["paper", "atlas", "atlas-small"])
