@@ -20,7 +20,7 @@ from rocking._dimensional.response import BlockResponse, respond
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._history.time_history import DEFAULT_SAMPLES
-from rocking._model import block as geometry
+from rocking._model.block import AbstractBlock, RectangularBlock
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Restitution = Scalar  # or "momentum"
 
 
-class RespondingBlock(geometry.AbstractBlock):
+class RespondingBlock(AbstractBlock):
     """What pulses and records do to anything that rocks like a block."""
 
     @overload
@@ -223,7 +223,7 @@ class RespondingBlock(geometry.AbstractBlock):
 
 
 @final
-class Block(RespondingBlock, geometry.Block):
+class Block(RectangularBlock, RespondingBlock):
     """A free-standing rigid rectangular block of uniform density (figure 1), and what pulses do to it.
 
     Parameters

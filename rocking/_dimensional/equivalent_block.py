@@ -18,7 +18,7 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.units import Scalar
 from rocking._dimensional.block import RespondingBlock
-from rocking._model import block as geometry
+from rocking._model.block import RectangularBlock
 from rocking._model.checks import check_number
 from rocking._model.linkage import LinearEquation
 from rocking._model.masonry_arch import MasonryArch
@@ -199,7 +199,7 @@ class EquivalentBlock(RespondingBlock):
         )
 
     @classmethod
-    def rocking_frame(cls, column: geometry.Block, *, mass_ratio: Scalar) -> Self:
+    def rocking_frame(cls, column: RectangularBlock, *, mass_ratio: Scalar) -> Self:
         """Equal columns that carry a rigid beam without mortar; exact (Makris & Vassiliou 2013).
 
         Parameters
@@ -214,7 +214,7 @@ class EquivalentBlock(RespondingBlock):
         InvalidArgumentError
             If `mass_ratio` is out of range, or the frame would bounce at impacts.
         """
-        if not isinstance(column, geometry.Block):
+        if not isinstance(column, RectangularBlock):
             raise InvalidArgumentError("column", column, "a rocking.Block")
         mass_ratio = number("mass_ratio", mass_ratio, 0.0, math.inf, closed="left")
         alpha, inertia = column.alpha, 1.0 + 3.0 * mass_ratio

@@ -15,9 +15,9 @@ import numpy as np
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, plain_number, positive
 from rocking._base.units import UNITS as FACTORS
 from rocking._base.units import unit_name
+from rocking._dimensional.block import Block
 from rocking._dimensional.problem import BlockProblem
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.block import Block
 from rocking._model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag

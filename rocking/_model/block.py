@@ -1,23 +1,24 @@
-"""The rigid rectangular block: parameters of the equation of motion from its geometry (section 2 of the paper).
-
-`AbstractBlock` is what responses need to know of anything that rocks like a block.
-"""
+"""The rigid rectangular block: a body with equal edges, and its equation of motion (section 2 of the paper)."""
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Self
+
+import numpy as np
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import number, positive
 from rocking._base.units import Scalar
+from rocking._model.body import AbstractBody, Edge
+from rocking._model.reactions import INERTIA_RATIO
 
 
 @dataclass(frozen=True, init=False)
-class AbstractBlock(ABC):
-    """What rocks like a block.
+class AbstractBlock(AbstractBody):
+    """What rocks like a rectangular block; its properties are those of the rectangle unless a subclass has others.
 
     Parameters
     ----------
@@ -36,12 +37,17 @@ class AbstractBlock(ABC):
 
     width: float
     height: float
-    gravity: float
+    gravity: float = STANDARD_GRAVITY
 
     def __init__(self, width: Scalar, height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
         object.__setattr__(self, "width", positive("width", width, "m"))  # a frozen dataclass
         object.__setattr__(self, "height", positive("height", height, "m"))
         object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
+
+    @property
+    @abstractmethod
+    def contact_is_known(self) -> bool:
+        """Whether the contact forces follow from the motion."""
 
     @property
     def half_width(self) -> float:
@@ -59,44 +65,52 @@ class AbstractBlock(ABC):
         return math.hypot(self.half_width, self.half_height)
 
     @property
-    @abstractmethod
     def alpha(self) -> float:
-        """Rotation at which the restoring moment vanishes [rad], (0, pi/2)."""
+        """Rotation at which the restoring moment vanishes [rad], (0, pi/2): tan(alpha) = b/h, below (2.1)."""
+        return math.atan2(self.half_width, self.half_height)
 
     @property
-    @abstractmethod
     def equation_alpha(self) -> float:
-        """Alpha in the equation of motion [rad]; 0 for the linear equation (3.1)."""
+        """Alpha in the equation of motion (2.2) [rad]; 0 stands for the linear equation (3.1)."""
+        return self.alpha
 
     @property
-    @abstractmethod
-    def description(self) -> str:
-        """The block in words."""
-
-    @property
-    @abstractmethod
-    def contact_is_known(self) -> bool:
-        """Whether the contact forces follow from the motion."""
-
-    @property
-    @abstractmethod
     def frequency_parameter(self) -> float:
-        """p [rad/s]."""
+        """p = sqrt(3 g/(4 R)) [rad/s], below (2.2)."""
+        return math.sqrt(0.75 * self.gravity / self.half_diagonal)
 
     @property
-    @abstractmethod
-    def uplift_acceleration(self) -> float:
-        """Smallest ground acceleration that starts rocking [m/s2]."""
+    def uplift_acceleration(self) -> float:  # type: ignore[override]  # a float is an array of shape ()
+        """Smallest ground acceleration that starts rocking, g tan(alpha) [m/s2], below (2.1)."""
+        return self.gravity * self.half_width / self.half_height
 
     @property
-    @abstractmethod
     def momentum_restitution(self) -> float:
-        """Coefficient of restitution by conservation of angular momentum [-]."""
+        """Coefficient of restitution eta = 1 - (3/2) sin^2(alpha) [-], (2.4) (Housner 1963).
+
+        Negative for alpha above 54.7 degrees, where `inelastic_restitution` applies.
+        """
+        sin_alpha = self.half_width / self.half_diagonal
+        return 1.0 - 1.5 * sin_alpha * sin_alpha  # (2.4)
 
     @property
-    @abstractmethod
     def inelastic_restitution(self) -> float:
-        """Coefficient of restitution of an impact without bouncing [-], [0, 1]."""
+        """Coefficient of restitution of an impact without bouncing [-], [0, 1): the larger of (2.4) and 0.
+
+        (2.4) assumes that the whole impulse acts at the new pivot and that the old pivot rises. Above
+        alpha = 54.7 degrees it is negative: the old pivot would move into the ground. The ground then exerts an impulse
+        there too, and with impulses at both corners the block stops.
+        """
+        return max(self.momentum_restitution, 0.0)  # departs from (2.4) where that is negative
+
+    @property
+    def right(self) -> Edge:
+        """The right edge; the left one is alike."""
+        inertia_ratio = INERTIA_RATIO if self.contact_is_known else math.nan
+        values = self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio
+        return Edge(*map(np.asarray, values))
+
+    left = right
 
     @property
     def top_height(self) -> float:
@@ -109,8 +123,8 @@ class AbstractBlock(ABC):
 
 
 @dataclass(frozen=True, init=False)
-class Block(AbstractBlock):
-    """A free-standing rigid rectangular block of uniform density (figure 1).
+class RectangularBlock(AbstractBlock):
+    """A free-standing rigid rectangular block of uniform density (figure 1): `rocking.Block` without its responses.
 
     Parameters
     ----------
@@ -135,48 +149,9 @@ class Block(AbstractBlock):
         return cls(2.0 * radius * math.sin(angle), 2.0 * radius * math.cos(angle), gravity)
 
     @property
-    def alpha(self) -> float:
-        """Slenderness angle alpha [rad], (0, pi/2): tan(alpha) = b/h, below (2.1)."""
-        return math.atan2(self.half_width, self.half_height)
-
-    @property
-    def equation_alpha(self) -> float:
-        """Alpha in the equation of motion [rad]: that of the block; (2.2) tends to (3.1) as it goes to 0."""
-        return self.alpha
-
-    @property
     def description(self) -> str:
         return f"block of {self.width:.4g} m x {self.height:.4g} m"
 
     @property
     def contact_is_known(self) -> bool:
         return True
-
-    @property
-    def frequency_parameter(self) -> float:
-        """p = sqrt(3 g/(4 R)) [rad/s], below (2.2)."""
-        return math.sqrt(0.75 * self.gravity / self.half_diagonal)
-
-    @property
-    def uplift_acceleration(self) -> float:
-        """Smallest ground acceleration that starts rocking, g tan(alpha) [m/s2], below (2.1)."""
-        return self.gravity * self.half_width / self.half_height
-
-    @property
-    def momentum_restitution(self) -> float:
-        """Coefficient of restitution eta = 1 - (3/2) sin^2(alpha) [-], (2.4) (Housner 1963).
-
-        Negative for alpha above 54.7 degrees, where `inelastic_restitution` applies.
-        """
-        sin_alpha = self.half_width / self.half_diagonal
-        return 1.0 - 1.5 * sin_alpha * sin_alpha  # (2.4)
-
-    @property
-    def inelastic_restitution(self) -> float:
-        """Coefficient of restitution of an impact without bouncing [-], [0, 1): the larger of (2.4) and 0.
-
-        (2.4) assumes that the whole impulse acts at the new pivot and that the old pivot rises. Above
-        alpha = 54.7 degrees it is negative: the old pivot would move into the ground. The ground then exerts an impulse
-        there too, and with impulses at both corners the block stops.
-        """
-        return max(self.momentum_restitution, 0.0)  # departs from (2.4) where that is negative

@@ -86,12 +86,12 @@ class AbstractBody(ABC):
 
     @property
     @abstractmethod
-    def gravity(self) -> Array:
+    def gravity(self) -> Array | float:
         """g [m/s2]."""
 
     @property
     @abstractmethod
-    def top_height(self) -> Array:
+    def top_height(self) -> Array | float:
         """Height above the base of the point whose displacement is given [m]."""
 
     @property

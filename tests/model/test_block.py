@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._model.block import Block
+from rocking._dimensional.block import Block
 
 lengths = st.floats(1e-3, 1e3)
 

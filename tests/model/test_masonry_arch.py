@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import linprog
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._model.block import Block
+from rocking._dimensional.block import Block
 from rocking._model.linkage import FourBarLinkage, Link, VelocityField, restitution_of_impact
 from rocking._model.masonry_arch import MasonryArch
 
