@@ -14,8 +14,8 @@ import typer
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
 from rocking._cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
+from rocking._dimensional.block import Block
 from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
-from rocking._model.block import Block
 from rocking._model.checks import check_window
 from rocking._model.parameters import FREQUENCY_RATIO
 

@@ -13,8 +13,8 @@ import typer
 from rocking._cli.options import OutputOptions, RecordOptions, with_options
 
 if TYPE_CHECKING:
+    from rocking._dimensional.block import Block
     from rocking._excitation.records.record import Record
-    from rocking._model.block import Block
 
 File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
 Thresholds = Annotated[

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
+from rocking._dimensional.block import Block
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import read_record
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
-from rocking._model.block import Block
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
 from rocking.suites.demand import check_demands

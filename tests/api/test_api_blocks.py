@@ -8,8 +8,8 @@ import pytest
 from rocking_api.routers import blocks
 
 from rocking._base.constants import STANDARD_GRAVITY
+from rocking._dimensional.block import Block
 from rocking._history.time_history import time_history
-from rocking._model.block import Block
 from rocking._solver.peak_response import peak_response
 from tests.api.conftest import assert_problem, client_of
 

@@ -16,8 +16,8 @@ import rocking
 from rocking._base.errors import InvalidArgumentError, si_value
 from rocking._boundary.tracing import overturning_boundary
 from rocking._cli.app import app
+from rocking._dimensional.block import Block
 from rocking._history.time_history import time_history
-from rocking._model.block import Block
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 

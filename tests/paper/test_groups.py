@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from rocking import paper
 from rocking._base.errors import InvalidArgumentError
-from rocking._model.block import Block
+from rocking._dimensional.block import Block
 from rocking._solver.peak_response import peak_response
 from rocking.paper import Groups, GroupSet, Problem
 

@@ -8,7 +8,7 @@ import pytest
 import rocking
 from rocking import paper
 from rocking import paper as cf
-from rocking._model.block import Block
+from rocking._dimensional.block import Block
 from tests.direct_integration import integrate
 
 G = 9.81

@@ -14,7 +14,7 @@ import yaml
 from rocking._base.source_tree import SourceTree
 from rocking._boundary.curves import curves_at, join_curves
 from rocking._datasets.cube import read_dataset, write_dataset
-from rocking._model.block import Block
+from rocking._dimensional.block import Block
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking.paper import overturning_amplitudes

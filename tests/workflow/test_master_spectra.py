@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 import yaml
 
-from rocking._model.block import Block
+from rocking._dimensional.block import Block
 from rocking._solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT
 from workflow.claims.area import node_areas, share_of_area

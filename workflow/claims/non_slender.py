@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rocking._boundary.amplitude import Thresholds, thresholds
-from rocking._model.block import STANDARD_GRAVITY, Block
+from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking.paper.overturning import overturning_amplitudes
@@ -211,7 +211,7 @@ def uplifts() -> tuple[Floats, Flags, Flags]:
 
     Decided by the moments of inertia and weight about the corner, h m a_g and b m g, of blocks of given sides.
     """
-    blocks = [Block(2 * float(b), 2.0) for b in np.linspace(0.02, 5.0, 80)]
+    blocks = [RectangularBlock(2 * float(b), 2.0) for b in np.linspace(0.02, 5.0, 80)]
     angles = np.array([block.alpha for block in blocks])
     below, above = (
         STANDARD_GRAVITY * np.tan(angles) * (1 + step) * [block.half_height for block in blocks]

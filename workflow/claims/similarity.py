@@ -9,7 +9,7 @@ import xarray as xr
 
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._history.time_history import time_history
-from rocking._model.block import Block
+from rocking._model.block import RectangularBlock
 from rocking.paper.orientation import (
     Orientation,
     Scaling,
@@ -185,11 +185,11 @@ GROUPS = {"slenderness": 0.55, "frequency_ratio": 3.5, "restitution": 0.85}
 
 def histories_of_pulses() -> dict[str, Floats]:
     """For each pulse g theta/a_g of two blocks integrated in SI units and of the solver, (3, sample)."""
-    blocks = [Block.from_slenderness_angle(alpha, R) for alpha, R in ((0.12, 1.0), (0.24, 3.0))]
+    blocks = [RectangularBlock.from_slenderness_angle(alpha, R) for alpha, R in ((0.12, 1.0), (0.24, 3.0))]
     return {pulse: _histories(pulse, blocks) for pulse in PULSE_NAMES}
 
 
-def _histories(pulse: str, blocks: Sequence[Block]) -> Floats:
+def _histories(pulse: str, blocks: Sequence[RectangularBlock]) -> Floats:
     problems = [DimensionalProblem.with_groups(pulse, block, *GROUPS.values()) for block in blocks]
     p = [block.frequency_parameter for block in blocks]
     duration = problems[0].pulse_end * p[0] + 1.0

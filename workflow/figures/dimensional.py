@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from rocking._excitation.pulses import as_pulse
-from rocking._model.block import STANDARD_GRAVITY, Block
+from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ MAX_DURATION = 60.0
 class DimensionalProblem:
     """A block and its pulse in SI units; `history` and `overturns` integrate the motion."""
 
-    block: Block
+    block: RectangularBlock
     pulse: str
     peak_acceleration: float  # a_g [m/s2]
     period: float  # T_p [s]
@@ -41,7 +41,7 @@ class DimensionalProblem:
 
     @classmethod
     def with_groups(
-        cls, pulse: str, block: Block, slenderness: float, frequency_ratio: float, restitution: float
+        cls, pulse: str, block: RectangularBlock, slenderness: float, frequency_ratio: float, restitution: float
     ) -> DimensionalProblem:
         """The pulse that gives this slender block the groups 1/a = g alpha/a_g and omega = omega_g/p, (4.11)."""
         acceleration = STANDARD_GRAVITY * block.alpha / slenderness

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking._excitation.pulses import as_pulse
-from rocking._model.block import Block
+from rocking._model.block import RectangularBlock
 from rocking.plot.style import BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.style import panel_letters, plotted
 
@@ -31,7 +31,7 @@ def data(
     period : float
         T_p [s].
     """
-    block = Block(width, height)
+    block = RectangularBlock(width, height)
     theta = rotation * block.alpha
     b, h = 0.5 * width, 0.5 * height
     corners = np.array([[b, 0], [b, 2 * h], [-b, 2 * h], [-b, 0], [0, h]])  # the last one is the centre of mass

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from rocking._model.block import STANDARD_GRAVITY, Block
+from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 from rocking.plot.style import BLUE, VERMILION, WIDTH
 from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import panel_letters, plotted
@@ -38,7 +38,10 @@ def data(
     duration : float
         tau = p t at the end [-].
     """
-    blocks = [Block.from_slenderness_angle(alpha, R) for alpha, R in zip(slenderness_angle, half_diagonal, strict=True)]
+    blocks = [
+        RectangularBlock.from_slenderness_angle(alpha, R)
+        for alpha, R in zip(slenderness_angle, half_diagonal, strict=True)
+    ]
     groups = slenderness, frequency_ratio, restitution
     problems = [DimensionalProblem.with_groups(pulse, block, *groups) for block in blocks]
     times = np.array([np.linspace(0, duration / block.frequency_parameter, 1201) for block in blocks])

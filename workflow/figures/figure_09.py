@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rocking._boundary.amplitude import thresholds
 from rocking._datasets.cube import read_dataset
-from rocking._model.block import STANDARD_GRAVITY, Block
+from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 from rocking._solver.peak_response import peak_response
 from rocking.paper.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
 from rocking.plot.boundary_lines import Lines, draw_lines
@@ -74,7 +74,7 @@ def data(
     """
     alpha = float(np.radians(alpha_deg))
     pulses = [read_dataset(path).pulse.attrs["pulse_name"] for path in boundaries]
-    blocks = [Block.from_slenderness_angle(alpha, R) for R in half_diagonal]
+    blocks = [RectangularBlock.from_slenderness_angle(alpha, R) for R in half_diagonal]
     rows = [
         {"pulse": i, "block": j, "period": one, **row}
         for i, pulse in enumerate(pulses)
@@ -162,13 +162,15 @@ def upper_safe_region(pulse: str, frequency_ratio: Floats, restitution: float, a
     return ends[0], ends[1]
 
 
-def block_thresholds(pulse: str, block: Block, period: float, restitution: float) -> Iterator[dict[str, Any]]:
+def block_thresholds(
+    pulse: str, block: RectangularBlock, period: float, restitution: float
+) -> Iterator[dict[str, Any]]:
     """Peak accelerations at which the outcome of a block changes, from the groups, and outcomes integrated in SI units.
 
     Parameters
     ----------
     pulse : str
-    block : Block
+    block : RectangularBlock
     period : float
         T_p [s].
     restitution : float

@@ -13,7 +13,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from rocking._boundary.tracing import overturning_boundary
-from rocking._model.block import Block
+from rocking._model.block import RectangularBlock
 from rocking._solver.peak_response import peak_response
 from rocking.plot.boundary_lines import Lines, draw_lines, outcome_lines
 from rocking.plot.style import BLACK, WIDTH, shades
@@ -97,7 +97,9 @@ def spread_of(peaks: np.ndarray) -> np.ndarray:
 
 def housner_restitutions(angles: np.ndarray) -> np.ndarray:
     """Restitution of rectangular blocks (2.4) [-]; 1 in the slender limit, angle 0."""
-    return np.array([Block.from_slenderness_angle(a, 1.0).momentum_restitution if a else 1.0 for a in angles.tolist()])
+    return np.array(
+        [RectangularBlock.from_slenderness_angle(a, 1.0).momentum_restitution if a else 1.0 for a in angles.tolist()]
+    )
 
 
 def _peaks(pulse: str, s: np.ndarray, omega: np.ndarray, eta: float, alpha: float) -> np.ndarray:

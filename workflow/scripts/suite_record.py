@@ -8,8 +8,8 @@ from typing import Any
 import xarray as xr
 
 from rocking._datasets.cube import describe, write_dataset
+from rocking._dimensional.block import Block
 from rocking._excitation.records.record import Record
-from rocking._model.block import Block
 from rocking.suites.configuration import BlockMap, SuiteConfiguration, suite_configuration
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes

@@ -10,10 +10,10 @@ from fastapi import APIRouter, Query, Request, Response
 
 from rocking._base.errors import InvalidArgumentError, in_range
 from rocking._dimensional.assessment import Assessment, assess
+from rocking._dimensional.block import Block
 from rocking._dimensional.margins import Margins as FoundMargins
 from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.table import BlockTable, read_table, respond_table
-from rocking._model.block import Block
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import evaluate, point_results
 from rocking_api.http.batch import body_form

@@ -10,6 +10,7 @@ import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.block import Block
 from rocking._dimensional.problem import restitution_of
 from rocking._dimensional.record_groups import checked_scale, record_groups, search_range
 from rocking._dimensional.record_response import respond_to_record
@@ -18,7 +19,6 @@ from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import reject_flight
 from rocking._history.time_history import time_history
-from rocking._model.block import Block
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
