@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, final, overload
+from typing import TYPE_CHECKING, final
 
 from numpy.typing import ArrayLike
 
-from rocking._base.errors import needed, reject_given
+from rocking._base.errors import positive, reject_given
 from rocking._base.units import Scalar
-from rocking._dimensional.curves import (
-    block_boundary,
-    block_history,
-    block_record_history,
-    block_spectrum,
-)
+from rocking._dimensional.curves import block_boundary, block_history, block_spectrum
 from rocking._dimensional.problem import BlockProblem
-from rocking._dimensional.record_response import BlockRecordResponse, respond_to_record
 from rocking._dimensional.response import BlockResponse, respond
+from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, scale_thresholds
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
-from rocking._history.time_history import DEFAULT_SAMPLES
 from rocking._model.block import AbstractBlock, RectangularBlock
+from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,21 +26,6 @@ Restitution = Scalar  # or "momentum"
 class RespondingBlock(AbstractBlock):
     """What pulses and records do to anything that rocks like a block."""
 
-    @overload
-    def response(
-        self,
-        motion: str | AbstractPulse,
-        *,
-        peak_acceleration: Scalar,
-        period: Scalar,
-        restitution: Restitution = "momentum",
-    ) -> BlockResponse: ...
-
-    @overload
-    def response(
-        self, motion: Record, *, scale: Scalar = 1.0, restitution: Restitution = "momentum", thresholds: bool = True
-    ) -> BlockRecordResponse: ...
-
     def response(
         self,
         motion: str | AbstractPulse | Record,
@@ -55,7 +35,7 @@ class RespondingBlock(AbstractBlock):
         scale: Scalar | None = None,
         restitution: Restitution = "momentum",
         thresholds: bool = True,
-    ) -> BlockResponse | BlockRecordResponse:
+    ) -> BlockResponse:
         """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
 
         Parameters
@@ -67,12 +47,12 @@ class RespondingBlock(AbstractBlock):
         period : float
             T_p = 2 pi/omega_g [s], > 0; of a pulse.
         scale : float
-            Factor of a record [-], (0, 1e6]; 1 by default.
+            Factor of a record, of both its components [-], (0, 1e6]; 1 by default.
         restitution : float or "momentum"
             eta [-], [0, 1]; or (2.4) for this geometry, 0 where that is negative.
         thresholds : bool
-            Whether the scales of a record at which the outcome changes are searched, when they, the warnings or the
-            text of the response are first asked for, in tenths of a second; of a pulse they always are.
+            Whether the strengths of the motion at which the outcome changes are searched, when they, the warnings or
+            the text of the response to a record are first asked for, in tenths of a second.
 
         Raises
         ------
@@ -86,36 +66,42 @@ class RespondingBlock(AbstractBlock):
         >>> Block("40 cm", "160 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
         False
         """
-        asked = self._motion(motion, peak_acceleration, period, scale, restitution)
-        if isinstance(asked, BlockProblem):
-            return respond(asked)
-        record, factor = asked
-        return respond_to_record(self, record, scale=factor, restitution=restitution, thresholds=thresholds)
+        problem = BlockProblem(self, motion, peak_acceleration, period, restitution, scale=scale)
+        return respond(problem, thresholds=thresholds)
 
-    @overload
-    def history(
+    def thresholds(
         self,
-        motion: str | AbstractPulse,
+        motion: str | AbstractPulse | Record,
         *,
-        peak_acceleration: Scalar,
-        period: Scalar,
+        period: Scalar | None = None,
         restitution: Restitution = "momentum",
-        duration: Scalar | None = None,
-        samples: int | None = None,
-        contact: bool = False,
-    ) -> xr.Dataset: ...
+        highest: Scalar | None = None,
+        stop: StopFlag | None = None,
+    ) -> BodyThresholds:
+        """Every peak acceleration of a pulse, or factor of a record, at which the outcome changes.
 
-    @overload
-    def history(
-        self,
-        motion: Record,
-        *,
-        scale: Scalar = 1.0,
-        restitution: Restitution = "momentum",
-        duration: Scalar | None = None,
-        samples: int | None = None,
-        contact: bool = False,
-    ) -> xr.Dataset: ...
+        Parameters
+        ----------
+        motion, period, restitution
+            As for `response`.
+        highest : float, optional
+            Highest peak acceleration [m/s2] or factor [-] searched, > 0; by default 100 times that of uplift under a
+            pulse, 10 times under a record.
+        stop : StopFlag, optional
+            Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
+
+        Raises
+        ------
+        InvalidArgumentError
+            As for `response`.
+        StoppedError
+            If `stop` was set.
+        """
+        if isinstance(motion, Record):
+            reject_given("a record", period=period)
+            return scale_thresholds(motion, self, restitution=restitution, highest=highest, stop=stop)
+        problem = BlockProblem(self, motion, self.uplift_acceleration, period, restitution)
+        return block_thresholds(problem, None if highest is None else positive("highest", highest, "m/s2"), stop)
 
     def history(
         self,
@@ -129,7 +115,7 @@ class RespondingBlock(AbstractBlock):
         samples: int | None = None,
         contact: bool = False,
     ) -> xr.Dataset:
-        """Rotation against time, `block_history` and `block_record_history` of `rocking._dimensional.curves`.
+        """Rotation against time, `rocking._dimensional.curves.block_history`.
 
         Parameters
         ----------
@@ -147,14 +133,8 @@ class RespondingBlock(AbstractBlock):
         InvalidArgumentError
             If a value is out of range, missing, or has no meaning for the kind of motion.
         """
-        asked = self._motion(motion, peak_acceleration, period, scale, restitution)
-        if isinstance(asked, BlockProblem):
-            count = DEFAULT_SAMPLES if samples is None else samples
-            return block_history(asked, duration=duration, samples=count, contact=contact)
-        record, factor = asked
-        return block_record_history(
-            self, record, scale=factor, restitution=restitution, duration=duration, samples=samples, contact=contact
-        )
+        problem = BlockProblem(self, motion, peak_acceleration, period, restitution, scale=scale)
+        return block_history(problem, duration=duration, samples=samples, contact=contact)
 
     def spectrum(
         self,
@@ -204,22 +184,6 @@ class RespondingBlock(AbstractBlock):
             If a value is out of range.
         """
         return block_boundary(self, motion, restitution=restitution, period=period)
-
-    def _motion(
-        self,
-        motion: str | AbstractPulse | Record,
-        peak_acceleration: Scalar | None,
-        period: Scalar | None,
-        scale: Scalar | None,
-        restitution: Restitution,
-    ) -> BlockProblem | tuple[Record, Scalar]:
-        """The problem under a pulse, or the record and its factor."""
-        if isinstance(motion, Record):
-            reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
-            return motion, 1.0 if scale is None else scale
-        reject_given("a pulse: state `peak_acceleration`", scale=scale)
-        strength = needed("a pulse", peak_acceleration=peak_acceleration)
-        return BlockProblem(self, motion, strength, needed("a pulse", period=period), restitution)
 
 
 @final

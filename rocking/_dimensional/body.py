@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer, needed, positive, reject_given
 from rocking._base.units import Scalar, Values
 from rocking._boundary.tracing import trace_curves
-from rocking._dimensional.body_problem import BodyProblem, checked_restitution
+from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.body_response import BodyResponse, respond_bodies
-from rocking._dimensional.body_thresholds import BodyThresholds, thresholds_of
 from rocking._dimensional.curves import frequency_window, with_si_axes
-from rocking._dimensional.record_groups import HIGHEST_SCALE
+from rocking._dimensional.problem import HIGHEST_SCALE, checked_restitution
+from rocking._dimensional.thresholds import BodyThresholds, thresholds_of
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, reactions_of

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, in_range
-from rocking._base.units import Values
+from rocking._base.errors import in_range
 from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -19,7 +18,7 @@ from rocking._excitation.records.vertical import reject_flight
 from rocking._history.motion import FREE_DURATION, BodyMotion, PulseMotion, SamplesMotion
 from rocking._model.body import AbstractBody
 from rocking._model.checks import check
-from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SMALLEST_ALPHA
+from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, SMALLEST_ALPHA
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record as KernelRecord
 from rocking._solver.bodies import outcome_margin_of, solve_motion
@@ -147,19 +146,3 @@ class BodyProblem:
     def _reject_flight(self) -> None:
         if isinstance(self.motion, Record):
             reject_flight("scale", self.motion, float(self.vertical_scale.max(initial=0.0)))
-
-
-def checked_restitution(restitution: Values) -> Array | None:
-    """The coefficient of restitution: None for "momentum", else float array.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For any other text, and numbers outside [0, 1].
-    """
-    if isinstance(restitution, str) and restitution == "momentum":
-        return None
-    try:
-        return check(RESTITUTION, restitution)
-    except InvalidArgumentError as error:
-        raise InvalidArgumentError("restitution", error.value, f"momentum, or {error.allowed}") from None

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.block_warnings import warnings_of_changes
 from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.body_thresholds import BodyThresholds, thresholds_of
-from rocking._dimensional.scalar_response import count_of_impacts
+from rocking._dimensional.response import ROTATION, count_of_impacts, described_peak
+from rocking._dimensional.threshold import warnings_of_changes
+from rocking._dimensional.thresholds import BodyThresholds, thresholds_of
 from rocking._excitation.records.record import Record
 from rocking._history.contact import ContactExtremes, contact_extremes
 from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, ResponseField
@@ -29,10 +29,10 @@ from rocking._numba.cancellation import StopFlag
 
 Array = NDArray[np.float64]
 
-_MISSING = "the body overturns"
+_MISSING = ROTATION.missing
 
 BODY_FIELDS = (
-    ResponseField("rotation", "f8", "rad", "3.2", "peak rotation max |theta|", _MISSING),
+    ROTATION,
     ResponseField("rotation_left", "f8", "rad", "3.2", "peak rotation about the left edge", _MISSING),
     ResponseField("rotation_right", "f8", "rad", "3.2", "peak rotation about the right edge", _MISSING),
     ResponseField("displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", _MISSING),
@@ -146,10 +146,11 @@ class BodyResponse(EqualByValue):
             ]
         if math.isnan(float(edges["right"].inertia_ratio)):
             texts.append("the contact forces of this body are not known: sliding is not assessed")
+        given, name, unit = float(problem.acceleration), "peak acceleration", " m/s2"
         if isinstance(problem.motion, Record):
+            given, name, unit = given / problem.motion.peak_acceleration, "scale", ""
             texts += problem.motion.remarks
-        given, name, unit = self.thresholds.given
-        return [*texts, *warnings_of_changes(given, self.thresholds.changes, name, unit)]
+        return [*texts, *warnings_of_changes(given, self.thresholds, name, unit)]
 
     def to_xarray(self) -> xr.Dataset:
         """The response as a labelled data set, with units and meanings; arguments that vary are coordinates."""
@@ -182,9 +183,8 @@ class BodyResponse(EqualByValue):
         happened = outcome.sentence
         edge = "right" if self.edge > 0 else "left"
         if outcome == Outcome.SAFE:
-            angle = f"peak rotation {math.degrees(float(self.rotation)):.4g} deg"
-            moved = f"top displacement {float(self.displacement):.4g} m"
-            happened += f": {angle}, {moved}, {count_of_impacts(int(self.impacts))}"
+            peak = described_peak(float(self.rotation), float(self.displacement))
+            happened += f": {peak}, {count_of_impacts(int(self.impacts))}"
         elif outcome != Outcome.NO_UPLIFT:
             happened += f" about the {edge} edge"
         strength = f"{float(self.problem.acceleration):.4g} m/s2"

@@ -13,10 +13,9 @@ from rocking._base.errors import InvalidArgumentError, in_range, positive
 from rocking._base.units import Scalar
 from rocking._boundary.tracing import overturning_boundary
 from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
-from rocking._dimensional.record_groups import checked_scale, record_groups
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
-from rocking._history.time_history import DEFAULT_SAMPLES, time_history
+from rocking._history.time_history import time_history
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._numba.cancellation import StopFlag
@@ -30,20 +29,20 @@ def block_history(
     problem: BlockProblem,
     *,
     duration: Scalar | None = None,
-    samples: int = DEFAULT_SAMPLES,
+    samples: int | None = None,
     contact: bool = False,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Rotation of a block against time in SI units.
+    """Rotation of a block against time in SI units, by (2.2).
 
     Parameters
     ----------
     problem : BlockProblem
-        The block and the pulse.
+        The block and the motion.
     duration : float, optional
         Length [s], > 0; by default that of `rocking.time_history`.
-    samples : int
-        Uniform samples; the events are added.
+    samples : int, optional
+        Uniform samples; by default 400 under a pulse, and those of a record. The events are added.
     contact : bool
         Whether to add reactions and friction demand, which are dimensionless.
     stop : StopFlag, optional
@@ -53,91 +52,33 @@ def block_history(
     -------
     xarray.Dataset
         time(time) [s]; rotation(time) [rad]; angular_velocity(time) [rad/s]; ground_acceleration(time) [m/s2];
-        top_displacement(time) [m]; impact_time(impact) [s].
+        top_displacement(time) [m]; impact_time(impact) [s]. Under a record also the coordinate tau(time) [-], and
+        vertical_acceleration(time) [m/s2] if it has it.
 
     Raises
     ------
     InvalidArgumentError
         If a value is out of range.
     """
-    found = time_history(
-        problem.pulse,
-        **problem.groups,
-        duration=None if duration is None else positive("duration", duration, "s") * problem.block.frequency_parameter,
-        samples=samples,
-        contact=contact,
-        stop=stop,
-    )
+    length = None if duration is None else positive("duration", duration, "s")
+    if length is not None and not isinstance(problem.motion, Record):
+        length *= problem.block.frequency_parameter
+    found = time_history(problem.motion, **problem.groups, duration=length, samples=samples, contact=contact, stop=stop)
     return in_si_units(found, problem)
 
 
 def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
     """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
+    about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
+    if isinstance(problem.motion, Record):
+        return _in_radians(found, problem.block).assign_attrs(about | {"scale": problem.scale})
     p = problem.block.frequency_parameter
     time = "time", found["tau"].values / p, {"units": "s", "long_name": "time from pulse start"}
     impacts = found["impact_time"]
     history = found.rename({"tau": "time"}).assign_coords(time=time)
     history["impact_time"] = impacts.dims, impacts.values / p, {"units": "s", "long_name": "time of impact"}
-    about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
     times = {"period": problem.period, "pulse_end": float(found.attrs["pulse_end"]) / p}
     return _in_radians(history, problem.block).assign_attrs(about | times)
-
-
-def block_record_history(
-    block: AbstractBlock,
-    record: Record,
-    *,
-    scale: Scalar = 1.0,
-    restitution: Scalar = "momentum",
-    duration: Scalar | None = None,
-    samples: int | None = None,
-    contact: bool = False,
-    stop: StopFlag | None = None,
-) -> xr.Dataset:
-    """Rotation of a block under a record against time in SI units, by (2.2).
-
-    Parameters
-    ----------
-    block : Block
-        The block.
-    record : Record
-        Ground motion.
-    scale : float
-        Factor of the record [-], (0, 1e6].
-    restitution : "momentum" or float
-        (2.4), 0 where that is negative; or eta [-], [0, 1].
-    duration : float, optional
-        Length [s], > 0; by default that of `rocking.time_history`.
-    samples : int, optional
-        Uniform samples; by default those of the record. The events are added.
-    contact : bool
-        Whether to add reactions and friction demand, which are dimensionless.
-    stop : StopFlag, optional
-        Cancels the work.
-
-    Returns
-    -------
-    xarray.Dataset
-        As of `block_history`, with the coordinate tau(time) [-] beside time(time) [s], and vertical_acceleration(time)
-        [m/s2] for a record that has it.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
-    """
-    factor = checked_scale(scale, record, block)
-    eta = restitution_of(block, restitution)
-    found = time_history(
-        record,
-        **record_groups(record, block, factor, eta),
-        duration=duration,
-        samples=samples,
-        contact=contact,
-        stop=stop,
-    )
-    about = _description(block, factor * record.peak_acceleration, eta)
-    return _in_radians(found, block).assign_attrs(about | {"scale": factor})
 
 
 def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
@@ -200,7 +141,7 @@ def block_spectrum(
     periods = np.atleast_1d(periods)
     problem = BlockProblem(block, pulse, peak_acceleration, float(periods[0]) if periods.size else 1.0, restitution)
     ratio = frequency_ratio_of(block, 1.0) / periods
-    found = solve_with_bound(problem.pulse, **{**problem.groups, "frequency_ratio": ratio})  # type: ignore[arg-type]
+    found = solve_with_bound(problem.pulse, **problem.groups | {"frequency_ratio": ratio})
     rotation = found.peak_rotation * block.alpha
     variables = {
         "rotation": ("period", rotation, {"units": "rad", "long_name": "peak rotation"}),

@@ -106,7 +106,7 @@ class EquivalentBlock(RespondingBlock):
         return self._frequency_parameter
 
     @property
-    def uplift_acceleration(self) -> float:
+    def uplift_acceleration(self) -> float:  # type: ignore[override]  # as of AbstractBlock
         """Smallest ground acceleration that starts rocking [m/s2]."""
         if self._uplift_acceleration is None:
             return self.gravity * self.half_width / self.half_height  # below (2.1)

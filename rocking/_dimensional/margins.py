@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from rocking._boundary.amplitude import thresholds
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.threshold import Threshold
 from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag
-
-HIGHEST_AMPLITUDE = 100.0
-"""Largest a = a_g/(g tan alpha) searched for changes of outcome [-], or ten times that of the problem if larger."""
 
 SEARCH_FACTOR = 10.0
 """Ratio of the largest period searched to that of the pulse, and its inverse [-]; sizes go with its square."""
@@ -57,33 +54,9 @@ class Margins:
     sizes_searched: tuple[float, float]
 
 
-def acceleration_thresholds(problem: BlockProblem, stop: StopFlag | None = None) -> tuple[Threshold, ...]:
-    """Peak accelerations [m/s2] at which the outcome changes at this period, ascending.
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
-    """
-    groups = problem.groups
-    highest = min(max(HIGHEST_AMPLITUDE, 10.0 / groups["slenderness"]), 1e6)
-    changes = thresholds(
-        problem.pulse,
-        frequency_ratio=groups["frequency_ratio"],
-        restitution=groups["restitution"],
-        alpha=groups["alpha"],
-        highest_amplitude=highest,
-        stop=stop,
-    )
-    return tuple(
-        Threshold(a * problem.block.uplift_acceleration, above)
-        for a, above in zip(changes.amplitude.tolist(), changes.overturns_above.tolist(), strict=True)
-    )
-
-
 def margins_of(
     problem: BlockProblem,
-    accelerations: tuple[Threshold, ...],
+    accelerations: Iterable[Threshold],
     stop: StopFlag | None = None,
     served: tuple[float, float] = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper),
 ) -> Margins:
@@ -92,9 +65,9 @@ def margins_of(
     Parameters
     ----------
     problem : BlockProblem
-        The problem.
-    accelerations : tuple of Threshold
-        As `acceleration_thresholds` finds them.
+        The block and the pulse.
+    accelerations : iterable of Threshold
+        As `block_thresholds` finds them.
     stop : StopFlag, optional
         Cancels the work.
     served : (float, float)
@@ -119,7 +92,7 @@ def margins_of(
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))
 
     def period(ratio: float) -> float:
-        return problem.period * omega / ratio  # omega_g = 2 pi/T_p: longer is lower
+        return float(problem.period * omega / ratio)  # omega_g = 2 pi/T_p: longer is lower
 
     def size(ratio: float) -> float:
         return float(block.half_diagonal * (ratio / omega) ** 2)  # p = sqrt(3 g/(4 R)): larger is higher (2.2)
@@ -146,7 +119,7 @@ def margins_of(
     )
 
 
-def _nearest(value: float, candidates: tuple[Threshold, ...]) -> float | None:
+def _nearest(value: float, candidates: Iterable[Threshold]) -> float | None:
     return min((one.value for one in candidates), key=lambda candidate: abs(math.log(candidate / value)), default=None)
 
 

@@ -5,10 +5,14 @@ It is rounded so that no range in which the block overturns is shown as one that
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
 from rocking._boundary.scan import RELATIVE_ERROR  # that of elastic blocks under pulses, too
+
+MARGIN = 0.05
+"""Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
 
 
 @dataclass(frozen=True)
@@ -40,3 +44,9 @@ def threshold_text(value: float, digits: int = 4, *, overturns_above: bool = Tru
     error, rounding = (-RELATIVE_ERROR, ROUND_FLOOR) if overturns_above else (RELATIVE_ERROR, ROUND_CEILING)
     rounded = Context(prec=digits, rounding=rounding).create_decimal_from_float(value * (1.0 + error))
     return f"{float(rounded):.{digits}g}"
+
+
+def warnings_of_changes(given: float, changes: Iterable[Threshold], name: str, unit: str = "") -> list[str]:
+    """That the outcome changes close to the value that is given."""
+    near = ", ".join(one.text() for one in changes if abs(one.value / given - 1.0) < MARGIN)
+    return [f"the outcome changes within {100 * MARGIN:g} % of this {name}: at {near}{unit}"] if near else []

@@ -9,13 +9,14 @@ import xarray as xr
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional import assessment
 from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of
-from rocking._dimensional.response import FIELDS
 from rocking._model.block import STANDARD_GRAVITY
 from rocking._model.outcome import Outcome
 
 BLOCK = rocking.Block(width=0.4, height=1.6)
 MOTION = {"peak_acceleration": 4.0, "period": 0.5}
+RECORD = rocking.Record(9.81 * 0.5 * np.sin(np.arange(400) * 0.05), 0.01, unit="m/s2", name="made up")
 
 
 def groups(block=BLOCK, peak_acceleration=4.0, period=0.5, restitution=None):
@@ -54,6 +55,41 @@ def test_thresholds_and_margins_are_changes_of_the_outcome():
         assert block.response("sine", **MOTION, restitution=eta).overturned is overturned
 
 
+@pytest.mark.parametrize("motion", ["sine", "record"])
+@pytest.mark.parametrize(
+    "block", [BLOCK, rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)], ids=["rigid", "linear"]
+)
+def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
+    by_record = motion == "record"
+    made, period = (RECORD, {}) if by_record else (motion, {"period": 0.5})
+    strength = {} if by_record else {"peak_acceleration": 4.0}
+    found = block.thresholds(made, **period)
+    assert list(found) == list(block.response(made, **strength, **period).thresholds)
+    assert len(found) == found.value.size > 0
+    lowest = {("scale" if by_record else "peak_acceleration"): found[0].value}
+    for factor, overturned in ((1 - 2e-6, False), (1 + 2e-6, True)):
+        just = {name: value * factor for name, value in lowest.items()}
+        assert block.response(made, **just, **period).overturned is overturned
+    none = block.thresholds(made, highest=0.999 * found[0].value, **period)
+    assert (len(none), list(none)) == (0, [])
+    assert "was found to overturn it" in repr(none)
+    data = found.to_xarray()
+    np.testing.assert_array_equal(data[[*lowest][0]], [one.value for one in found])
+    assert data[[*lowest][0]].attrs["units"] == ("1" if by_record else "m s-2")
+    assert len(found.to_pandas()) == len(found)
+    with pytest.raises(InvalidArgumentError):
+        block.thresholds(made, **({"period": 0.5} if by_record else {}))
+
+
+@pytest.mark.parametrize("motion", ["sine", "record"])
+def test_what_is_not_to_be_searched_is_not(motion, monkeypatch):
+    monkeypatch.setattr(assessment, "block_thresholds", None)  # a search fails
+    given = {"motion": RECORD} if motion == "record" else {"motion": motion, **MOTION}
+    found = BLOCK.response(**given, thresholds=False)
+    assert (found.thresholds, found.margins, found.margin) == (None, None, None)
+    assert not any("not found" in text for text in found.warnings)
+
+
 def test_restitution_is_a_number_or_that_of_the_shape():
     elastic = BLOCK.response("sine", **MOTION, restitution=0.95)
     expected = rocking.peak_response("sine", **groups(restitution=0.95))
@@ -81,15 +117,15 @@ def test_text_forms():
     assert "7.419 deg" in html
     assert "<td>0.206594</td><td>m</td>" in html
     assert "<td>1</td><td></td>" in html  # the number of impacts has no unit
-    assert html.count("<tr>") == len(FIELDS)
+    assert html.count("<tr>") == len(found.fields)
 
 
 def test_tables_hold_every_field():
     found = BLOCK.response("-cosine", **MOTION)
     labelled, series = found.to_xarray(), found.to_pandas()
     assert labelled.attrs["pulse"] == series["pulse"] == "-cosine"
-    assert [*labelled.data_vars] == [field.name for field in FIELDS] == [*series.index][1:]
-    for field in FIELDS:
+    assert [*labelled.data_vars] == [field.name for field in found.fields] == [*series.index][1:]
+    for field in found.fields:
         assert labelled[field.name].attrs["units"] == field.unit
         if field.name != "outcome":
             assert labelled[field.name].item() == series[field.name] == found.to_dict()[field.name]
@@ -219,8 +255,6 @@ def test_dimensionless_response_as_a_table():
     assert "rocks and comes to rest" in single._repr_html_()
 
 
-RECORD = rocking.Record(9.81 * 0.5 * np.sin(np.arange(400) * 0.05), 0.01, unit="m/s2", name="made up")
-
 
 def test_a_record_with_a_scale_is_solved_in_groups():
     block = rocking.Block(width=0.4, height=1.6)
@@ -236,7 +270,7 @@ def test_a_record_with_a_scale_is_solved_in_groups():
     assert found.peak_rotation == expected.peak_rotation > 0.0
     assert found.rotation == found.peak_rotation * block.alpha
     assert found.displacement == pytest.approx(2.0 * block.half_height * math.sin(found.rotation))
-    assert repr(found).startswith("<rocking.BlockRecordResponse: rocks and comes to rest: peak rotation")
+    assert repr(found).startswith("<rocking.BlockResponse: rocks and comes to rest: peak rotation")
     assert "under made up scaled to 2.69" in repr(found)
     data = found.to_xarray()
     assert data["displacement"].attrs["units"] == "m"
@@ -250,7 +284,7 @@ def test_a_record_at_a_large_scale_overturns_and_has_thresholds():
     found = rocking.Block(width=0.4, height=1.6).response(RECORD, scale=4.0, thresholds=True)
     assert found.overturned
     assert math.isnan(found.rotation)
-    assert found.thresholds.scale[0] < 4.0
+    assert found.thresholds.value[0] < 4.0
 
 
 @pytest.mark.parametrize(

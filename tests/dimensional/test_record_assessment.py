@@ -8,7 +8,7 @@ import pytest
 
 import rocking
 from rocking._base.errors import StoppedError
-from rocking._dimensional import record_assessment
+from rocking._dimensional import assessment
 from rocking._numba.cancellation import StopFlag
 from tests.suites.motions import noise
 
@@ -16,7 +16,7 @@ BLOCK = rocking.Block(0.5, 2.0)
 
 
 def test_nothing_is_searched_before_it_is_asked_for(monkeypatch):
-    monkeypatch.setattr(record_assessment, "scale_thresholds", None)  # a search fails
+    monkeypatch.setattr(assessment, "block_thresholds", None)  # a search fails
     found = BLOCK.response(noise(0))
     assert found.to_dict()["outcome"] == found.outcome.name
     assert BLOCK.response(noise(0), thresholds=False).margin is None

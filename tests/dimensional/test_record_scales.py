@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._dimensional.record_scales import ScaleThresholds, overturning_scale, scale_thresholds
 from rocking._dimensional.threshold import Threshold, threshold_text
+from rocking._dimensional.thresholds import BodyThresholds, overturning_scale, scale_thresholds
 from tests.suites.motions import noise
 
 BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.5, 2.0), rocking.Block(2.0, 10.0)]
@@ -17,13 +17,13 @@ BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.5, 2.0), rocking.Block(2.0, 1
 def test_the_lowest_of_all_changes_is_the_lowest_overturning_scale(seed):
     record = noise(seed)
     for block in BLOCKS:
-        every = scale_thresholds(record, block).scale
+        every = scale_thresholds(record, block).value
         lowest = overturning_scale(record, block)
         if not every.size:
             assert math.isnan(lowest)
             continue
         assert lowest == every[0]
-        assert scale_thresholds(record, block, highest=1.5 * lowest).scale[0] == lowest
+        assert scale_thresholds(record, block, highest=1.5 * lowest).value[0] == lowest
         assert math.isnan(overturning_scale(record, block, highest=lowest * (1.0 - 1e-5)))
 
 
@@ -42,7 +42,9 @@ def test_text_of_a_threshold_is_on_the_safe_side():
 
 @pytest.mark.parametrize("count", [0, 1, 3])
 def test_changes_in_words(count):
-    found = ScaleThresholds(np.array([1.13389, 1.2, 1.3])[:count], np.array([True, False, True])[:count], (0.5, 5.0))
+    found = BodyThresholds(
+        np.array([1.13389, 1.2, 1.3])[:count], np.array([True, False, True])[:count], np.array([0.5, 5.0]), "scale"
+    )
     assert (
         found.sentence
         == [

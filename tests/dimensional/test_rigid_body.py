@@ -47,7 +47,7 @@ def test_equal_edges_are_the_block_under_a_record():
         one = block.response(motion, scale=scale)
         assert found.outcome[k] == one.outcome
         assert found.rotation[k] == pytest.approx(one.rotation, rel=1e-13, nan_ok=True)
-    np.testing.assert_allclose(body.thresholds(motion).value, block.response(motion).thresholds.scale, rtol=1e-12)
+    np.testing.assert_allclose(body.thresholds(motion).value, block.response(motion).thresholds.value, rtol=1e-12)
 
 
 @settings(deadline=None, max_examples=60)
@@ -129,6 +129,17 @@ def test_an_inclined_body_uplifts_at_other_accelerations():
         assert outcomes[0] == rocking.Outcome.NO_UPLIFT != outcomes[1]
     with pytest.raises(InvalidArgumentError, match=r"less than 16\.7 degrees: the body falls over"):
         BODY.tilted("-20 deg")
+
+
+def test_a_body_that_nothing_overturns_has_no_thresholds():
+    short = {"peak_acceleration": 4.0, "period": 1e-4}
+    found = BODY.response("sine", **short)
+    assert list(found.thresholds) == found.warnings == []
+    assert found.margin.startswith("no peak acceleration up to ")
+    several = rocking.RigidBody([0.12, 0.2], 0.18, 0.4).thresholds("sine", period=0.6)
+    assert several.to_xarray()["peak_acceleration"].dims == ("dim_0", "threshold")
+    with pytest.raises(InvalidArgumentError, match="those of one body"):
+        list(several)
 
 
 def test_angular_momentum_gives_the_restitution_of_each_edge():
@@ -345,7 +356,7 @@ def test_equal_edges_with_vertical_motion_are_the_block():
     one, other = block.response(motion, scale=1.2), body.response(motion, scale=1.2)
     assert other.outcome == one.outcome == rocking.Outcome.SAFE
     assert float(other.rotation) == pytest.approx(one.rotation, rel=1e-12)
-    np.testing.assert_allclose(other.thresholds.value, one.thresholds.scale, rtol=1e-9)
+    np.testing.assert_allclose(other.thresholds.value, one.thresholds.value, rtol=1e-9)
     assert other.thresholds.searched[0] == pytest.approx(one.thresholds.searched[0], rel=1e-12)
     for name in ("largest_friction_demand", "smallest_normal_reaction", "impulse_ratio"):
         assert getattr(other.contact, name) == pytest.approx(getattr(one.assessment.contact, name), rel=1e-9)

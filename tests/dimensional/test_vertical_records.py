@@ -8,8 +8,8 @@ import pytest
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.record_groups import record_groups, uplift_scale
-from rocking._dimensional.record_scales import overturning_scale, scale_thresholds
+from rocking._dimensional.problem import record_groups, uplift_scale
+from rocking._dimensional.thresholds import overturning_scale, scale_thresholds
 from tests.solver.records.tables import samples
 from tests.suites.motions import noise
 
@@ -44,7 +44,7 @@ def test_the_scale_multiplies_both_components_under_any_gravity() -> None:
     assert found.peak_rotation == pytest.approx(other.peak_rotation, rel=1e-10, nan_ok=True)
     assert found.thresholds is not None
     assert other.thresholds is not None
-    np.testing.assert_allclose(found.thresholds.scale, 2.0 * other.thresholds.scale, rtol=1e-5)
+    np.testing.assert_allclose(found.thresholds.value, 2.0 * other.thresholds.value, rtol=1e-5)
     # lengths and accelerations divided by the same number leave the ratios
     earth = rocking.Block(2 * (0.1 * STANDARD_GRAVITY / 1.62), STANDARD_GRAVITY / 1.62)
     k = 0.1 * STANDARD_GRAVITY / 1.62
@@ -59,7 +59,7 @@ def test_uplift_depends_on_both_components() -> None:
     held = rocking.Record([0.0, 1.0, 0.0], 0.1, "g", vertical=[1.0, 10.0, 1.0])
     assert uplift_scale(held, BLOCK) == 1e6
     found = scale_thresholds(held, BLOCK)
-    assert found.scale.size == 0
+    assert found.value.size == 0
     assert math.isnan(overturning_scale(held, BLOCK))
 
 
@@ -87,11 +87,11 @@ def test_thresholds_are_those_of_the_responses() -> None:
         record.acceleration, record.time_step, "m/s2", vertical=0.6 * np.roll(record.acceleration, 9)
     )
     found = scale_thresholds(motion, BLOCK)
-    assert found.scale.size
-    assert overturning_scale(motion, BLOCK) == found.scale[0]
-    without = scale_thresholds(record, BLOCK).scale[0]
-    assert abs(found.scale[0] / without - 1.0) > 1e-3
-    for scale in found.scale.tolist():
+    assert found.value.size
+    assert overturning_scale(motion, BLOCK) == found.value[0]
+    without = scale_thresholds(record, BLOCK).value[0]
+    assert abs(found.value[0] / without - 1.0) > 1e-3
+    for scale in found.value.tolist():
         assert BLOCK.response(motion, scale=scale, thresholds=False).overturned
         near = scale * np.linspace(1.0 - 1e-6, 1.0 + 1e-6, 2001)  # ranges near a threshold can be narrow
         groups = record_groups(motion, BLOCK, near, BLOCK.inelastic_restitution)

@@ -1,0 +1,339 @@
+"""Strengths of a ground motion at which the outcome changes: peak accelerations of a pulse, factors of a record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError, number
+from rocking._base.units import Scalar
+from rocking._boundary.amplitude import amplitude_changes, thresholds
+from rocking._boundary.scan import lowest_overturning, outcome_changes, scanned
+from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.problem import (
+    HIGHEST_SCALE,
+    BlockProblem,
+    record_groups,
+    restitution_of,
+    search_range,
+    uplift_scale,
+)
+from rocking._dimensional.threshold import Threshold, threshold_text
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.vertical import highest_vertical_scale
+from rocking._model.block import AbstractBlock
+from rocking._model.outcome import Outcome
+from rocking._numba.cancellation import StopFlag
+from rocking._numba.compilation import Record as KernelRecord
+from rocking._solver.records.record_response import record_response
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+HIGHEST = 100.0, 10.0
+"""Largest strength searched over that of uplift [-]: of pulses, and of records."""
+
+BEYOND = 10.0, 2.0
+"""That for a block over its own strength [-], where it is larger."""
+
+WORDS = {
+    "peak_acceleration": ("peak acceleration", " m/s2", "a peak acceleration of {} m/s2", " m/s2"),
+    "scale": ("factor of the record", "", "{} times the record", " times"),
+}
+"""Kinds of strength: name, unit, one from which a body overturns, and the unit after `up to`."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BodyThresholds(EqualByValue):
+    """Strengths of a ground motion at which the outcome changes, for each body; of one body a sequence of `Threshold`.
+
+    Attributes
+    ----------
+    value : float array (..., thresholds)
+        Peak acceleration of a pulse [m/s2], or factor of a record [-], ascending; nan beyond the last of a body. The
+        body overturns at it, and survives within a relative 1e-6 of it.
+    overturns_above : bool array (..., thresholds)
+        True where the body overturns just above and survives just below.
+    searched : float array (..., 2)
+        Lowest and highest strength searched, from uplift on.
+    strength : {"peak_acceleration", "scale"}
+        What the values are.
+    ends_in_flight : bool
+        Whether the search for one body ended at the factor at which the vertical acceleration reaches -g.
+    """
+
+    value: Array
+    overturns_above: Flags
+    searched: Array
+    strength: str
+    ends_in_flight: bool = False
+
+    @property
+    def lowest(self) -> Array:
+        """Lowest strength at which each body overturns; nan where none was found. Array (...)."""
+        if not self.value.shape[-1]:
+            return np.full(self.value.shape[:-1], math.nan)
+        return self.value[..., 0]
+
+    @property
+    def changes(self) -> tuple[Threshold, ...]:
+        """Those of one body, one for each.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If there are several bodies.
+        """
+        if self.value.ndim > 1:
+            raise InvalidArgumentError("thresholds", f"shape {self.value.shape[:-1]}", "those of one body")
+        return tuple(map(Threshold, self.value.tolist(), self.overturns_above.tolist()))
+
+    def __len__(self) -> int:
+        return len(self.changes)
+
+    def __iter__(self) -> Iterator[Threshold]:
+        return iter(self.changes)
+
+    def __getitem__(self, index: int) -> Threshold:
+        return self.changes[index]
+
+    @property
+    def sentence(self) -> str:
+        """From which strength one body overturns, and how often the outcome changes above it, in words."""
+        name, unit, from_strength, up_to = WORDS[self.strength]
+        top = threshold_text(float(self.searched[1]))
+        end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
+        if not self.changes:
+            return f"no {name} up to {top}{unit} was found to overturn it{end}"
+        first, *others = self.changes
+        more = f"; above that the outcome changes {len(others)} more times up to {top}{up_to}" if others else ""
+        return f"it overturns from {from_strength.format(first.text())}{more}{end}"
+
+    def __repr__(self) -> str:
+        """The lowest thresholds in words."""
+        if self.value.ndim == 1:
+            return f"<rocking.BodyThresholds: {self.sentence}>"
+        shape = " x ".join(map(str, self.value.shape[:-1]))
+        found = self.lowest[~np.isnan(self.lowest)]
+        unit = WORDS[self.strength][1]
+        ends = f", lowest from {found.min():.4g} to {found.max():.4g}{unit}" if found.size else ""
+        return f"<rocking.BodyThresholds of {shape} bodies: {found.size} overturn{ends}>"
+
+    def to_xarray(self) -> xr.Dataset:
+        """The thresholds as a data set over the axes of the bodies and `threshold`, with units."""
+        import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+        axes = [f"dim_{axis}" for axis in range(self.value.ndim - 1)]
+        name, unit, *_ = WORDS[self.strength]
+        units = {"units": unit.strip().replace("/s2", " s-2") or "1"}
+        about = units | {"long_name": f"{name} at which the outcome changes"}
+        above = {"units": "1", "long_name": "whether the body overturns just above"}
+        variables: dict[str, Any] = {
+            self.strength: ((*axes, "threshold"), self.value, about),
+            "overturns_above": ((*axes, "threshold"), self.overturns_above, above),
+            "searched": ((*axes, "end"), self.searched, units | {"long_name": f"lowest and highest {name} searched"}),
+        }
+        return xr.Dataset(variables)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The thresholds as rows; the index has the axes of `to_xarray`."""
+        return self.to_xarray().drop_vars("searched").to_dataframe()
+
+
+def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: StopFlag | None = None) -> BodyThresholds:
+    """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
+
+    Under a pulse as `rocking.thresholds`; under a record as `scale_thresholds`.
+
+    Parameters
+    ----------
+    problem : BodyProblem
+        The bodies and the motion.
+    highest : float, optional
+        Highest strength searched, in its unit; by default 100 times that of uplift under a pulse, 10 under a record.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    motion, shape = problem.motion, problem.shape
+    by_record = isinstance(motion, Record)
+    unit = motion.peak_acceleration if isinstance(motion, Record) else 1.0
+    problem = replace(problem, acceleration=np.full(shape, unit))  # of the strength 1
+    uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / unit
+    if isinstance(motion, Record) and motion.vertical is not None:
+        uplift = np.array([_uplift_scale(motion, motion.vertical, cell) for cell in problem.cells])
+    top = uplift * HIGHEST[by_record] if highest is None else np.full(uplift.size, highest)
+    limit = np.full(uplift.size, math.inf)
+    if isinstance(motion, Record):
+        gravity = np.broadcast_to(problem.body.gravity, shape).ravel() / STANDARD_GRAVITY
+        limit = highest_vertical_scale(motion) * gravity
+    flies, top = limit < top, np.minimum(top, limit)
+    changes = _record_changes if by_record else _pulse_changes
+    none = np.empty(0), np.empty(0, dtype=np.bool_)
+    found = [changes(problem, k, uplift[k], top[k], stop) if top[k] > uplift[k] else none for k in range(uplift.size)]
+    most = max((values.size for values, _ in found), default=0)
+    value, above = np.full((uplift.size, most), math.nan), np.zeros((uplift.size, most), dtype=np.bool_)
+    for k, (values, up) in enumerate(found):
+        value[k, : values.size], above[k, : values.size] = values, up
+    return BodyThresholds(
+        value.reshape(*shape, most),
+        above.reshape(*shape, most),
+        np.stack([uplift, np.maximum(uplift, top)], axis=-1).reshape(*shape, 2),
+        "scale" if by_record else "peak_acceleration",
+        ends_in_flight=bool(flies.all()) and shape == (),
+    )
+
+
+def _uplift_scale(record: Record, vertical: Array, cell: KernelRecord) -> float:
+    """Smallest factor at which a body uplifts under a record with a vertical component [m/s2]; `cell` at factor 1 [-].
+
+    Uplift of an edge is where the horizontal acceleration over g tan(alpha_s) of the other reaches 1 + w/g
+    (`rocking._model.body`): at a sample, since all of them are linear between samples.
+    """
+    resisted = cell["slenderness"] * record.peak_acceleration  # g tan(alpha_s)
+    horizontal = np.maximum(record.acceleration / resisted[1], -record.acceleration / resisted[0])
+    excess = float((horizontal - cell["vertical"] * vertical / STANDARD_GRAVITY).max())
+    return 1.0 / max(excess, 1.0 / HIGHEST_SCALE)
+
+
+def _pulse_changes(
+    problem: BodyProblem, k: int, uplift: float, highest: float, stop: StopFlag | None
+) -> tuple[Array, Flags]:
+    cell = problem.cells[k]
+    found = amplitude_changes(
+        problem.solver(k, stop), float(cell["rate"]), float(cell["eta"][0]), min(highest / uplift, 1e6)
+    )
+    return found.amplitude * uplift, found.overturns_above
+
+
+def _record_changes(
+    problem: BodyProblem, k: int, uplift: float, highest: float, stop: StopFlag | None
+) -> tuple[Array, Flags]:
+    solve, cell = problem.solver(k, stop), problem.cells[k]
+    rate, slenderness = float(cell["rate"]), float(cell["slenderness"].min())
+
+    def overturns(scales: Array) -> Flags:
+        records, _ = solve(slenderness / scales, np.full(scales.size, rate), np.zeros(scales.size))
+        return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
+
+    return outcome_changes(overturns, scanned(uplift, highest))
+
+
+def block_thresholds(
+    problem: BlockProblem, highest: float | None = None, stop: StopFlag | None = None
+) -> BodyThresholds:
+    """Every strength at which the outcome for a block changes.
+
+    Parameters
+    ----------
+    problem : BlockProblem
+        The block and the motion.
+    highest : float, optional
+        Highest peak acceleration [m/s2] or factor [-] searched; by default as `thresholds_of`, or 10 times the peak
+        acceleration of the problem, twice its factor, where that is more.
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Raises
+    ------
+    StoppedError
+        If `stop` was set.
+    """
+    block, motion, groups = problem.block, problem.motion, problem.groups
+    if isinstance(motion, Record):
+        if highest is None:
+            highest = max(HIGHEST[1] * uplift_scale(motion, block), BEYOND[1] * problem.scale)
+        top = min(highest, HIGHEST_SCALE)
+        return scale_thresholds(motion, block, restitution=groups["restitution"], highest=top, stop=stop)
+    uplift, slenderness = block.uplift_acceleration, groups.pop("slenderness")
+    above_uplift = max(HIGHEST[0], BEYOND[0] / slenderness) if highest is None else highest / uplift
+    if above_uplift <= 1.0:
+        return BodyThresholds(np.empty(0), np.empty(0, np.bool_), np.array([uplift, uplift]), "peak_acceleration")
+    top = min(above_uplift, 1e6)
+    found = thresholds(motion, **groups, highest_amplitude=top, stop=stop)
+    searched = np.array([uplift, top * uplift])
+    return BodyThresholds(found.amplitude * uplift, found.overturns_above, searched, "peak_acceleration")
+
+
+def scale_thresholds(
+    record: Record,
+    block: AbstractBlock,
+    *,
+    restitution: Scalar = "momentum",
+    highest: Scalar | None = None,
+    stop: StopFlag | None = None,
+) -> BodyThresholds:
+    """Every scale of a record at which the outcome for a block changes, by (2.2).
+
+    Scales that differ by 0.2 % are solved from that of uplift on, and each pair between which the outcome changes is
+    bisected. A range of one outcome that is narrower can be missed. Both components of the record are scaled; the
+    search ends below the scale at which the vertical acceleration reaches -g.
+
+    Parameters
+    ----------
+    record : Record
+        Ground motion.
+    block : Block
+        Block.
+    restitution : "momentum" or float
+        (2.4), or eta [-], [0, 1].
+    highest : float, optional
+        Highest scale searched [-], (0, 1e6]; by default ten times that of uplift.
+    stop : StopFlag, optional
+        Cancels the work, which then raises `StoppedError`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument out of range.
+    """
+    uplift, top, flies = search_range(record, block, _checked_highest(highest))
+    if top <= uplift:
+        return BodyThresholds(np.empty(0), np.empty(0, np.bool_), np.array([uplift, uplift]), "scale", flies)
+    overturns = _solver(record, block, restitution_of(block, restitution), stop)
+    found = outcome_changes(overturns, scanned(uplift, top))
+    return BodyThresholds(*found, np.array([uplift, top]), "scale", flies)
+
+
+def overturning_scale(
+    record: Record,
+    block: AbstractBlock,
+    *,
+    restitution: Scalar = "momentum",
+    highest: Scalar | None = None,
+    stop: StopFlag | None = None,
+) -> float:
+    """Lowest scale of a record at which it overturns a block [-]; nan if there is none.
+
+    The first of `scale_thresholds`, which has the same arguments, in less time.
+    """
+    uplift, top, _ = search_range(record, block, _checked_highest(highest))
+    return lowest_overturning(_solver(record, block, restitution_of(block, restitution), stop), scanned(uplift, top))
+
+
+def _checked_highest(highest: Scalar | None) -> float | None:
+    return None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
+
+
+def _solver(record: Record, block: AbstractBlock, eta: float, stop: StopFlag | None) -> Callable[[Array], Flags]:
+    """Whether the block overturns, as a function of the scales."""
+
+    def overturns(scales: Array) -> Flags:
+        return record_response(record, **record_groups(record, block, scales, eta), stop=stop).overturned
+
+    return overturns
