@@ -27,7 +27,7 @@ for warning in response.warnings:
 # there can be some at which it survives.
 
 scales = response.thresholds
-print(f"{scales.scale.size} changes of the outcome up to {scales.searched[1]:.2f} times the record, the first of them:")
+print(f"{len(scales)} changes of the outcome up to {scales.searched[1]:.2f} times the record, the first of them:")
 for change in scales.changes[:6]:
     print(f"{change} times the record")
 

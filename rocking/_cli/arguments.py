@@ -241,7 +241,7 @@ def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | 
     eta = "momentum" if given == "momentum" else _eta(given)
     pulse = read_pulse(options.pulse)
     problem = BlockProblem(block, pulse, peak_acceleration, period, eta)
-    groups: Mapping[str, float] = problem.groups  # type: ignore[assignment]
+    groups: Mapping[str, float] = problem.groups
     return Params(pulse, **groups, problem=problem)
 
 

@@ -93,18 +93,15 @@ def record(
     ] = None,
 ) -> None:
     """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
-    from rocking._dimensional.curves import block_record_history
-    from rocking._dimensional.record_response import respond_to_record
-
     with _picture(picture) as draw, file_errors():
         motion, shape, restitution = read_problem(file, block)
 
         def panels(pictures: Any, figure: Any) -> None:
-            data = block_record_history(shape, motion, scale=block.scale, restitution=restitution, duration=duration)
+            data = shape.history(motion, scale=block.scale, restitution=restitution, duration=duration)
             _draw_history(pictures, figure, data)
 
         draw(panels)
-        found = respond_to_record(shape, motion, scale=block.scale, restitution=restitution)
+        found = shape.response(motion, scale=block.scale, restitution=restitution)
         for warning in found.warnings:
             typer.echo(f"warning: {warning}", err=True)
 

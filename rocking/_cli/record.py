@@ -112,9 +112,8 @@ def _solved(
 ) -> tuple[dict[str, Any], list[str]]:
     """What is printed, by name, and the outcome and the margin in words."""
     from rocking._cli.printing import number
-    from rocking._dimensional.record_response import respond_to_record
 
-    found = respond_to_record(block, motion, scale=scale, restitution=restitution, thresholds=thresholds)
+    found = block.response(motion, scale=scale, restitution=restitution, thresholds=thresholds)
     response, assessment = found.dimensionless, found.assessment
     refined, changes = assessment.resampled, assessment.thresholds
     about: dict[str, Any] = {
@@ -152,7 +151,7 @@ def _solved(
     if changes is not None:
         about |= {
             "overturning_scale": assessment.overturning_scale,
-            "threshold_scale": changes.scale.tolist(),
+            "threshold_scale": changes.value.tolist(),
             "overturns_above": changes.overturns_above.tolist(),
         }
     if fit:

@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Scalar
-from rocking._dimensional.record_scales import scale_thresholds
+from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking.suites.hazard import annual_rate as rate_of
@@ -111,7 +111,7 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
     """
     share = number("probability", probability, 0.0, 1.0, closed="neither")
     pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))
-    lowest = np.array([next(iter(scale_thresholds(one, body).scale.tolist()), np.nan) for one in motions])
+    lowest = np.array([next(iter(scale_thresholds(one, body).value.tolist()), np.nan) for one in motions])
     over = np.isfinite(lowest)
     x, y = np.log(pgv / pga), np.log(lowest * pga)
     if over.sum() < 4 or np.ptp(x[over]) == 0.0:

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._boundary.scan import SCAN_RATIO, lowest_overturning, scanned
-from rocking._dimensional.record_groups import record_groups, uplift_scale
+from rocking._dimensional.problem import record_groups, uplift_scale
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response

@@ -19,7 +19,7 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array, one_of
 from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.block import Block
-from rocking._dimensional.record_scales import overturning_scale
+from rocking._dimensional.thresholds import overturning_scale
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock

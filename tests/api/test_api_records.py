@@ -9,8 +9,7 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking._dimensional.record_response import respond_to_record
-from rocking._dimensional.record_scales import scale_thresholds
+from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.record import UNITS
 from tests.api.conftest import assert_problem, client_of
 from tests.excitation.record_files import at2, rows
@@ -32,7 +31,7 @@ def motion():
 
 def test_the_response_is_that_of_the_library(client, motion):
     block = rocking.Block(0.5, 2.0)
-    expected = respond_to_record(block, motion, scale=1.1)
+    expected = block.response(motion, scale=1.1)
     found = post(client, scale=1.1, name="napa_HNE.csv").json()
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
@@ -46,7 +45,7 @@ def test_the_response_is_that_of_the_library(client, motion):
     assert found["record"]["name"] == "napa_HNE"
     assert found["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
     assert found["friction_demand"] > found["friction_at_uplift"] == 0.25
-    assert [one["scale"] for one in found["thresholds"]] == expected.thresholds.scale.tolist()
+    assert [one["scale"] for one in found["thresholds"]] == expected.thresholds.value.tolist()
     assert found["pulse"] is None
 
 
@@ -125,7 +124,7 @@ def test_scales_are_those_of_the_library(client, motion):
         expected.peak_rotation.tolist(), nan_ok=True
     )
     thresholds = scale_thresholds(motion, block, highest=2.0)
-    assert [one["scale"] for one in found["thresholds"]] == thresholds.scale.tolist()
+    assert [one["scale"] for one in found["thresholds"]] == thresholds.value.tolist()
     table = post(client, route="scales", points=30, scale_max=2.0, format="csv").text.splitlines()
     assert table[0].startswith("scale,peak_acceleration,peak_rotation,overturned")
     file = post(client, route="scales", points=30, scale_max=2.0, format="nc").content
@@ -230,7 +229,7 @@ def test_the_vertical_component_is_a_column_of_the_body(client, motion):
     columns = {"component": "h", "vertical": "up"}
     body = both_columns(motion)
     both = rocking.Record(motion.acceleration, 0.005, "m/s2", vertical=0.5 * np.roll(motion.acceleration, 5))
-    expected = respond_to_record(rocking.Block(0.5, 2.0), both, scale=1.1)
+    expected = rocking.Block(0.5, 2.0).response(both, scale=1.1)
     found = post(client, body, **columns, scale=1.1).json()
     assert found["peak_rotation"] == pytest.approx(float(expected.dimensionless.peak_rotation), rel=1e-9)
     assert found["margin"] == expected.margin

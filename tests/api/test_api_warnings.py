@@ -81,7 +81,7 @@ def test_warnings_under_a_record(client, width, height, scale, texts):
     result, lines = command_line("record", str(NAPA), *sizes)
     assert_same(python, http, result, lines)
     assert lines[1] == python.margin
-    assert python.sentence == f"{lines[0]}; {lines[1]}"
+    assert [python.sentence, python.margin] == lines[:2]
     assert python.margin in repr(python)
     places = [next(k for k, warning in enumerate(python.warnings) if text in warning) for text in texts]
     assert places == sorted(places)
@@ -126,6 +126,6 @@ def test_the_search_of_scales_is_bounded_and_can_be_left_out(client, monkeypatch
 def test_a_block_that_is_not_overturned_says_up_to_which_factor():
     motion = rocking.Record(np.sin(np.arange(200.0)), 0.01, unit="m/s2")
     found = rocking.Block(0.8, 1.0).response(motion)
-    assert found.thresholds.scale.size == 0
+    assert found.thresholds.value.size == 0
     assert found.margin.startswith("no factor of the record up to ")
     assert found.margin.endswith(" was found to overturn it")

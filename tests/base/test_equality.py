@@ -16,7 +16,6 @@ from rocking import paper
 from rocking._base.equality import EqualByValue, equal_values
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._datasets.cube import write_dataset
-from rocking._dimensional.record_scales import scale_thresholds
 from rocking._lookup.cube import Cube
 from rocking._solver.bounded_response import solve_with_bound
 from rocking._spectra.cubes import spectrum
@@ -49,11 +48,9 @@ EXAMPLES = {
     "FrequencyThresholds": lambda: critical_frequency_ratio(
         "sine", slenderness=0.3, restitution=0.85, window=(1.0, 10.0)
     ),
-    "ScaleThresholds": lambda: scale_thresholds(record(), BLOCK),
     "PulseFit": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK),
     "VelocityPulse": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
     "BlockResponse": lambda: BLOCK.response("sine", peak_acceleration=40.0, period=1.0),
-    "BlockRecordResponse": lambda: BLOCK.response(record(), scale=50.0),
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
     "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
     "Assessment": lambda: rocking.assess(rocking.Object("vase", width=0.2, height=1.0), rocking.Site(pga=3.0, pgv=0.4)),
@@ -91,7 +88,7 @@ def test_no_dataclass_compares_arrays_as_truth_values():
 
 def test_every_kind_of_result_has_an_example():
     kinds = {one.__name__ for one in dataclasses_of_the_package() if issubclass(one, EqualByValue)}
-    assert kinds - {"ScalarResponse"} == EXAMPLES.keys()
+    assert kinds == EXAMPLES.keys()
 
 
 @pytest.mark.parametrize("make", EXAMPLES.values(), ids=EXAMPLES)

@@ -101,7 +101,7 @@ def test_thresholds_of_a_record_are_those_of_the_block():
     scales = block.response(record, restitution=0.9).thresholds
     uplift = block.uplift_acceleration / record.peak_acceleration
     assert found.amplitude.size
-    assert found.amplitude * uplift == pytest.approx(scales.scale, rel=2e-6)
+    assert found.amplitude * uplift == pytest.approx(scales.value, rel=2e-6)
     at = rocking.peak_response(
         record,
         frequency_parameter=block.frequency_parameter,

@@ -13,7 +13,6 @@ from typer.testing import CliRunner
 
 import rocking
 from rocking._cli.app import app
-from rocking._dimensional.record_response import respond_to_record
 from rocking.suites.configuration import suite_configuration
 from tests.excitation.record_files import at2, rows
 
@@ -49,14 +48,14 @@ def test_remarks_of_the_reader_are_warnings(tmp_path):
     path = tmp_path / "motion.at2"
     path.write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
     remark = "the file holds 100 samples, its header states 101"
-    assert respond_to_record(rocking.Block(0.5, 2.0), rocking.read_record(path)).warnings[0] == remark
+    assert rocking.Block(0.5, 2.0).response(rocking.read_record(path)).warnings[0] == remark
     assert f"\nwarning: {remark}\n" in run("record", str(path), *SIZES)
     assert json.loads(run("record", str(path), *SIZES, "--json"))["warnings"][0] == remark
 
 
 def test_record_in_three_formats():
     block, motion = rocking.Block(0.5, 2.0), rocking.read_record(NAPA)
-    expected = respond_to_record(block, motion, scale=1.1)
+    expected = block.response(motion, scale=1.1)
     result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
     assert result["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
@@ -247,7 +246,7 @@ def test_a_long_line_of_toml_is_refused(tmp_path):
 def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     up = str(ROOT / "workflow/motions/napa_HNN.csv")
     motion = rocking.read_record(NAPA, vertical=up)
-    expected = respond_to_record(rocking.Block(0.5, 2.0), motion, scale=1.1)
+    expected = rocking.Block(0.5, 2.0).response(motion, scale=1.1)
     found = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--vertical", up, "--json"))
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration

@@ -31,7 +31,7 @@ def test_pairs_that_overturn_are_those_of_the_thresholds():
     block = rocking.Block(0.4, 1.6)
     motions = [noise(k) for k in range(5)]
     found = unexceeded(block, motions, probability=0.5)
-    first = block.response(motions[0]).thresholds.scale[0]
+    first = block.response(motions[0]).thresholds.value[0]
     assert found["overturning_acceleration"][0].item() == pytest.approx(first * motions[0].peak_acceleration)
     assert np.log(found["overturning_acceleration"]).mean().item() == pytest.approx(
         np.log(found["unexceeded_acceleration"]).mean().item()

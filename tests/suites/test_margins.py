@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking._dimensional.record_scales import overturning_scale
+from rocking._dimensional.thresholds import overturning_scale
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.summary import record_margins

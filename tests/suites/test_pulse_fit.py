@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.record_scales import overturning_scale, scale_thresholds
+from rocking._dimensional.thresholds import overturning_scale, scale_thresholds
 from tests.suites.motions import BLOCK, noise, sampled
 
 
@@ -87,7 +87,7 @@ def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     )
     found = scale_thresholds(record, BLOCK)
     np.testing.assert_allclose(
-        found.scale * record.peak_acceleration / BLOCK.uplift_acceleration, exact.amplitude, rtol=1e-4
+        found.value * record.peak_acceleration / BLOCK.uplift_acceleration, exact.amplitude, rtol=1e-4
     )
     assert found.overturns_above.tolist() == exact.overturns_above.tolist() == [True, False, True]
     assert found.searched[1] == pytest.approx(10.0 * found.searched[0])
@@ -95,7 +95,7 @@ def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
 
 def test_below_uplift_there_is_no_threshold():
     record = sampled("sine", 4.0)
-    assert scale_thresholds(record, BLOCK, highest=0.5 * BLOCK.uplift_acceleration).scale.size == 0
+    assert scale_thresholds(record, BLOCK, highest=0.5 * BLOCK.uplift_acceleration).value.size == 0
 
 
 @pytest.mark.parametrize(

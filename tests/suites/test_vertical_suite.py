@@ -6,7 +6,7 @@ import pytest
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.record_scales import overturning_scale
+from rocking._dimensional.thresholds import overturning_scale
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from tests.suites.motions import noise

@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import in_range, one_of
-from rocking._dimensional.record_groups import HIGHEST_SCALE
+from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.blocks import RANGES, MomentumOrNumber, check_block_value, quantity

@@ -11,10 +11,9 @@ from fastapi import APIRouter, Query, Request, Response
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.block import Block
-from rocking._dimensional.problem import restitution_of
-from rocking._dimensional.record_groups import checked_scale, record_groups, search_range
-from rocking._dimensional.record_response import respond_to_record
-from rocking._dimensional.record_scales import ScaleThresholds, scale_thresholds
+from rocking._dimensional.problem import BlockProblem, record_groups, restitution_of, search_range
+from rocking._dimensional.response import respond
+from rocking._dimensional.thresholds import BodyThresholds, scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import reject_flight
@@ -147,9 +146,8 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
 
 def _response(service: Service, params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
     block = Block(params.width, params.height, params.gravity)
-    found = respond_to_record(
-        block, record, scale=params.scale, restitution=params.restitution, thresholds=params.thresholds, stop=stop
-    )
+    problem = BlockProblem(block, record, scale=params.scale, restitution=params.restitution)
+    found = respond(problem, thresholds=params.thresholds, stop=stop)
     assessment = found.assess(seconds=SEARCH_SHARE * service.settings.max_seconds, stop=stop)
     refined, changes, contact = assessment.resampled, assessment.thresholds, assessment.contact
     return RecordResponse(
@@ -190,9 +188,7 @@ def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopF
     block = Block(params.width, params.height, params.gravity)
     motion = time_history(
         record,
-        **record_groups(
-            record, block, checked_scale(params.scale, record, block), restitution_of(block, params.restitution)
-        ),
+        **BlockProblem(block, record, scale=params.scale, restitution=params.restitution).groups,
         samples=params.samples,
         contact=params.contact,
         stop=stop,
@@ -288,12 +284,12 @@ def _description(record: Record) -> RecordDescription:
     )
 
 
-def _thresholds(found: ScaleThresholds, record: Record) -> list[ScaleThreshold]:
+def _thresholds(found: BodyThresholds, record: Record) -> list[ScaleThreshold]:
     return [
         ScaleThreshold(
-            scale=float(scale), peak_acceleration=float(scale) * record.peak_acceleration, overturns_above=bool(above)
+            scale=one.value, peak_acceleration=one.value * record.peak_acceleration, overturns_above=one.overturns_above
         )
-        for scale, above in zip(found.scale, found.overturns_above, strict=True)
+        for one in found
     ]
 
 

@@ -48,13 +48,13 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
     """
     groups: dict[str, Any]
     pulse: str | AbstractPulse
-    if isinstance(found, BlockResponse):
+    if isinstance(found, BlockResponse) and "pulse" in found.motion:
         pulse, groups = found.problem.pulse, dict(found.problem.groups)
         # in m/s2 and degrees
         unit, angle = found.block.uplift_acceleration, np.degrees(found.block.alpha)
         labels = f"{LABELS['peak_acceleration']} [m/s$^2$]", "peak rotation [deg]"
         outcome = found.outcome
-    elif getattr(found, "shape", None) == () and found.pulse:
+    elif isinstance(found, Response) and found.shape == () and found.pulse:
         pulse, groups = found.pulse, {name: value.item() for name, value in found.groups.items()}
         unit, angle = 1.0, 1.0
         labels = f"{LABELS['amplitude']} [-]", r"peak rotation $\theta_{\max}/\alpha$ [-]"

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 import rocking
-from rocking._dimensional.record_scales import scale_thresholds
+from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 
 NAPA = Path(__file__).parents[3] / "workflow/motions/napa_HNE.csv"
@@ -46,7 +46,7 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
     assert page.locator("#answer .margin").inner_text() == f"I{expected.margin[1:]}."
     assert page.locator("#answer ul li").all_inner_texts()[: len(expected.warnings)] == expected.warnings
-    assert expected.thresholds.scale[0] > 1.0
+    assert expected.thresholds.value[0] > 1.0
     expect(page.locator(".verdict")).to_have_class("verdict safe")
     said = float(re.search(r"at most ([\d.]+)°", page.locator("#answer").inner_text())[1])
     assert said == pytest.approx(math.degrees(expected.rotation), rel=0.006)
@@ -72,7 +72,7 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     caption = page.locator("#scales-caption")
     expect(caption).to_contain_text("overturns from")
     first = float(re.search(r"overturns from ([\d.]+)", caption.inner_text())[1])
-    exact = float(scale_thresholds(motion, BLOCK).scale[0])
+    exact = float(scale_thresholds(motion, BLOCK).value[0])
     assert first == pytest.approx(exact, rel=1e-3)
     assert first < exact
 
