@@ -57,7 +57,9 @@ def test_thresholds_and_margins_are_changes_of_the_outcome():
 
 @pytest.mark.parametrize("motion", ["sine", "record"])
 @pytest.mark.parametrize(
-    "block", [BLOCK, rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)], ids=["rigid", "linear"]
+    "block",
+    [BLOCK, rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)],
+    ids=["rigid", "linear"],
 )
 def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
     by_record = motion == "record"
@@ -66,16 +68,15 @@ def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
     found = block.thresholds(made, **period)
     assert list(found) == list(block.response(made, **strength, **period).thresholds)
     assert len(found) == found.value.size > 0
-    lowest = {("scale" if by_record else "peak_acceleration"): found[0].value}
+    name, unit = ("scale", "1") if by_record else ("peak_acceleration", "m s-2")
     for factor, overturned in ((1 - 2e-6, False), (1 + 2e-6, True)):
-        just = {name: value * factor for name, value in lowest.items()}
-        assert block.response(made, **just, **period).overturned is overturned
+        assert block.response(made, **{name: factor * found[0].value}, **period).overturned is overturned
     none = block.thresholds(made, highest=0.999 * found[0].value, **period)
     assert (len(none), list(none)) == (0, [])
     assert "was found to overturn it" in repr(none)
     data = found.to_xarray()
-    np.testing.assert_array_equal(data[[*lowest][0]], [one.value for one in found])
-    assert data[[*lowest][0]].attrs["units"] == ("1" if by_record else "m s-2")
+    np.testing.assert_array_equal(data[name], [one.value for one in found])
+    assert data[name].attrs["units"] == unit
     assert len(found.to_pandas()) == len(found)
     with pytest.raises(InvalidArgumentError):
         block.thresholds(made, **({"period": 0.5} if by_record else {}))
@@ -253,7 +254,6 @@ def test_dimensionless_response_as_a_table():
     single = rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
     assert len(single.to_pandas()) == 1
     assert "rocks and comes to rest" in single._repr_html_()
-
 
 
 def test_a_record_with_a_scale_is_solved_in_groups():
