@@ -4,31 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer, needed, positive, reject_given
 from rocking._base.units import Scalar, Values
-from rocking._boundary.tracing import trace_curves
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.body_response import BodyResponse, respond_bodies
-from rocking._dimensional.curves import frequency_window, with_si_axes
-from rocking._dimensional.problem import HIGHEST_SCALE, checked_restitution
-from rocking._dimensional.thresholds import BodyThresholds, thresholds_of
+from rocking._dimensional.curves import (
+    block_boundary,
+    block_history,
+    block_spectrum,
+    body_boundary,
+    body_history,
+    frequency_window,
+)
+from rocking._dimensional.problem import HIGHEST_SCALE, BlockProblem, checked_restitution
+from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, scale_thresholds, thresholds_of
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
-from rocking._history.contact import contact_extremes, reactions_of
-from rocking._history.motion import SamplesMotion
-from rocking._history.time_history import DEFAULT_SAMPLES, MAX_SAMPLES, default_times
-from rocking._model.body import AbstractBody
+from rocking._model.block import AbstractBlock
+from rocking._model.body import AbstractBody, Edge
 from rocking._model.checks import check, check_number
-from rocking._model.outcome import Outcome
 from rocking._model.parameters import RESTITUTION, Parameter
 from rocking._model.response import dimensions_of
 from rocking._numba.cancellation import StopFlag
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Array = NDArray[np.float64]
 
@@ -117,10 +123,16 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError, StoppedError
             As for `response`.
         """
-        strength = {"scale": 1.0} if isinstance(motion, Record) else {"peak_acceleration": 1.0}
-        problem, *_ = self._problem(motion, period=period, restitution=restitution, **strength)
         if highest is not None:
             highest = positive("highest", highest, "-" if isinstance(motion, Record) else "m/s2")
+        numbers = as_numbers(period=period, restitution=restitution)
+        if isinstance(self, AbstractBlock) and numbers:
+            if isinstance(motion, Record):
+                reject_given("a record", period=period)
+                return scale_thresholds(motion, self, restitution=numbers["restitution"], highest=highest, stop=stop)
+            return block_thresholds(BlockProblem(self, motion, self.uplift_acceleration, **numbers), highest, stop)
+        strength = {"scale": 1.0} if isinstance(motion, Record) else {"peak_acceleration": 1.0}
+        problem, *_ = self._problem(motion, period=period, restitution=restitution, **strength)
         return thresholds_of(problem, highest, stop)
 
     def spectrum(
@@ -159,26 +171,23 @@ class RespondingBody(AbstractBody):
         if size is None and isinstance(motion, Record):
             raise InvalidArgumentError("size", None, "factors of all lengths, for the spectrum of a record")
         axis, values = ("period", period) if size is None else ("size", size)
-        if axis == "period" and period is None:
+        if values is None:
             raise InvalidArgumentError("period", None, "one dimension of periods")
-        along = in_range(axis, values, 0.0, math.inf, closed="neither", unit="s" if axis == "period" else "-")  # type: ignore[arg-type]
+        along = in_range(axis, values, 0.0, math.inf, closed="neither", unit="s" if axis == "period" else "-")
         if along.ndim > 1:
             raise InvalidArgumentError(axis, along.shape, "one dimension")
-        body = self if size is None else self.scaled(np.atleast_1d(along))
-        found = body.response(
-            motion,
-            peak_acceleration=peak_acceleration,
-            period=np.atleast_1d(along) if size is None else period,
-            scale=scale,
-            restitution=restitution,
-            stop=stop,
-        ).to_xarray()
-        name = found["rotation"].dims[0]
-        about = {"units": "1", "long_name": "factor of all lengths"}
+        along = np.atleast_1d(along)
+        if size is None and isinstance(self, AbstractBlock):
+            problem = BlockProblem(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
+            return block_spectrum(problem, along, stop)
+        body, times = (self, along) if size is None else (self.scaled(along), period)
+        given, arguments, dims = body._problem(motion, peak_acceleration, times, scale, restitution)
+        found = respond_bodies(given, arguments, dims, stop=stop).to_xarray()
         kept = found.drop_vars([one for one in found.coords if one not in ("period", "peak_acceleration", "scale")])
-        return (
-            kept if axis == "period" else kept.rename({name: "size"}).assign_coords(size=("size", along.ravel(), about))
-        )
+        if size is None:
+            return kept
+        about = {"units": "1", "long_name": "factor of all lengths"}
+        return kept.rename({found["rotation"].dims[0]: "size"}).assign_coords(size=("size", along, about))
 
     def boundary(
         self,
@@ -216,14 +225,11 @@ class RespondingBody(AbstractBody):
         self._need_one("boundary", restitution)
         if isinstance(motion, Record):
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
+        if isinstance(self, AbstractBlock):
+            return block_boundary(self, motion, restitution=restitution, period=period, stop=stop)
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
-        window = frequency_window(period, lambda one: unit / one)
         problem, *_ = self._problem(motion, 1.0, unit, restitution=restitution)
-        eta = float(problem.cells["eta"][0, 0])
-        curves = trace_curves(problem.solver(0, stop), eta, window, (0.02, 1.0))
-        uplift = float(self.uplift_acceleration)
-        curves.attrs |= {"pulse": problem.motion.name, "body": self.description, "uplift_acceleration": uplift}
-        return with_si_axes(curves, uplift, unit)
+        return body_boundary(problem, frequency_window(period, lambda one: unit / one), stop)
 
     def history(
         self,
@@ -269,70 +275,13 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError, StoppedError
             As for `response`; also if the body or an argument is an array.
         """
-        self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
-        problem, *_ = self._problem(motion, peak_acceleration, period, scale, restitution)
-        if samples is not None:
-            samples = integer("samples", samples, 2, MAX_SAMPLES)
         length = None if duration is None else positive("duration", duration, "s")
-        moving = problem.body_motion(length, stop)
-        p, alpha, g = float(self.right.frequency_parameter), moving.alpha, float(self.gravity)
-        if samples is None and isinstance(moving, SamplesMotion) and isinstance(motion, Record):
-            grid = default_times(moving)
-        else:
-            grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
-        record, tau, rotation, velocity, impacts = moving.history(grid)
-        side = np.where(rotation != 0.0, np.sign(rotation), np.sign(velocity))
-        columns = {
-            "rotation": (alpha * rotation, "rad", "rotation theta, positive about the right edge"),
-            "angular_velocity": (alpha * p * velocity, "rad s-1", "velocity theta'"),
-            "edge": (side.astype(np.int8), "1", "edge in contact: 1 right, -1 left, 0 both"),
-            "ground_acceleration": (
-                g * math.tan(alpha) * moving.ground_acceleration(tau),
-                "m s-2",
-                "horizontal ground acceleration",
-            ),
-            "vertical_acceleration": (g * moving.vertical_acceleration(tau), "m s-2", "vertical ground acceleration"),
-            "top_displacement": (
-                float(self.top_height) * np.sin(alpha * rotation),
-                "m",
-                "horizontal displacement of the top",
-            ),
-        }
-        attributes: dict[str, Any] = {
-            "motion": problem.motion.name,
-            "body": self.description,
-            "peak_acceleration": float(problem.acceleration),
-            "outcome": Outcome(int(record["outcome"])).name,
-            "impacts": int(record["impacts"]),
-            "alpha": alpha,
-            "alpha_left": float(self.left.alpha),
-            "slenderness": float(moving.cell["slenderness"][0]),
-            "slenderness_left": float(moving.cell["slenderness"][1]),
-            "motion_end": moving.pulse_end / p,
-        }
-        if not isinstance(motion, Record):
-            attributes |= {"pulse": problem.motion.name, "pulse_end": moving.pulse_end / p}
-        if contact:
-            found = reactions_of(moving, impacts, tau, rotation, velocity)
-            slope = math.tan(alpha)
-            columns |= {
-                "horizontal_reaction": (slope * found.horizontal, "1", "reaction along the base over the weight"),
-                "normal_reaction": (found.normal, "1", "reaction normal to the base over the weight"),
-                "friction_demand": (slope * found.friction_demand, "1", "friction demand"),
-            }
-            most = contact_extremes(moving)
-            names = "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio"
-            attributes |= {name: getattr(most, name) for name in names}
-            attributes |= {"lifts_off": int(most.lifts_off), "warnings": "; ".join(most.warnings)}
-        return xr.Dataset(
-            {
-                name: ("time", values, {"units": unit, "long_name": text})
-                for name, (values, unit, text) in columns.items()
-            }
-            | {"impact_time": ("impact", impacts / p, {"units": "s", "long_name": "time of impact"})},
-            {"time": ("time", tau / p, {"units": "s", "long_name": "time from the start of the motion"})},
-            attributes,
-        )
+        self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
+        if isinstance(self, AbstractBlock):
+            asked = BlockProblem(self, motion, peak_acceleration, period, restitution, scale=scale)
+            return block_history(asked, duration=length, samples=samples, contact=contact, stop=stop)
+        problem, *_ = self._problem(motion, peak_acceleration, period, scale, restitution)
+        return body_history(problem, duration=length, samples=samples, contact=contact, stop=stop)
 
     def scaled(self, size: Values) -> RespondingBody:
         """The body with all lengths times a factor.
@@ -345,9 +294,9 @@ class RespondingBody(AbstractBody):
         Raises
         ------
         InvalidArgumentError
-            If it is not positive, or the kind of body cannot be scaled.
+            If it is not positive.
         """
-        raise InvalidArgumentError("size", size, f"nothing for {type(self).__name__}: it states no lengths")
+        return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
 
     def _problem(
         self,
@@ -387,3 +336,62 @@ class RespondingBody(AbstractBody):
         for key, value in numbers.items():
             if value is not None:
                 check_number(STRENGTHS[key], value)
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledBody(RespondingBody):
+    """A body with all lengths times a factor: p falls with the root of it.
+
+    Attributes
+    ----------
+    body : RespondingBody
+        The body of factor 1.
+    size : float array
+        The factor [-], > 0.
+    """
+
+    body: RespondingBody
+    size: Array
+
+    @property
+    def right(self) -> Edge:
+        """The right edge."""
+        return self._scaled(self.body.right)
+
+    @property
+    def left(self) -> Edge:
+        """The left edge."""
+        return self._scaled(self.body.left)
+
+    @property
+    def gravity(self) -> Array | float:
+        """g [m/s2]."""
+        return self.body.gravity
+
+    @property
+    def top_height(self) -> Array | float:
+        """Height above the base of the point whose displacement is given [m]."""
+        return self.body.top_height * self.size
+
+    @property
+    def tilt(self) -> Array:
+        """Angle by which the base is inclined towards the right [rad]."""
+        return self.body.tilt
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the equation of motion is the linear one."""
+        return self.body.is_linear
+
+    @property
+    def description(self) -> str:
+        """The body in words."""
+        return f"{self.body.description}, of other sizes"
+
+    def _scaled(self, edge: Edge) -> Edge:
+        return replace(edge, frequency_parameter=edge.frequency_parameter / np.sqrt(self.size))
+
+
+def as_numbers(**given: Any) -> dict[str, Any]:
+    """The arguments, if each is one number or text or None; empty otherwise."""
+    return {} if any(np.ndim(getattr(value, "magnitude", value)) for value in given.values()) else given

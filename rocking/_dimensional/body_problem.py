@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import in_range
+from rocking._base.errors import InvalidArgumentError, in_range
 from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -49,7 +49,7 @@ class BodyProblem:
     Raises
     ------
     InvalidArgumentError
-        If an edge or a ratio of frequencies is out of range.
+        If an edge or a ratio of frequencies is out of range, or the equation of motion is linear.
     """
 
     body: AbstractBody
@@ -59,6 +59,11 @@ class BodyProblem:
     restitution: Array | None
 
     def __post_init__(self) -> None:
+        if self.body.is_linear:
+            about = self.body.description
+            raise InvalidArgumentError(
+                "body", about, "solved with numbers, not arrays: its equation of motion is linear"
+            )
         for name, edge in (("right", self.body.right), ("left", self.body.left)):
             in_range(f"alpha of the {name} edge", edge.alpha, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
             in_range(f"restitution of the {name} edge", edge.restitution, -math.inf, 1.0, closed="right")

@@ -7,11 +7,9 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
-import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
@@ -26,6 +24,10 @@ from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, 
 from rocking._model.outcome import Outcome
 from rocking._model.response import axis_names
 from rocking._numba.cancellation import StopFlag
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 Array = NDArray[np.float64]
 
@@ -154,6 +156,8 @@ class BodyResponse(EqualByValue):
 
     def to_xarray(self) -> xr.Dataset:
         """The response as a labelled data set, with units and meanings; arguments that vary are coordinates."""
+        import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
         names = axis_names(len(self.shape), self.arguments, self.dims)
         variables: dict[str, Any] = {
             one.name: (names, getattr(self, one.name), {"units": one.unit} | one.attributes) for one in BODY_FIELDS

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError, in_range, positive
+from rocking._base.errors import InvalidArgumentError, in_range, integer, positive
 from rocking._base.units import Scalar
-from rocking._boundary.tracing import overturning_boundary
+from rocking._boundary.tracing import overturning_boundary, trace_curves
+from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
-from rocking._history.time_history import time_history
+from rocking._history.contact import contact_extremes, reactions_of
+from rocking._history.motion import SamplesMotion
+from rocking._history.time_history import DEFAULT_SAMPLES, MAX_SAMPLES, default_times, time_history
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import solve_with_bound
 
@@ -99,49 +103,101 @@ def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
     return history.assign(scaled)
 
 
-def block_spectrum(
-    block: AbstractBlock,
-    pulse: str | AbstractPulse,
+def body_history(
+    problem: BodyProblem,
     *,
-    peak_acceleration: Scalar,
-    period: ArrayLike,
-    restitution: Scalar = "momentum",
+    duration: float | None = None,
+    samples: int | None = None,
+    contact: bool = False,
+    stop: StopFlag | None = None,
 ) -> xr.Dataset:
+    """Rotation of one body against time, as `rocking.RigidBody.history`; arguments and errors are those."""
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+    if samples is not None:
+        samples = integer("samples", samples, 2, MAX_SAMPLES)
+    body = problem.body
+    moving = problem.body_motion(duration, stop)
+    p, alpha, g = float(body.right.frequency_parameter), moving.alpha, float(body.gravity)
+    if samples is None and isinstance(moving, SamplesMotion) and isinstance(problem.motion, Record):
+        grid = default_times(moving)
+    else:
+        grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
+    record, tau, rotation, velocity, impacts = moving.history(grid)
+    side = np.where(rotation != 0.0, np.sign(rotation), np.sign(velocity))
+    columns = {
+        "rotation": (alpha * rotation, "rad", "rotation theta, positive about the right edge"),
+        "angular_velocity": (alpha * p * velocity, "rad s-1", "velocity theta'"),
+        "edge": (side.astype(np.int8), "1", "edge in contact: 1 right, -1 left, 0 both"),
+        "ground_acceleration": (
+            g * math.tan(alpha) * moving.ground_acceleration(tau),
+            "m s-2",
+            "horizontal ground acceleration",
+        ),
+        "vertical_acceleration": (g * moving.vertical_acceleration(tau), "m s-2", "vertical ground acceleration"),
+        "top_displacement": (
+            float(body.top_height) * np.sin(alpha * rotation),
+            "m",
+            "horizontal displacement of the top",
+        ),
+    }
+    attributes: dict[str, Any] = {
+        "motion": problem.motion.name,
+        "body": body.description,
+        "peak_acceleration": float(problem.acceleration),
+        "outcome": Outcome(int(record["outcome"])).name,
+        "impacts": int(record["impacts"]),
+        "alpha": alpha,
+        "alpha_left": float(body.left.alpha),
+        "slenderness": float(moving.cell["slenderness"][0]),
+        "slenderness_left": float(moving.cell["slenderness"][1]),
+        "motion_end": moving.pulse_end / p,
+    }
+    if not isinstance(problem.motion, Record):
+        attributes |= {"pulse": problem.motion.name, "pulse_end": moving.pulse_end / p}
+    if contact:
+        found = reactions_of(moving, impacts, tau, rotation, velocity)
+        slope = math.tan(alpha)
+        columns |= {
+            "horizontal_reaction": (slope * found.horizontal, "1", "reaction along the base over the weight"),
+            "normal_reaction": (found.normal, "1", "reaction normal to the base over the weight"),
+            "friction_demand": (slope * found.friction_demand, "1", "friction demand"),
+        }
+        most = contact_extremes(moving)
+        names = "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio"
+        attributes |= {name: getattr(most, name) for name in names}
+        attributes |= {"lifts_off": int(most.lifts_off), "warnings": "; ".join(most.warnings)}
+    return xr.Dataset(
+        {name: ("time", values, {"units": unit, "long_name": text}) for name, (values, unit, text) in columns.items()}
+        | {"impact_time": ("impact", impacts / p, {"units": "s", "long_name": "time of impact"})},
+        {"time": ("time", tau / p, {"units": "s", "long_name": "time from the start of the motion"})},
+        attributes,
+    )
+
+
+def block_spectrum(problem: BlockProblem, period: NDArray[np.float64], stop: StopFlag | None = None) -> xr.Dataset:
     """Peak rotation of a block against the period of the pulse, in SI units.
 
     Parameters
     ----------
-    block : Block
-        The block.
-    pulse : str or AbstractPulse
-        The pulse.
-    peak_acceleration : float
-        a_g [m/s2], > 0.
-    period : array_like (periods,)
+    problem : BlockProblem
+        The block and the pulse, whose own period is not read.
+    period : float array (periods,)
         T_p [s], > 0.
-    restitution : float or "momentum"
-        eta [-], [0, 1]; or that of the geometry.
+    stop : StopFlag, optional
+        Cancels the work.
 
     Returns
     -------
     xarray.Dataset
         rotation(period) [rad], top_displacement(period) [m], peak_rotation(period) [-], overturned, outcome, impacts;
         frequency_ratio(period) [-] as a coordinate.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, or `period` has more than one dimension.
     """
     import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
-    periods = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
-    if periods.ndim > 1:
-        raise InvalidArgumentError("period", periods.shape, "one dimension")
-    periods = np.atleast_1d(periods)
-    problem = BlockProblem(block, pulse, peak_acceleration, float(periods[0]) if periods.size else 1.0, restitution)
-    ratio = frequency_ratio_of(block, 1.0) / periods
-    found = solve_with_bound(problem.pulse, **problem.groups | {"frequency_ratio": ratio})
+    block = problem.block
+    ratio = frequency_ratio_of(block, 1.0) / period
+    found = solve_with_bound(problem.pulse, **problem.groups | {"frequency_ratio": ratio}, stop=stop)
     rotation = found.peak_rotation * block.alpha
     variables = {
         "rotation": ("period", rotation, {"units": "rad", "long_name": "peak rotation"}),
@@ -156,7 +212,7 @@ def block_spectrum(
         for field in (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, ERROR_BOUND)
     }
     coordinates = {
-        "period": ("period", periods, {"units": "s", "long_name": "period of the pulse"}),
+        "period": ("period", period, {"units": "s", "long_name": "period of the pulse"}),
         "frequency_ratio": ("period", ratio, {"units": "1", "long_name": "frequency ratio omega_g/p"}),
     }
     return xr.Dataset(
@@ -201,6 +257,15 @@ def block_boundary(
     eta = restitution_of(block, restitution)
     found = overturning_boundary(pulse, restitution=eta, alpha=block.equation_alpha, frequency_ratio=window, stop=stop)
     return add_si_axes(found, block)
+
+
+def body_boundary(problem: BodyProblem, window: tuple[float, float], stop: StopFlag | None = None) -> xr.Dataset:
+    """Boundary curves of one body as of `rocking.RigidBody`, in a window of frequency ratios to the right edge."""
+    body, eta = problem.body, float(problem.cells["eta"][0, 0])
+    curves = trace_curves(problem.solver(0, stop), eta, window, (0.02, 1.0))
+    uplift = float(body.uplift_acceleration)
+    curves.attrs |= {"pulse": problem.motion.name, "body": body.description, "uplift_acceleration": uplift}
+    return with_si_axes(curves, uplift, 2.0 * math.pi / float(body.right.frequency_parameter))
 
 
 def frequency_window(

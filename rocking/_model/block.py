@@ -75,6 +75,11 @@ class AbstractBlock(AbstractBody):
         return self.alpha
 
     @property
+    def is_linear(self) -> bool:
+        """Whether the equation of motion is the linear one (3.1)."""
+        return self.equation_alpha == 0.0
+
+    @property
     def frequency_parameter(self) -> float:
         """p = sqrt(3 g/(4 R)) [rad/s], below (2.2)."""
         return math.sqrt(0.75 * self.gravity / self.half_diagonal)

@@ -105,6 +105,11 @@ class AbstractBody(ABC):
         return np.zeros(())
 
     @property
+    def is_linear(self) -> bool:
+        """Whether the equation of motion is the linear one (3.1); False unless a body says otherwise."""
+        return False
+
+    @property
     def parameters(self) -> dict[str, Array]:
         """What the body was made from, for exports: arrays by name; nothing unless a body says so."""
         return {}

@@ -142,15 +142,49 @@ def test_tables_hold_every_field():
         ({"period": -1.0}, "period"),
         ({"restitution": 1.1}, "restitution"),
         ({"restitution": "elastic"}, "restitution"),
-        ({"peak_acceleration": [4.0]}, "peak_acceleration"),
-        ({"period": [0.5, 0.6]}, "period"),
-        ({"restitution": [0.8, 0.9]}, "restitution"),
+        ({"peak_acceleration": [4.0, -4.0]}, "peak_acceleration"),
+        ({"period": [0.5, 0.6], "peak_acceleration": [1.0, 2.0, 3.0]}, "peak_acceleration, period"),
     ],
 )
 def test_errors_name_the_argument(changes, name):
     with pytest.raises(InvalidArgumentError) as caught:
         BLOCK.response("sine", **(MOTION | changes))
     assert caught.value.parameter == name
+
+
+@pytest.mark.parametrize("motion", ["sine", "record"])
+def test_arrays_of_arguments_broadcast(motion):
+    made, period = (RECORD, {}) if motion == "record" else (motion, {"period": 0.5})
+    name = "scale" if motion == "record" else "peak_acceleration"
+    strengths = np.array([[0.3], [0.7], [4.0]]) * (2.5 * BLOCK.uplift_acceleration if period else 1.0)
+    etas = [0.8, 0.95]
+    found = BLOCK.response(made, **{name: strengths}, **period, restitution=etas)
+    for index in np.ndindex(3, 2):
+        one = BLOCK.response(made, **{name: float(strengths[index[0], 0])}, **period, restitution=etas[index[1]])
+        assert (found.outcome[index], found.impacts[index]) == (one.outcome, one.impacts)
+        assert found.rotation[index] == pytest.approx(one.rotation, rel=1e-12, nan_ok=True)
+        assert found.displacement[index] == pytest.approx(one.displacement, rel=1e-12, nan_ok=True)
+    assert found.overturned.any()
+    assert not found.overturned.all()
+    if period:
+        each = [BLOCK.thresholds(made, period=one).value for one in (0.4, 0.5)]
+        lowest = BLOCK.thresholds(made, period=[0.4, 0.5]).lowest
+        np.testing.assert_allclose(lowest, [one[0] for one in each], rtol=1e-9)
+    linear = rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)
+    with pytest.raises(InvalidArgumentError, match="its equation of motion is linear"):
+        linear.response(made, **{name: [1.0, 2.0]}, **period)
+
+
+def test_spectrum_over_the_size_is_that_of_each_block():
+    found = BLOCK.spectrum(RECORD, scale=0.55, size=[1.0, 2.0, 4.0])
+    assert float(found["rotation"][0]) == pytest.approx(BLOCK.response(RECORD, scale=0.55).rotation, rel=1e-12)
+    double = rocking.Block(0.8, 3.2).response(RECORD, scale=0.55)
+    assert float(found["rotation"][1]) == pytest.approx(double.rotation, rel=1e-12)
+    assert float(found["displacement"][1]) == pytest.approx(double.displacement, rel=1e-12)
+    structure = rocking.EquivalentBlock(0.2, 2.0, restitution=0.9)
+    half = rocking.EquivalentBlock(0.2, 2.0 * math.sqrt(2.0), restitution=0.9).response("sine", **MOTION)
+    found = structure.spectrum("sine", **MOTION, size=[0.5])
+    assert float(found["displacement"][0]) == pytest.approx(half.displacement, rel=1e-12)
 
 
 @pytest.mark.parametrize("wrong", ["sinus", ["sine", "cosine"], None])
