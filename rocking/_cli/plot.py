@@ -274,13 +274,7 @@ def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
         groups = params.groups | {"frequency_ratio": np.linspace(*window, POINTS)}
         return peak_response(params.pulse, **groups).to_xarray()  # type: ignore[arg-type]
     unit = period_of(params.problem.block, 1.0)
-    return block_spectrum(
-        params.problem.block,
-        params.problem.pulse,
-        peak_acceleration=params.problem.peak_acceleration,
-        period=np.geomspace(unit / window[1], unit / window[0], POINTS),
-        restitution=params.restitution,
-    )
+    return block_spectrum(params.problem, np.geomspace(unit / window[1], unit / window[0], POINTS))
 
 
 def _boundary(params: Params, window: tuple[float, float]) -> xr.Dataset:

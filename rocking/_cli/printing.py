@@ -270,13 +270,7 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
 
         problem = params.problem
         period = period_of(problem.block, 1.0) / frequency_ratio
-        curve = block_spectrum(
-            problem.block,
-            problem.pulse,
-            peak_acceleration=problem.peak_acceleration,
-            period=period,
-            restitution=params.restitution,
-        )
+        curve = block_spectrum(problem, period)
         columns |= {
             "period": period.tolist(),
             "peak_rotation_deg": [number(x) for x in np.degrees(curve["rotation"].values).tolist()],
