@@ -11,7 +11,7 @@ theta = 0 and reads as (3.1), with p^2 = K/M, alpha = C/K and uplift acceleratio
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Self, final
 
 from rocking._base.constants import STANDARD_GRAVITY
@@ -56,11 +56,12 @@ class EquivalentBlock(RespondingBlock):
         If a value is out of range.
     """
 
-    _alpha: float = field(init=False)
-    _frequency_parameter: float = field(init=False)
-    _restitution: float = field(init=False)
-    _uplift_acceleration: float | None = field(init=False)
-    _top_height: float | None = field(init=False)
+    alpha: float = math.nan  # in place of the properties of the rectangle
+    frequency_parameter: float = math.nan
+    momentum_restitution: float = math.nan
+    uplift_acceleration: float = math.nan  # type: ignore[assignment]  # as of AbstractBlock
+    equation_alpha: float = math.nan
+    top_height: float = math.nan
 
     def __init__(
         self,
@@ -75,62 +76,22 @@ class EquivalentBlock(RespondingBlock):
         angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
         p = check_number(FREQUENCY_PARAMETER, frequency_parameter)
         g = positive("gravity", gravity, "m/s2")
-        uplift, top = (
-            None if value is None else positive(name, value, unit)
-            for name, value, unit in (
-                ("uplift_acceleration", uplift_acceleration, "m/s2"),
-                ("top_height", top_height, "m"),
-            )
-        )
         eta = check_number(RESTITUTION, restitution)
         size = 0.75 * g / p**2  # p = sqrt(3 g/(4 R)), below (2.2)
         super().__init__(2.0 * size * math.sin(angle), 2.0 * size * math.cos(angle), g)
         own = {
-            "_alpha": angle,
-            "_frequency_parameter": p,
-            "_restitution": eta,
-            "_uplift_acceleration": uplift,
-            "_top_height": top,
+            "alpha": angle,
+            "frequency_parameter": p,
+            "momentum_restitution": eta,
+            "uplift_acceleration": g * self.half_width / self.half_height,  # below (2.1)
+            "equation_alpha": angle,
+            "top_height": 2.0 * self.half_height if top_height is None else positive("top_height", top_height, "m"),
         }
+        if uplift_acceleration is not None:
+            uplift = positive("uplift_acceleration", uplift_acceleration, "m/s2")
+            own |= {"uplift_acceleration": uplift, "equation_alpha": 0.0}
         for name, value in own.items():
             object.__setattr__(self, name, value)  # a frozen dataclass
-
-    @property
-    def alpha(self) -> float:
-        """Rotation at which the restoring moment vanishes [rad]."""
-        return self._alpha
-
-    @property
-    def frequency_parameter(self) -> float:
-        """p [rad/s]."""
-        return self._frequency_parameter
-
-    @property
-    def uplift_acceleration(self) -> float:  # type: ignore[override]  # as of AbstractBlock
-        """Smallest ground acceleration that starts rocking [m/s2]."""
-        if self._uplift_acceleration is None:
-            return self.gravity * self.half_width / self.half_height  # below (2.1)
-        return self._uplift_acceleration
-
-    @property
-    def equation_alpha(self) -> float:
-        """Alpha in the equation of motion [rad]; 0 for the linear equation (3.1)."""
-        return self._alpha if self._uplift_acceleration is None else 0.0
-
-    @property
-    def momentum_restitution(self) -> float:
-        """Coefficient of restitution of the structure [-]."""
-        return self._restitution
-
-    @property
-    def inelastic_restitution(self) -> float:
-        """Coefficient of restitution of the structure [-]."""
-        return self._restitution
-
-    @property
-    def top_height(self) -> float:
-        """Height above the pivot of the point whose displacement is given [m]."""
-        return super().top_height if self._top_height is None else self._top_height
 
     @property
     def description(self) -> str:
@@ -143,11 +104,11 @@ class EquivalentBlock(RespondingBlock):
         return False
 
     def __repr__(self) -> str:
-        own = "" if self._uplift_acceleration is None else f", uplift_acceleration={self._uplift_acceleration!r}"
-        top = "" if self._top_height is None else f", top_height={self._top_height!r}"
+        own = f", uplift_acceleration={self.uplift_acceleration!r}" if self.is_linear else ""
+        top = "" if self.top_height == 2.0 * self.half_height else f", top_height={self.top_height!r}"
         return (
-            f"EquivalentBlock(alpha={self._alpha!r}, frequency_parameter={self._frequency_parameter!r}, "
-            f"restitution={self._restitution!r}{own}, gravity={self.gravity!r}{top})"
+            f"EquivalentBlock(alpha={self.alpha!r}, frequency_parameter={self.frequency_parameter!r}, "
+            f"restitution={self.momentum_restitution!r}{own}, gravity={self.gravity!r}{top})"
         )
 
     @classmethod
