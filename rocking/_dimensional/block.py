@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import final, overload
+from typing import TYPE_CHECKING, Any, final, overload
 
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.body import Motion, RespondingBody, as_numbers
@@ -11,6 +11,9 @@ from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.response import BlockResponse, respond
 from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._numba.cancellation import StopFlag
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 class RespondingBlock(AbstractBlock, RespondingBody):
@@ -30,6 +33,9 @@ class RespondingBlock(AbstractBlock, RespondingBody):
     ) -> BlockResponse: ...
 
     @overload
+    def response(self, motion: Motion, *, peak_acceleration: xr.DataArray, **others: Any) -> xr.Dataset: ...
+
+    @overload
     def response(
         self,
         motion: Motion,
@@ -41,7 +47,7 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         stop: StopFlag | None = None,
     ) -> BodyResponse: ...
 
-    def response(
+    def response(  # type: ignore[misc]  # as of bodies
         self,
         motion: Motion,
         *,
@@ -51,7 +57,7 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         restitution: Values = "momentum",
         thresholds: bool = True,
         stop: StopFlag | None = None,
-    ) -> BlockResponse | BodyResponse:
+    ) -> BlockResponse | BodyResponse | xr.Dataset:
         """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
 
         Arrays of arguments broadcast; their response is that of `RigidBody`, without margins.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer, needed, positive, reject_given
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.body_response import BodyResponse, respond_bodies
+from rocking._dimensional.body_response import BODY_FIELDS, BodyResponse, respond_bodies
 from rocking._dimensional.curves import (
     block_boundary,
     block_history,
@@ -29,8 +30,8 @@ from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.checks import check, check_number
+from rocking._model.labelled import is_labelled, labelled_response
 from rocking._model.parameters import RESTITUTION, Parameter
-from rocking._model.response import dimensions_of
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -55,6 +56,10 @@ class RespondingBody(AbstractBody):
     `rocking._model.body.AbstractBody`. They may be arrays, which broadcast with the arguments.
     """
 
+    @overload
+    def response(self, motion: Motion, *, peak_acceleration: xr.DataArray, **others: Any) -> xr.Dataset: ...
+
+    @overload
     def response(
         self,
         motion: Motion,
@@ -65,8 +70,23 @@ class RespondingBody(AbstractBody):
         restitution: Values = "momentum",
         threads: int | None = None,
         stop: StopFlag | None = None,
-    ) -> BodyResponse:
+    ) -> BodyResponse: ...
+
+    def response(  # type: ignore[misc]  # the names beside labelled arguments are checked here
+        self,
+        motion: Motion,
+        *,
+        peak_acceleration: Values | None = None,
+        period: Values | None = None,
+        scale: Values | None = None,
+        restitution: Values = "momentum",
+        threads: int | None = None,
+        stop: StopFlag | None = None,
+    ) -> BodyResponse | xr.Dataset:
         """Outcome and peak rotations about both edges under a pulse or a record. The arguments broadcast.
+
+        Labelled ones (`xarray.DataArray`), also of the body, broadcast by the names of their dimensions and give an
+        `xarray.Dataset` of the same fields, which stays lazy where they are backed by dask.
 
         Parameters
         ----------
@@ -94,8 +114,20 @@ class RespondingBody(AbstractBody):
         """
         if threads is not None:
             threads = integer("threads", threads, 1, math.inf)
-        problem, arguments, dims = self._problem(motion, peak_acceleration, period, scale, restitution)
-        return respond_bodies(problem, arguments, dims, threads, stop)
+        make, own = self._labelled()
+        given = {"peak_acceleration": peak_acceleration, "period": period, "scale": scale}
+        if is_labelled(*given.values(), restitution, *own.values()):
+            eta = restitution if is_labelled(restitution) else checked_restitution(restitution)
+            plain = {
+                name: check(STRENGTHS[name], one)
+                for name, one in given.items()
+                if one is not None and not is_labelled(one)
+            }
+            solve = partial(_respond_part, make, tuple(own), motion)
+            options = {"threads": threads, "stop": stop}
+            return labelled_response(solve, own | given | plain | {"restitution": eta}, options, BODY_FIELDS)
+        problem, arguments = self._problem(motion, peak_acceleration, period, scale, restitution)
+        return respond_bodies(problem, arguments, threads, stop)
 
     def thresholds(
         self,
@@ -181,8 +213,8 @@ class RespondingBody(AbstractBody):
             problem = BlockProblem(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
             return block_spectrum(problem, along, stop)
         body, times = (self, along) if size is None else (self.scaled(along), period)
-        given, arguments, dims = body._problem(motion, peak_acceleration, times, scale, restitution)
-        found = respond_bodies(given, arguments, dims, stop=stop).to_xarray()
+        given, arguments = body._problem(motion, peak_acceleration, times, scale, restitution)
+        found = respond_bodies(given, arguments, stop=stop).to_xarray()
         kept = found.drop_vars([one for one in found.coords if one not in ("period", "peak_acceleration", "scale")])
         if size is None:
             return kept
@@ -298,6 +330,10 @@ class RespondingBody(AbstractBody):
         """
         return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
 
+    def _labelled(self) -> tuple[Callable[..., RespondingBody], dict[str, Any]]:
+        """What makes the body from its labelled arguments (xarray), and these by name."""
+        return (lambda: self), {}
+
     def _problem(
         self,
         motion: Motion,
@@ -305,8 +341,8 @@ class RespondingBody(AbstractBody):
         period: Values | None = None,
         scale: Values | None = None,
         restitution: Values = "momentum",
-    ) -> tuple[BodyProblem, dict[str, Array], tuple[Hashable, ...]]:
-        """The checked problem, its arguments as arrays, and the names of the dimensions of labelled ones."""
+    ) -> tuple[BodyProblem, dict[str, Array]]:
+        """The checked problem, and its arguments as arrays."""
         eta = checked_restitution(restitution)
         given: dict[str, Values]
         if isinstance(motion, Record):
@@ -325,7 +361,7 @@ class RespondingBody(AbstractBody):
             given["restitution"], checked["restitution"] = restitution, eta
         broadcast({**self.parameters, **given}, [*self.parameters.values(), *checked.values()])
         made = motion if isinstance(motion, Record) else as_pulse(motion)
-        return BodyProblem(self, made, acceleration, times, eta), checked, dimensions_of(*given.values())
+        return BodyProblem(self, made, acceleration, times, eta), checked
 
     def _need_one(self, name: str, restitution: Scalar, **numbers: Scalar | None) -> None:
         """Refuse an array of bodies, and arrays as arguments that are one number."""
@@ -390,6 +426,12 @@ class ScaledBody(RespondingBody):
 
     def _scaled(self, edge: Edge) -> Edge:
         return replace(edge, frequency_parameter=edge.frequency_parameter / np.sqrt(self.size))
+
+
+def _respond_part(make: Callable[..., RespondingBody], own: tuple[str, ...], motion: Motion, **values: Any) -> Any:
+    """The response to arguments as arrays, of the body that `make` makes from those of them that are its own."""
+    body = make(**{name: values.pop(name) for name in own})
+    return RespondingBody.response(body, motion, **values)
 
 
 def as_numbers(**given: Any) -> dict[str, Any]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -81,8 +82,6 @@ class BodyResponse(EqualByValue):
         Bodies and ground motion.
     arguments : mapping of str to array
         The arguments before broadcasting, for the coordinates of `to_xarray`.
-    dims : tuple
-        Names of the dimensions if an argument was labelled (xarray).
     """
 
     rotation: Array
@@ -97,7 +96,6 @@ class BodyResponse(EqualByValue):
     uplift_time: Array
     problem: BodyProblem = field(compare=False)
     arguments: Mapping[str, Array] = field(default_factory=dict)
-    dims: tuple[Hashable, ...] = ()
 
     @property
     def overturned(self) -> NDArray[np.bool_]:
@@ -158,7 +156,7 @@ class BodyResponse(EqualByValue):
         """The response as a labelled data set, with units and meanings; arguments that vary are coordinates."""
         import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
-        names = axis_names(len(self.shape), self.arguments, self.dims)
+        names = axis_names(len(self.shape), self.arguments, ())
         variables: dict[str, Any] = {
             one.name: (names, getattr(self, one.name), {"units": one.unit} | one.attributes) for one in BODY_FIELDS
         }
@@ -218,8 +216,7 @@ _UNITS = {
 
 def respond_bodies(
     problem: BodyProblem,
-    arguments: Mapping[str, Array],
-    dims: tuple[Hashable, ...] = (),
+    arguments: Mapping[str, Array] = MappingProxyType({}),
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> BodyResponse:
@@ -247,5 +244,4 @@ def respond_bodies(
         uplift_time=(records["uplift_time"] / p).reshape(shape),
         problem=problem,
         arguments={name: value for name, value in (body.parameters | dict(arguments)).items() if value.size},
-        dims=dims,
     )

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Self, final
+from typing import Any, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,8 +17,12 @@ from rocking._base.errors import InvalidArgumentError, broadcast, in_range, numb
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rigid_edge
+from rocking._model.labelled import broadcast_by_name, is_labelled
 
 Array = NDArray[np.float64]
+
+RANGES = {"gravity": (0.0, math.inf, "m/s2"), "inclination": (-math.pi / 2, math.pi / 2, "rad")}
+"""Open ranges and units of the arguments that are no lengths."""
 
 
 @final
@@ -26,8 +30,9 @@ Array = NDArray[np.float64]
 class RigidBody(RespondingBody):
     """A rigid body that stands on two edges, its centre of mass anywhere between them.
 
-    All arguments may be arrays, which broadcast: an array of bodies. Here and wherever a quantity is expected, a number
-    is in the SI unit; quantities of pint and texts such as "20 cm" are converted.
+    All arguments may be arrays, which broadcast: an array of bodies; labelled ones (xarray) by the names of their
+    dimensions. Here and wherever a quantity is expected, a number is in the SI unit; quantities of pint and texts such
+    as "20 cm" are converted.
 
     Parameters
     ----------
@@ -58,6 +63,7 @@ class RigidBody(RespondingBody):
     """
 
     _given: dict[str, Array]
+    _labels: dict[str, Any]
 
     def __init__(
         self,
@@ -70,23 +76,26 @@ class RigidBody(RespondingBody):
         gravity: Values = STANDARD_GRAVITY,
         top_height: Values | None = None,
     ) -> None:
-        lengths: dict[str, Values | None] = {
+        arguments: dict[str, Any] = {
             "left": left,
             "right": right,
             "height": height,
             "gyration": gyration,
             "top_height": top_height,
+            "gravity": gravity,
+            "inclination": inclination,
         }
-        given = {name: value for name, value in lengths.items() if value is not None}
+        given = {name: value for name, value in arguments.items() if value is not None}
+        labels = {name: value for name, value in given.items() if is_labelled(value)}
+        given |= broadcast_by_name(labels)
         checked = {
-            name: in_range(name, value, 0.0, math.inf, closed="neither", unit="m") for name, value in given.items()
+            name: in_range(name, value, low, high, closed="neither", unit=unit)
+            for name, value in given.items()
+            for low, high, unit in [RANGES.get(name, (0.0, math.inf, "m"))]
         }
-        checked["gravity"] = in_range("gravity", gravity, 0.0, math.inf, closed="neither", unit="m/s2")
-        half = math.pi / 2
-        checked["inclination"] = in_range("inclination", inclination, -half, half, closed="neither", unit="rad")
-        given |= {"gravity": gravity, "inclination": inclination}
         broadcast(given, list(checked.values()))
-        object.__setattr__(self, "_given", checked)  # a frozen dataclass
+        object.__setattr__(self, "_labels", labels)  # a frozen dataclass
+        object.__setattr__(self, "_given", checked)
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
             if not np.all(edge.alpha > 0.0):
                 limit = math.degrees(float(np.min(edge.alpha + sign * self.tilt)))
@@ -184,14 +193,17 @@ class RigidBody(RespondingBody):
             If the body does not stand there.
         """
         added = in_range("angle", angle, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
-        return RigidBody(**(self._given | {"inclination": self.tilt + added}))
+        given = self._given | self._labels
+        return RigidBody(**given | {"inclination": given["inclination"] + added})
 
     def scaled(self, size: Values) -> RigidBody:
         factor = in_range("size", size, 0.0, math.inf, closed="neither")
-        lengths = {
-            name: value if name in ("gravity", "inclination") else value * factor for name, value in self._given.items()
-        }
-        return RigidBody(**lengths)
+        given = self._given | self._labels
+        return RigidBody(**{name: value if name in RANGES else value * factor for name, value in given.items()})
+
+    def _labelled(self) -> tuple[partial[RigidBody], dict[str, Any]]:
+        plain = {name: value for name, value in self._given.items() if name not in self._labels}
+        return partial(RigidBody, **plain), self._labels
 
     @classmethod
     def from_polygon(cls, vertices: ArrayLike, *, gravity: Scalar = STANDARD_GRAVITY) -> Self:

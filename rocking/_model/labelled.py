@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS
+from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, ResponseField
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,19 +19,47 @@ def is_labelled(*arguments: Any) -> bool:
     return any(type(argument).__name__ == "DataArray" and hasattr(argument, "dims") for argument in arguments)
 
 
+def broadcast_by_name(arguments: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:
+    """Labelled arguments over all dimensions of them.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the indexes of a dimension differ.
+    """
+    if not arguments:
+        return {}
+    import xarray as xr  # noqa: PLC0415  # loaded by who made the arguments
+
+    try:
+        aligned = xr.align(*arguments.values(), join="exact")
+    except xr.AlignmentError as error:
+        raise _differ(arguments, error) from None
+    return dict(zip(arguments, xr.broadcast(*aligned), strict=True))
+
+
+def _differ(arguments: Mapping[str, Any], error: Exception) -> InvalidArgumentError:
+    return InvalidArgumentError(", ".join(arguments), "labels", f"equal indexes of a dimension ({error})")
+
+
 def labelled_response(
-    solve: Callable[..., Any], arguments: Mapping[str, Any], options: Mapping[str, Any]
+    solve: Callable[..., Any],
+    arguments: Mapping[str, Any],
+    options: Mapping[str, Any],
+    fields: Sequence[ResponseField] = FIELDS,
 ) -> xr.Dataset:
     """The response as a data set over the dimensions of the arguments.
 
     Parameters
     ----------
     solve : callable
-        Takes the arguments as arrays that broadcast by position, and the options; gives a `Response`.
+        Takes the arguments as arrays that broadcast by position, and the options; gives an object with the fields.
     arguments : mapping
         Labelled and plain ones by name; None is left out. Plain ones are numbers.
     options : mapping
         Other arguments of `solve`. For dask-backed arguments `threads` is 1 unless stated: a worker has its own.
+    fields : sequence of ResponseField
+        Those of the data set, attributes of the result; by default those of `Response`.
 
     Raises
     ------
@@ -48,24 +76,24 @@ def labelled_response(
     if options.get("threads") is None and any(getattr(value, "chunks", None) for value in given.values()):
         options["threads"] = 1
 
-    def fields(*values: Any) -> tuple[Any, ...]:
+    def solved(*values: Any) -> tuple[Any, ...]:
         found = solve(**dict(zip(given, values, strict=True)), **options)
-        return tuple(getattr(found, one.name) for one in FIELDS)
+        return tuple(getattr(found, one.name) for one in fields)
 
     try:
         variables = xr.apply_ufunc(
-            fields,
+            solved,
             *given.values(),
             join="exact",
-            output_core_dims=[()] * len(FIELDS),
-            output_dtypes=[one.dtype for one in FIELDS],
+            output_core_dims=[()] * len(fields),
+            output_dtypes=[one.dtype for one in fields],
             dask="parallelized",
         )
     except xr.AlignmentError as error:
-        raise InvalidArgumentError(", ".join(given), "labels", f"equal indexes of a dimension ({error})") from None
-    named = {one.name: value for one, value in zip(FIELDS, variables, strict=True)}
+        raise _differ(given, error) from None
+    named = {one.name: value for one, value in zip(fields, variables, strict=True)}
     data = xr.Dataset(named)
-    for one in FIELDS:
+    for one in fields:
         data[one.name].attrs = {"units": one.unit} | one.attributes
     free = {name: value for name, value in given.items() if name not in data.dims}
     return data.assign_coords({name: value for name, value in free.items() if not getattr(value, "chunks", None)})

@@ -216,13 +216,37 @@ def test_spectra_are_responses():
         assert float(by_size["rotation"][k]) == pytest.approx(float(one.rotation), rel=1e-9, nan_ok=True)
 
 
-def test_arrays_of_bodies_broadcast_with_labels():
-    widths = xr.DataArray([0.2, 0.3], dims="object", coords={"object": ["vase", "bust"]})
-    found = rocking.RigidBody(0.1, 0.15, 0.5).response(
-        "sine", peak_acceleration=xr.DataArray([2.0, 4.0, 6.0], dims="strength"), period=0.5
+@pytest.mark.parametrize("chunks", [{}, {"object": 1, "strength": 2}], ids=["arrays", "dask"])
+def test_labelled_bodies_and_motions_broadcast_by_name(chunks):
+    left = xr.DataArray([0.2, 0.3], dims="object", coords={"object": ["vase", "bust"]})
+    height = xr.DataArray([0.4, 0.6], dims="level")
+    strength = xr.DataArray([2.0, 4.0, 6.0], dims="strength")
+    plain = rocking.RigidBody(left.values[:, None, None], 0.15, height.values[:, None]).response(
+        "sine", peak_acceleration=strength.values, period=0.5, restitution=0.9
     )
-    assert found.to_xarray()["rotation"].dims == ("strength",)
-    bodies = rocking.RigidBody(widths.values, 0.15, 0.5)
+    if chunks:
+        left, strength = (one.chunk({one.dims[0]: chunks[one.dims[0]]}) for one in (left, strength))
+    bodies = rocking.RigidBody(left, "15 cm", height)
+    assert bodies.shape == (2, 2)
+    found = bodies.response("sine", peak_acceleration=strength, period="500 ms", restitution=0.9)
+    assert bool(found.chunks) == bool(chunks)
+    for name, values in found.compute().items():
+        np.testing.assert_array_equal(values.transpose("object", "level", "strength"), getattr(plain, name))
+    assert found["displacement"].attrs["units"] == "m"
+    assert found["object"].values.tolist() == ["vase", "bust"]
+    same = rocking.RigidBody(left.values, 0.15, 0.4).scaled(2.0).response("sine", **MOTION)
+    by_name = rocking.RigidBody(left, 0.15, 0.4).scaled(2.0).response("sine", **MOTION)
+    np.testing.assert_array_equal(by_name["rotation"], same.rotation)
+    of_block = rocking.Block(0.3, 1.0).response("sine", peak_acceleration=strength, period=0.5)
+    assert of_block["rotation"].dims == ("strength",)
+    with pytest.raises(InvalidArgumentError, match="equal indexes of a dimension"):
+        rocking.RigidBody(left, 0.15, left.assign_coords(object=["vase", "urn"]))
+    with pytest.raises(InvalidArgumentError, match="a number or an xarray"):
+        bodies.response("sine", peak_acceleration=[2.0, 4.0], period=0.5)
+
+
+def test_arrays_of_bodies_broadcast():
+    bodies = rocking.RigidBody([0.2, 0.3], 0.15, 0.5)
     many = bodies.response("sine", peak_acceleration=np.array([[2.0], [4.0], [6.0]]), period=0.5)
     assert many.shape == (3, 2)
     for i, strength in enumerate((2.0, 4.0, 6.0)):
