@@ -206,7 +206,7 @@ def _responses(body: BodyArray, motions: Sequence[Motion], stop: StopFlag | None
     overturned, rotation, displacement = [], [], []
     for motion in motions:
         problems = _problems(body, motion, motion.peak_acceleration)
-        found = [respond_bodies(problem, {}, (), None, stop) for problem in problems]
+        found = [respond_bodies(problem, stop=stop) for problem in problems]
         overturned.append(np.logical_or.reduce([one.overturned for one in found]))
         rotation.append(np.fmax.reduce([one.rotation for one in found]))
         displacement.append(np.fmax.reduce([one.displacement for one in found]))
