@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
 from types import MappingProxyType
@@ -16,12 +16,20 @@ from numpy.typing import NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.response import ROTATION, count_of_impacts, described_peak
+from rocking._dimensional.response import DISPLACEMENT, ROTATION, count_of_impacts, described_peak
 from rocking._dimensional.threshold import warnings_of_changes
 from rocking._dimensional.thresholds import BodyThresholds, thresholds_of
 from rocking._excitation.records.record import Record
 from rocking._history.contact import ContactExtremes, contact_extremes
-from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, ResponseField
+from rocking._model.fields import (
+    EXCEEDED_ALPHA,
+    IMPACTS,
+    OUTCOME,
+    OVERTURNED,
+    PEAK_ROTATION,
+    UPLIFT_TIME,
+    ResponseField,
+)
 from rocking._model.outcome import Outcome
 from rocking._model.response import axis_names
 from rocking._numba.cancellation import StopFlag
@@ -32,13 +40,11 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_MISSING = ROTATION.missing
-
 BODY_FIELDS = (
     ROTATION,
-    ResponseField("rotation_left", "f8", "rad", "3.2", "peak rotation about the left edge", _MISSING),
-    ResponseField("rotation_right", "f8", "rad", "3.2", "peak rotation about the right edge", _MISSING),
-    ResponseField("displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", _MISSING),
+    replace(ROTATION, name="rotation_left", meaning="peak rotation about the left edge"),
+    replace(ROTATION, name="rotation_right", meaning="peak rotation about the right edge"),
+    DISPLACEMENT,
     OVERTURNED,
     OUTCOME,
     ResponseField(
@@ -50,8 +56,8 @@ BODY_FIELDS = (
     ),
     IMPACTS,
     EXCEEDED_ALPHA,
-    ResponseField("peak_rotation", "f8", "1", "3.2", "peak of |theta|/alpha, of the larger of both edges", _MISSING),
-    ResponseField("uplift_time", "f8", "s", "3.3", "time of the first uplift", "there is no uplift"),
+    replace(PEAK_ROTATION, meaning="peak of |theta|/alpha, of the larger of both edges"),
+    replace(UPLIFT_TIME, unit="s", meaning="time of the first uplift"),
 )
 """Fields of `BodyResponse`, in order; units as CF writes them."""
 

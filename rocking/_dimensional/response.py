@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 ROTATION = ResponseField("rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns")
 DISPLACEMENT = ResponseField(
-    "displacement", "f8", "m", "3.2", "largest horizontal displacement of a top corner", "the block overturns"
+    "displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", "the block overturns"
 )
 
 FIELDS = (
