@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from rocking._base.equality import EqualByValue
 from rocking._dimensional.margins import Margins, margins_of
 from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.threshold import warnings_of_changes
@@ -42,8 +43,8 @@ LARGEST_AMPLIFICATION = 1e4
 """Amplification above which a record does not determine the peak [-]: of samples with six digits it leaves two."""
 
 
-@dataclass(frozen=True)
-class Assessment:
+@dataclass(frozen=True, eq=False, repr=False)
+class Assessment(EqualByValue):
     """What is known about a block under a ground motion beside its response.
 
     Attributes
@@ -80,6 +81,11 @@ class Assessment:
     contact_below: ContactExtremes | None = None
     resampled: Response | None = None
     amplification: float = math.nan
+
+    def __repr__(self) -> str:
+        """Outcome and margin in words."""
+        parts = self.sentence, self.margin, f"{len(self.warnings)} warnings" if self.warnings else ""
+        return f"<rocking.Assessment: {'; '.join(part for part in parts if part)}>"
 
     @property
     def sentence(self) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._dimensional.problem import BlockProblem
@@ -12,11 +13,26 @@ from rocking._dimensional.threshold import Threshold
 from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag
 
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
 SEARCH_FACTOR = 10.0
 """Ratio of the largest period searched to that of the pulse, and its inverse [-]; sizes go with its square."""
 
 
-@dataclass(frozen=True)
+UNITS = {
+    "nearest_acceleration": "m s-2",
+    "acceleration_factor": "1",
+    "nearest_period": "s",
+    "period_factor": "1",
+    "smallest_surviving_half_diagonal": "m",
+    "surviving_from_half_diagonal": "m",
+}
+"""Numbers of `Margins`, and their units as CF writes them."""
+
+
+@dataclass(frozen=True, repr=False)
 class Margins:
     """How far a block is from another outcome.
 
@@ -52,6 +68,36 @@ class Margins:
     surviving_from_half_diagonal: float | None
     sizes: tuple[Threshold, ...]
     sizes_searched: tuple[float, float]
+
+    def __repr__(self) -> str:
+        """The nearest changes in words."""
+        found = (
+            ("acceleration", self.nearest_acceleration, "m/s2"),
+            ("period", self.nearest_period, "s"),
+            ("half-diagonal from which it survives", self.surviving_from_half_diagonal, "m"),
+        )
+        texts = [f"{name} {'not found' if one is None else f'{one:.4g} {unit}'}" for name, one, unit in found]
+        return f"<rocking.Margins: {', '.join(texts)}>"
+
+    def to_xarray(self) -> xr.Dataset:
+        """The margins as a data set, with units; missing ones are nan."""
+        import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+        variables: dict[str, Any] = {
+            name: ((), math.nan if (value := getattr(self, name)) is None else value, {"units": unit})
+            for name, unit in UNITS.items()
+        }
+        for name, unit in (("periods", "s"), ("sizes", "m")):
+            changes = getattr(self, name)
+            variables[name] = (f"{name}_change", [one.value for one in changes], {"units": unit})
+            variables[f"{name}_overturn_above"] = (f"{name}_change", [one.overturns_above for one in changes])
+        return xr.Dataset(variables)
+
+    def to_pandas(self) -> pd.Series:
+        """The numbers as a series; units are those of `to_xarray`."""
+        import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
+
+        return pd.Series({name: getattr(self, name) for name in UNITS}, dtype=float)
 
 
 def margins_of(

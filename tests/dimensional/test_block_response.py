@@ -1,6 +1,7 @@
 """Responses of blocks in SI units against the dimensionless functions, and what they look like."""
 
 import math
+import pickle
 
 import numpy as np
 import pandas as pd
@@ -89,6 +90,23 @@ def test_what_is_not_to_be_searched_is_not(motion, monkeypatch):
     found = BLOCK.response(**given, thresholds=False)
     assert (found.thresholds, found.margins, found.margin) == (None, None, None)
     assert not any("not found" in text for text in found.warnings)
+
+
+def test_margins_and_assessment_as_text_and_tables():
+    found = BLOCK.response("sine", **MOTION)
+    assert repr(found.margins).startswith("<rocking.Margins: acceleration 4.7 m/s2, period 0.5")
+    assert repr(found.assessment).startswith(
+        "<rocking.Assessment: rocks and comes to rest; it does not overturn below 4.7"
+    )
+    data, series = found.margins.to_xarray(), found.margins.to_pandas()
+    assert data["periods"].values.tolist() == [one.value for one in found.margins.periods]
+    for name, value in series.items():
+        assert data[name].item() == value == getattr(found.margins, name)
+    for one in (found.margins, found.assessment, BLOCK.response(RECORD, scale=0.55).assessment):
+        assert pickle.loads(pickle.dumps(one)) == one
+    none = BLOCK.response("sine", peak_acceleration=1e-3, period=0.01).margins
+    assert none.to_pandas().isna()["nearest_period"]
+    assert "period not found" in repr(none)
 
 
 def test_restitution_is_a_number_or_that_of_the_shape():
