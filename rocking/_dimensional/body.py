@@ -192,7 +192,8 @@ class RespondingBody(AbstractBody):
         Returns
         -------
         xarray.Dataset
-            As `BodyResponse.to_xarray`, with the dimension `period` or `size`.
+            As `BodyResponse.to_xarray`, with the dimension `period` or `size`; of a block against the period rotation
+            [rad], top_displacement [m], peak_rotation [-] and its error_bound, overturned, outcome, impacts.
 
         Raises
         ------
@@ -300,7 +301,8 @@ class RespondingBody(AbstractBody):
             vertical_acceleration(time) [m/s2]; top_displacement(time) [m]; impact_time(impact) [s]. With `contact`
             horizontal_reaction(time), normal_reaction(time): along the base and normal to it, over the weight [-];
             friction_demand(time) [-], infinite where the body lifts off; attributes largest_friction_demand,
-            smallest_normal_reaction, impulse_ratio, lifts_off, warnings.
+            smallest_normal_reaction, impulse_ratio, lifts_off, warnings. Of a block without `edge`, with
+            vertical_acceleration where the motion has it, and the attributes of `rocking.time_history`.
 
         Raises
         ------

@@ -37,20 +37,7 @@ def block_history(
     contact: bool = False,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Rotation of a block against time in SI units, by (2.2).
-
-    Parameters
-    ----------
-    problem : BlockProblem
-        The block and the motion.
-    duration : float, optional
-        Length [s], > 0; by default that of `rocking.time_history`.
-    samples : int, optional
-        Uniform samples; by default 400 under a pulse, and those of a record. The events are added.
-    contact : bool
-        Whether to add reactions and friction demand, which are dimensionless.
-    stop : StopFlag, optional
-        Cancels the work.
+    """Rotation of a block against time in SI units, as `rocking.Block.history`; other arguments and errors are those.
 
     Returns
     -------
@@ -58,11 +45,6 @@ def block_history(
         time(time) [s]; rotation(time) [rad]; angular_velocity(time) [rad/s]; ground_acceleration(time) [m/s2];
         top_displacement(time) [m]; impact_time(impact) [s]. Under a record also the coordinate tau(time) [-], and
         vertical_acceleration(time) [m/s2] if it has it.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
     """
     length = None if duration is None else positive("duration", duration, "s")
     if length is not None and not isinstance(problem.motion, Record):
@@ -230,28 +212,12 @@ def block_boundary(
 ) -> xr.Dataset:
     """Boundary curves of overturning of a block: peak acceleration against period.
 
-    Parameters
-    ----------
-    block : Block
-        The block.
-    pulse : str or AbstractPulse
-        The pulse.
-    restitution : float or "momentum"
-        eta [-], [0, 1]; or that of the geometry.
-    period : (float, float), optional
-        Window of T_p [s], 0 < low < high; by default the frequency ratios from 0.2 to 15.
-    stop : StopFlag, optional
-        Cancels the work.
+    The other arguments and the errors are those of `rocking.Block.boundary`.
 
     Returns
     -------
     xarray.Dataset
         As `rocking.overturning_boundary`, with peak_acceleration(point) [m/s2] and period(point) [s] beside the groups.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
     """
     window = frequency_window(period, lambda one: frequency_ratio_of(block, one))
     eta = restitution_of(block, restitution)

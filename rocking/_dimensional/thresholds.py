@@ -284,23 +284,7 @@ def scale_thresholds(
     bisected. A range of one outcome that is narrower can be missed. Both components of the record are scaled; the
     search ends below the scale at which the vertical acceleration reaches -g.
 
-    Parameters
-    ----------
-    record : Record
-        Ground motion.
-    block : Block
-        Block.
-    restitution : "momentum" or float
-        (2.4), or eta [-], [0, 1].
-    highest : float, optional
-        Highest scale searched [-], (0, 1e6]; by default ten times that of uplift.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range.
+    Arguments and errors are those of `rocking.Block.thresholds`; the highest scale is at most 1e6.
     """
     uplift, top, flies = search_range(record, block, _checked_highest(highest))
     if top <= uplift:
