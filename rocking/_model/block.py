@@ -129,22 +129,7 @@ class AbstractBlock(AbstractBody):
 
 @dataclass(frozen=True, init=False)
 class RectangularBlock(AbstractBlock):
-    """A free-standing rigid rectangular block of uniform density (figure 1): `rocking.Block` without its responses.
-
-    Parameters
-    ----------
-    width : float
-        Width 2b of the base [m], > 0.
-    height : float
-        Height 2h [m], > 0.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a length or gravity is not finite and positive.
-    """
+    """A free-standing rigid rectangular block of uniform density (figure 1): `rocking.Block` without its responses."""
 
     @classmethod
     def from_slenderness_angle(cls, alpha: Scalar, half_diagonal: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> Self:
