@@ -14,12 +14,12 @@ import typer
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
 from rocking._cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
-from rocking._dimensional.block import Block
 from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
 from rocking._model.checks import check_window
 from rocking._model.parameters import FREQUENCY_RATIO
 
 if TYPE_CHECKING:
+    from rocking._dimensional.block import Block
     from rocking._dimensional.problem import BlockProblem
     from rocking._dimensional.table import BlockTable
 
@@ -181,6 +181,8 @@ def read_block(options: SizeOptions) -> Block:
     InvalidArgumentError
         If one is missing or not allowed.
     """
+    from rocking._dimensional.block import Block
+
     return Block(_positive(options, "width"), _positive(options, "height"))
 
 
