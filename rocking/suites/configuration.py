@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
-from rocking._dimensional.block import Block
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import read_record
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
+from rocking._model.block import RectangularBlock
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
 from rocking.suites.demand import check_demands
@@ -136,7 +136,7 @@ class SuiteConfiguration(EqualByValue):
 
     name: str
     records: RecordFiles
-    blocks: tuple[Block, ...]
+    blocks: tuple[RectangularBlock, ...]
     restitution: str | float
     measure: str
     intensity: Array
@@ -236,16 +236,16 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
     )
 
 
-def _blocks(given: Any) -> tuple[Block, ...]:
+def _blocks(given: Any) -> tuple[RectangularBlock, ...]:
     if not isinstance(given, list) or not given:
         raise InvalidArgumentError("blocks", given, "a list of width and height [m]")
     return tuple(_block(f"blocks[{place}]", item) for place, item in enumerate(given))
 
 
-def _block(section: str, given: Any) -> Block:
+def _block(section: str, given: Any) -> RectangularBlock:
     """A block of its width and height."""
     _keys(section, given, ("width", "height"))
-    return Block(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
+    return RectangularBlock(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:
