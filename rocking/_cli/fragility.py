@@ -41,9 +41,27 @@ TableOption = Annotated[
     ),
 ]
 
+HazardOption = Annotated[
+    str | None,
+    typer.Option("--hazard", help="Hazard curve of OpenQuake or the USGS, in place of that of the configuration."),
+]
+
+FileOption = Annotated[
+    str | None,
+    typer.Option(
+        "--output", "-o", help="File to write in place of printing: .csv, .json, or .xml (NRML of OpenQuake)."
+    ),
+]
+
 
 @with_options
-def fragility(configuration: Configuration, output: OutputOptions, table: TableOption = "levels") -> None:
+def fragility(
+    configuration: Configuration,
+    output: OutputOptions,
+    table: TableOption = "levels",
+    hazard: HazardOption = None,
+    file: FileOption = None,
+) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
 
     If the configuration asks for it, also the friction demand, and the effect of restitution and sampling.
@@ -51,8 +69,10 @@ def fragility(configuration: Configuration, output: OutputOptions, table: TableO
     from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
+    from rocking.suites.files import ENDINGS
     from rocking.suites.hazard import annual_rate
-    from rocking.suites.table import curve_table, fragility_table
+    from rocking.suites.hazard_files import read_hazard
+    from rocking.suites.table import curve_table, finite, fragility_table
 
     with configuration_errors():
         form = printing.output_format(output)
@@ -62,9 +82,18 @@ def fragility(configuration: Configuration, output: OutputOptions, table: TableO
             raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
         if table != "levels" and form.kind != "csv":
             raise InvalidArgumentError("table", table, "with --csv; the other formats hold all tables")
+        if file is not None and (form.kind != "text" or not file.lower().endswith(ENDINGS)):
+            raise InvalidArgumentError(
+                "output", file, f"a name that ends in {', '.join(ENDINGS)}, without --json or --csv"
+            )
+        curve = suite.hazard if hazard is None else read_hazard(hazard)
     found = suite_fragility(suite)
-    if suite.hazard is not None:
-        found = found.assign(annual_rate(found, suite.hazard).data_vars)
+    with option_errors({"fragility": "--output", "format": "--output"}):
+        if curve is not None:
+            found = found.assign(annual_rate(found, curve).data_vars)
+        if file is not None:
+            _write(found, file)
+            return
     tables = {"levels": fragility_table(found), "curves": curve_table(found)}
     if suite.sensitivity is not None and (form.kind != "csv" or table == "sensitivity"):
         tables["sensitivity"] = _sensitivity(suite)
@@ -76,17 +105,28 @@ def fragility(configuration: Configuration, output: OutputOptions, table: TableO
         printing.print_csv(tables[table], form, units)
         return
     about = {"suite": suite.name, "records": found["record"].values.tolist(), "measure": suite.measure, "unit": unit}
-    finite = {name: _finite(columns) for name, columns in tables.items()}
+    rows = {name: finite(columns) for name, columns in tables.items()}
     if form.kind == "json":
-        printing.print_json({**about, "confidence": suite.confidence, **finite})
+        printing.print_json({**about, "confidence": suite.confidence, **rows})
         return
     printing.print_text({**about, "records": len(about["records"]), "unit": usual})
-    printing.print_table(_with_intervals(finite["curves"]), units)
+    printing.print_table(_with_intervals(rows["curves"]), units)
     typer.echo()
-    printing.print_table(finite["levels"], units)
-    if "sensitivity" in finite:
+    printing.print_table(rows["levels"], units)
+    if "sensitivity" in rows:
         typer.echo()
-        printing.print_table(_of_sensitivity(finite["sensitivity"], len(about["records"])), units)
+        printing.print_table(_of_sensitivity(rows["sensitivity"], len(about["records"])), units)
+
+
+def _write(found: xr.Dataset, file: str) -> None:
+    """Write a fragility; an error names what cannot be written."""
+    from rocking._base.errors import InvalidArgumentError
+    from rocking.suites.files import write_fragility
+
+    try:
+        write_fragility(found, file)
+    except OSError as error:
+        raise InvalidArgumentError("output", file, f"a file that can be written ({error.strerror})") from None
 
 
 def read_suite(configuration: str) -> SuiteConfiguration:
@@ -229,13 +269,3 @@ def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[
 def _per_second(power: re.Match[str]) -> str:
     """The end of a unit of the data sets as the other output writes it: m/s2 for m s-2."""
     return "/s" + power[1].replace("1", "")
-
-
-def _finite(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Columns with None for numbers that are not finite."""
-    from rocking._cli.printing import number
-
-    return {
-        name: [number(value) if isinstance(value, float) else value for value in values]
-        for name, values in columns.items()
-    }

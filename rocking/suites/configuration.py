@@ -172,8 +172,8 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
     measure = one_of("measure", given["measure"], MEASURES)
     hazard = None
     if given["hazard"] is not None:
-        _keys("hazard", given["hazard"], ("intensity", "rate"))
-        hazard = check_hazard_curve((given["hazard"]["intensity"], given["hazard"]["rate"]))
+        _keys("hazard", given["hazard"], ("intensity", "annual_rate"))
+        hazard = check_hazard_curve((given["hazard"]["intensity"], given["hazard"]["annual_rate"]))
     return SuiteConfiguration(
         name=_name(given["name"]),
         records=_record_files(given["records"], folder),

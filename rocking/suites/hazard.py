@@ -30,16 +30,17 @@ STEP = 0.02
 NODES = 4
 
 
-def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> xr.Dataset:
+def annual_rate(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> xr.Dataset:
     """Annual rate at which a limit state is reached.
 
     Parameters
     ----------
     fragility : xarray.Dataset
         Result of `rocking.fragility`; its fitted curves are used.
-    hazard_curve : xarray.DataArray, or pair of arrays
+    hazard : xarray.DataArray, or pair of arrays
         Annual rate of exceedance [1/year], > 0 and not increasing, over its coordinate `intensity`; or the intensities
-        and the rates. At least two intensities, > 0, ascending, in the measure and unit of the fragility.
+        and the rates. At least two intensities, > 0, ascending, in the measure and unit of the fragility. From a file:
+        `rocking.suites.read_hazard`.
 
     Returns
     -------
@@ -50,11 +51,11 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     Raises
     ------
     InvalidArgumentError
-        If the hazard curve is not as described, or the data set holds no fitted curves.
+        If the hazard curve is not as described or of another measure, or the data set holds no fitted curves.
     """
     if not {"median_intensity", "dispersion", "model"} <= {*fragility.variables}:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
-    x, rates = check_hazard_curve(_pair(hazard_curve))
+    x, rates = check_hazard_curve(_pair(hazard, fragility.attrs.get("measure")))
     weights, nodes = hazard_quadrature(x, rates)
     found = xr.full_like(fragility["median_intensity"], np.nan)
     at_end = xr.full_like(fragility["median_intensity"], np.nan)
@@ -78,13 +79,15 @@ def annual_rate(fragility: xr.Dataset, hazard_curve: xr.DataArray | tuple[ArrayL
     )
 
 
-def _pair(hazard_curve: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> tuple[ArrayLike, ArrayLike]:
-    """Intensities and rates of either form of the argument."""
-    if not isinstance(hazard_curve, xr.DataArray):
-        return hazard_curve
-    if hazard_curve.dims != ("intensity",):
-        raise InvalidArgumentError("hazard_curve", hazard_curve.dims, "the one dimension `intensity`")
-    return hazard_curve["intensity"].values, hazard_curve.values
+def _pair(hazard: xr.DataArray | tuple[ArrayLike, ArrayLike], measure: str | None) -> tuple[ArrayLike, ArrayLike]:
+    """Intensities and rates of either form of the argument, of this measure where it says which."""
+    if not isinstance(hazard, xr.DataArray):
+        return hazard
+    if hazard.dims != ("intensity",):
+        raise InvalidArgumentError("hazard", hazard.dims, "the one dimension `intensity`")
+    if hazard.attrs.get("measure", measure) != measure:
+        raise InvalidArgumentError("hazard", hazard.attrs["measure"], f"the measure of the fragility, {measure}")
+    return hazard["intensity"].values, hazard.values
 
 
 def hazard_quadrature(x: Array, rates: Array) -> tuple[Array, Array]:

@@ -5,7 +5,7 @@ levels. On request the lognormal fits are written with `format="continuous"`, `s
 mean m and the standard deviation s of the intensity itself there, not of its logarithm: its function
 `openquake.risklib.scientific.FragilityFunctionContinuous` computes beta^2 = ln(1 + s^2/m^2) and the median
 m^2/sqrt(m^2 + s^2). For a median x and a dispersion beta therefore m = x exp(beta^2/2), s = m sqrt(exp(beta^2) - 1).
-Its unit of PGA is g, of PGV cm/s.
+Its unit of PGA is g, of PGV cm/s. The readers of openquake.engine 3.26 take both formats.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ def write_nrml(
     path : path
         The file, written anew.
     format : {"discrete", "lognormal"}
-        Fractions at the levels, or curves fitted to them. OpenQuake's curve is zero below the lowest level written and
-        constant above the highest one.
+        Fractions at the levels, or curves fitted to them. OpenQuake's curve is constant above the highest level. Below
+        the lowest one it is a line from zero at zero, for a fitted curve zero.
     description : str
         A text for the file.
 
@@ -79,12 +79,11 @@ def write_nrml(
     shape = {"format": "discrete"} if format == "discrete" else {"format": "continuous", "shape": "logncdf"}
     for k in range(overturns.shape[0]):
         function = ET.SubElement(model, "fragilityFunction", attrib={"id": f"block-{k + 1}", **shape})
-        limits = {"imt": name, "noDamageLimit": f"{levels[0] / unit:.9g}"}
         if format == "discrete":
-            ET.SubElement(function, "imls", limits).text = _numbers(levels / unit)
+            ET.SubElement(function, "imls", imt=name).text = _numbers(levels / unit)
         else:
-            ends = {"minIML": f"{levels[0] / unit:.9g}", "maxIML": f"{levels[-1] / unit:.9g}"}
-            ET.SubElement(function, "imls", limits | ends)
+            low, high = (f"{level / unit:.9g}" for level in (levels[0], levels[-1]))
+            ET.SubElement(function, "imls", imt=name, noDamageLimit=low, minIML=low, maxIML=high)
         for state, reached in zip(LIMIT_STATES, (rocks[k], overturns[k]), strict=True):
             if format == "discrete":
                 ET.SubElement(function, "poes", ls=state).text = _numbers(reached.mean(axis=1))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -83,6 +85,14 @@ def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
     columns = {name: found[name].transpose("block", "intensity").values for name in SENSITIVITY_COLUMNS}
     restitution = {name: _by_block(found, name) for name in ("restitution", "restitution_low", "restitution_high")}
     return _rows(found, {"intensity": found["intensity"].values, **restitution, **columns})
+
+
+def finite(columns: Mapping[str, list[Any]]) -> dict[str, list[Any]]:
+    """Columns with None for numbers that are not finite, which JSON does not have."""
+    return {
+        name: [None if isinstance(value, float) and not math.isfinite(value) else value for value in values]
+        for name, values in columns.items()
+    }
 
 
 def _with_dimensions(fragility: xr.Dataset) -> xr.Dataset:

@@ -66,7 +66,6 @@ NUMBERS: dict[str, Any] = {
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
     "vertical_scale": 1.0, "periods": [0.5, 0.1], "damping": 0.1, "participation": [1.3, -0.3], "tail": 1.0,
     "intensity": [3.0, 9.0], "demand": 0.5, "confidence": 0.9, "restitution_step": 0.05,
-    "hazard_curve": ([1.0, 10.0], [1e-2, 1e-4]),
     "years": 100.0, "annual_rate": [1e-2, 1e-4], "probability": 0.9,
     "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,
     "stiffness": 500.0, "restoring": 100.0, "load": 200.0,
@@ -165,7 +164,7 @@ SUITE: dict[str, Any] = {
         "half_diagonal": {"low": 0.5, "high": 5.0, "points": 3},
         "alpha_deg": {"low": 6.0, "high": 24.0, "points": 3},
     },
-    "hazard": {"intensity": [1.0, 20.0], "rate": [1e-2, 1e-5]},
+    "hazard": {"intensity": [1.0, 20.0], "annual_rate": [1e-2, 1e-5]},
     "sensitivity": {"intensity": [4.0], "restitution_step": 0.05},
 }
 

@@ -181,6 +181,33 @@ def test_table_is_for_csv_and_for_what_the_configuration_asks_for(small, tmp_pat
     assert "sensitivity" not in json.loads(run("fragility", str(path), "--json"))
 
 
+def test_a_file_in_place_of_printing(small, tmp_path):
+    path = tmp_path / "curves.json"
+    assert run("fragility", str(small), "--output", str(path)) == ""
+    printed = json.loads(run("fragility", str(small), "--json"))
+    assert json.loads(path.read_text())["levels"] == printed["levels"]
+    for ending, start in ((".csv", "demand,width"), (".xml", "<?xml")):
+        run("fragility", str(small), "-o", str(path.with_suffix(ending)))
+        assert path.with_suffix(ending).read_text().startswith(start)
+    assert "--output" in refused("fragility", str(small), "--output", "curves.txt")
+    assert "--output" in refused("fragility", str(small), "--json", "--output", str(path))
+    assert "--output" in refused("fragility", str(small), "--output", str(tmp_path / "none" / "curves.csv"))
+
+
+def test_a_hazard_curve_from_a_file(small, tmp_path):
+    given = json.loads(small.read_text())
+    factor = 9.80665
+    path = tmp_path / "PGA" / "curves.csv"
+    path.parent.mkdir()
+    columns = [f"{x / factor:.17g}" for x in given["hazard"]["intensity"]]
+    path.write_text(f"lon,lat,{','.join(columns)}\n8,47,{','.join(map(str, given['hazard']['annual_rate']))}\n")
+    rates = json.loads(run("fragility", str(small), "--json"))["curves"]["annual_rate"]
+    found = json.loads(run("fragility", str(small), "--json", "--hazard", str(path)))["curves"]["annual_rate"]
+    assert found == pytest.approx(rates, rel=1e-9)
+    path.write_text(path.read_text().replace("lon", "x"))
+    assert "--hazard" in refused("fragility", str(small), "--hazard", str(path))
+
+
 def test_configuration_may_be_yaml_or_toml(small, tmp_path):
     given = json.loads(small.read_text())
     (tmp_path / "suite.yaml").write_text(yaml.safe_dump({"title": "a suite", "suite": given}))

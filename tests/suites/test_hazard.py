@@ -75,7 +75,13 @@ def test_labelled_hazard_curve():
     ],
 )
 def test_invalid_hazard_curve_is_refused(hazard):
-    with pytest.raises(InvalidArgumentError, match="hazard_curve"):
+    with pytest.raises(InvalidArgumentError, match="hazard"):
+        annual_rate(curves(3.0, 0.5), hazard)
+
+
+def test_a_hazard_curve_of_another_measure_is_refused():
+    hazard = xr.DataArray(1e-3 / X, {"intensity": X}, dims="intensity", attrs={"measure": "pgv"})
+    with pytest.raises(InvalidArgumentError, match="measure of the fragility, pga"):
         annual_rate(curves(3.0, 0.5), hazard)
 
 

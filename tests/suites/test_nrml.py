@@ -33,17 +33,22 @@ def read(path):
         assert [part.get("ls") for part in parts] == states
         curves = {}
         for part in parts:
+            none = float(imls.get("noDamageLimit", 1e-10))
             if function.get("format") == "discrete":
                 x, poes = (np.array(text.split(), dtype=float) for text in (imls.text, part.text))
                 assert x.shape == poes.shape
                 assert np.all(np.diff(x) > 0.0)
                 assert np.all((poes >= 0.0) & (poes <= 1.0))
+                x, poes = np.append(none, x), np.append(0.0, poes)  # FragilityFunctionList.build
                 curves[part.get("ls")] = lambda im, x=x, poes=poes: np.interp(im, x, poes)
             else:
+                low, high = float(imls.get("minIML")), float(imls.get("maxIML"))
                 mean, deviation = float(part.get("mean")), float(part.get("stddev"))
                 sigma = np.sqrt(np.log(deviation**2 / mean**2 + 1.0))
                 median = mean**2 / np.sqrt(deviation**2 + mean**2)
-                curves[part.get("ls")] = lambda im, s=sigma, m=median: lognorm.cdf(im, s, scale=m)
+                curves[part.get("ls")] = lambda im, s=sigma, m=median, ends=(low, high), none=none: np.where(
+                    im <= none, 0.0, lognorm.cdf(np.clip(im, *ends), s, scale=m)
+                )
         result[function.get("id"), imls.get("imt")] = curves
     return result
 
@@ -56,6 +61,7 @@ def test_discrete_functions_are_the_fractions_over_g(found, tmp_path):
         curves = functions[f"block-{k + 1}", "PGA"]
         overturns = curves["overturns"](LEVELS / 9.80665)
         np.testing.assert_allclose(overturns, found["fraction"].isel(block=k), atol=1e-8)
+        assert curves["overturns"](100.0) == found["fraction"].isel(block=k)[-1]
         rocks = curves["rocks"](LEVELS / 9.80665)
         np.testing.assert_allclose(rocks, LEVELS / BLOCKS[k].uplift_acceleration > 1.0, atol=1e-6)
         assert np.all(rocks >= overturns - 1e-6)
@@ -68,6 +74,14 @@ def test_lognormal_functions_are_the_fitted_curves(found, tmp_path):
     np.testing.assert_allclose(curves["overturns"](LEVELS / 9.80665), fit["fitted"], atol=1e-7)
     rocks = curves["rocks"](LEVELS / 9.80665)
     np.testing.assert_allclose(rocks, LEVELS / BLOCKS[0].uplift_acceleration > 1.0, atol=1e-9)
+
+
+def test_below_the_lowest_level_a_probability_is_not_cut_off(found, tmp_path):
+    write_nrml(found.isel(intensity=slice(8, None)), tmp_path / "model.xml")
+    curve = read(tmp_path / "model.xml")["block-1", "PGA"]["overturns"]
+    lowest = LEVELS[8] / 9.80665
+    assert curve(0.5 * lowest) == pytest.approx(0.5 * curve(lowest), rel=1e-6)
+    assert curve(lowest) > 0.5
 
 
 def test_refusals(found, tmp_path):

@@ -185,7 +185,7 @@ def test_sizes_of_blocks_are_in_metres_or_with_units() -> None:
         ("demand", ["sliding"], "suite.demand = 'sliding': allowed: overturning, alpha"),
         ("confidence", 1.0, "suite.confidence = 1.0: allowed: (0, 1)"),
         ("map/alpha_deg", [95.0], "suite.map.alpha_deg = 95.0: allowed: (0, 89] [deg]"),
-        ("hazard/rate", [1.0], "suite.hazard_curve"),
+        ("hazard/annual_rate", [1.0], "suite.hazard"),
         ("sensitivity/intensity", [-1.0], "suite.sensitivity.intensity = -1.0"),
         ("sensitivity/restitution_step", 0.0, "suite.sensitivity.restitution_step = 0.0: allowed: (0, 1]"),
         ("sensitivity", {"intensity": [1.0]}, "suite.sensitivity = 'no restitution_step': allowed: exactly the keys"),

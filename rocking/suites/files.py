@@ -1,0 +1,46 @@
+"""Files of a fragility for other programs, by the ending of their names."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+
+import xarray as xr
+
+from rocking._base.errors import one_of
+from rocking._datasets.csv_text import csv_text
+from rocking.suites.nrml import write_nrml
+from rocking.suites.table import curve_table, finite, fragility_table
+
+ENDINGS = (".csv", ".json", ".xml")
+
+
+def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
+    """Write the fragility of blocks to a file for other programs.
+
+    Parameters
+    ----------
+    fragility : xarray.Dataset
+        Result of `rocking.fragility`, if wanted with the variables of `annual_rate`.
+    path : path
+        The file, written anew. `.csv`: a row for each limit state, block and level, with counts, intervals and the
+        fitted probabilities. `.json`: these and the fitted curves, null for what does not exist. `.xml`: `write_nrml`.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the name has another ending, or for .xml as `write_nrml`.
+    """
+    file = Path(path)
+    ending = one_of("path", file.suffix.lower(), ENDINGS)
+    if ending == ".xml":
+        write_nrml(fragility, file)
+        return
+    levels = fragility_table(fragility)
+    if ending == ".csv":
+        file.write_text(csv_text(levels), encoding="utf-8")
+        return
+    about = {"measure": fragility.attrs["measure"], "unit": fragility["intensity"].attrs["units"]}
+    tables = {"levels": finite(levels), "curves": finite(curve_table(fragility))}
+    file.write_text(json.dumps({**about, **tables}, allow_nan=False), encoding="utf-8")
