@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import xlogy
-from scipy.stats import chi2
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
@@ -21,7 +19,10 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SEED = 0
-"""Of the order in which tests are divided into folds."""
+"""Of the order in which tests are divided into folds, and of the resamples."""
+
+RESAMPLES = 400
+"""Resamples of the tests for the intervals [-]."""
 
 
 def calibrate(
@@ -37,11 +38,11 @@ def calibrate(
 ) -> xr.Dataset:
     """The block whose responses agree best with the outcomes of tests, and how well it predicts others.
 
-    A test counts as a Bernoulli trial: the model is right with the probability 1 - e, the same for all tests. The
-    likelihood (1 - e)^k e^(n - k) of k right ones among n, with its e = 1 - k/n, is evaluated on a grid, and on a
-    second one between the neighbours of the best point. The interval of a parameter holds the points whose profile
-    likelihood is within that of chi-squared with one degree of freedom (Wilks 1938). Points are not interpolated, so
-    that intervals of few points are too narrow where almost all tests are predicted right.
+    A test counts as a Bernoulli trial: the model is right with the probability 1 - e, the same for all tests, so that
+    the likelihood (1 - e)^k e^(n - k) of k right ones among n, with its e = 1 - k/n, is largest for the block with most
+    right ones. Blocks are tried on a grid, and on a second one between the neighbours of the best point. Intervals are
+    those of the bootstrap (Efron 1979): tests are drawn again with replacement, and the lower end is the quantile of
+    the least value of the blocks that are best then, the upper end that of the largest.
 
     Parameters
     ----------
@@ -73,8 +74,7 @@ def calibrate(
 
     References
     ----------
-    Wilks S. S. (1938), The large-sample distribution of the likelihood ratio for testing composite hypotheses, Annals
-    of Mathematical Statistics 9(1), 60-62.
+    Efron B. (1979), Bootstrap methods: another look at the jackknife, Annals of Statistics 7(1), 1-26.
     """
     fell = np.asarray(outcomes)
     if fell.dtype != np.bool_ or fell.shape != (len(motions),) or fell.all() or not fell.any():
@@ -90,20 +90,20 @@ def calibrate(
     }
     first = _grid([np.linspace(ends[0], ends[1], count) for ends in ranges.values()])
     overturns = _predicted(motions, first)
-    best = _middle(first, (overturns == fell).sum(axis=1))
+    best = _middle(first, (overturns == fell).mean(axis=1))
     finer = []
     for value, (low, high) in zip(best, ranges.values(), strict=True):
         step = (high - low) / (count - 1)
         finer.append(np.linspace(max(low, value - step), min(high, value + step), count))
     second = _grid(finer)
     blocks = np.concatenate([first, second])
-    right = np.concatenate([(overturns == fell).sum(axis=1), (_predicted(motions, second) == fell).sum(axis=1)])
-    best = _middle(blocks, right)
-    likelihood = xlogy(right, right / fell.size) + xlogy(fell.size - right, 1.0 - right / fell.size)
-    inside = blocks[2.0 * (likelihood.max() - likelihood) <= chi2.ppf(level, 1)]
-    found: dict[str, Any] = {"right": right.max() / fell.size}
+    right = np.concatenate([overturns == fell, _predicted(motions, second) == fell])
+    share = right.mean(axis=1)
+    best = _middle(blocks, share)
+    lower, upper = _ends_of_best(blocks, right, level)
+    found: dict[str, Any] = {"right": share.max()}
     for k, name in enumerate(ranges):
-        found |= {name: best[k], f"{name}_lower": inside[:, k].min(), f"{name}_upper": inside[:, k].max()}
+        found |= {name: best[k], f"{name}_lower": min(lower[k], best[k]), f"{name}_upper": max(upper[k], best[k])}
     pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))
     for suffix, rules in (("", overturns), ("_pga", _above(pga)), ("_pgv", _above(pgv))):
         found[f"validated{suffix}"] = _validated(rules, fell, parts)
@@ -138,11 +138,23 @@ def _predicted(motions: Sequence[Record], blocks: Array) -> Flags:
     return np.stack(found, axis=1).astype(bool)
 
 
-def _middle(blocks: Array, right: NDArray[np.intp]) -> Array:
-    """Of the blocks with most right outcomes the one next to their mean, in the units of the spread of all."""
-    equal = blocks[right == right.max()]
+def _middle(blocks: Array, share: Array) -> Array:
+    """Of the blocks with the largest share of right outcomes the one next to their mean, over the spread of all."""
+    equal = blocks[share == share.max()]
     distance = (((equal - equal.mean(axis=0)) / np.ptp(blocks, axis=0)) ** 2).sum(axis=1)
     return np.asarray(equal[distance.argmin()])
+
+
+def _ends_of_best(blocks: Array, right: Flags, level: float) -> tuple[Array, Array]:
+    """Lower and upper ends (3,) of the parameters of the blocks that are best in resamples of the tests."""
+    tests = right.shape[1]
+    counts = np.random.default_rng(SEED).multinomial(tests, np.full(tests, 1.0 / tests), RESAMPLES)
+    scores = right.astype(np.float32) @ counts.T.astype(np.float32)  # integers, exact
+    equal = [blocks[score == score.max()] for score in scores.T]
+    tail = 0.5 * (1.0 - level)
+    low = np.quantile([one.min(axis=0) for one in equal], tail, axis=0, method="inverted_cdf")
+    high = np.quantile([one.max(axis=0) for one in equal], 1.0 - tail, axis=0, method="inverted_cdf")
+    return low, high
 
 
 def _above(values: Array) -> Flags:
@@ -151,8 +163,12 @@ def _above(values: Array) -> Flags:
 
 
 def _validated(rules: Flags, fell: Flags, folds: int) -> float:
-    """Share of right predictions of the tests of each fold by the first of the best rules on the others."""
+    """Share of right predictions of the tests of each fold by the middle one of the best rules on the others."""
     fold = np.random.default_rng(SEED).permutation(fell.size) % folds
     right = rules == fell
-    chosen = [right[right[:, fold != k].sum(axis=1).argmax()] & (fold == k) for k in range(folds)]
-    return float(np.sum(chosen) / fell.size)
+    count = 0
+    for k in range(folds):
+        score = right[:, fold != k].sum(axis=1)
+        best = np.flatnonzero(score == score.max())
+        count += right[best[best.size // 2], fold == k].sum()
+    return float(count / fell.size)

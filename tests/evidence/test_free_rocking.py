@@ -57,6 +57,22 @@ def test_two_edges_give_their_own_numbers():
         np.testing.assert_allclose(found[name], true[:, 0], rtol=0.02)
 
 
+def test_two_edges_of_a_body_after_a_pulse():
+    """Momentum about the new edge gives eta; the solver of bodies shares nothing with the fit."""
+    left, right, height = 0.16, 0.2, 0.9
+    body = rocking.RigidBody(left=left, right=right, height=height)
+    motion = body.history("sine", peak_acceleration=2.6, period=0.7, duration=9.0, samples=1800)
+    free = motion.isel(time=motion["time"] > motion.attrs["motion_end"])
+    found = identify_free_rocking(free["time"], free["rotation"], edges=2)
+    inertia = body.gyration.item() ** 2 + height**2  # about the middle of the ground, over the mass
+    own, other = np.array([right, left]), np.array([left, right])
+    np.testing.assert_allclose(found["alpha"], np.arctan(own / height), rtol=1e-6)
+    np.testing.assert_allclose(
+        found["frequency_parameter"], np.sqrt(9.80665 * np.hypot(own, height) / (inertia + own**2)), rtol=1e-6
+    )
+    np.testing.assert_allclose(found["restitution"], (inertia - own * other) / (inertia + own**2), rtol=1e-6)
+
+
 def test_a_tenth_of_the_benchmark_is_within_its_bounds():
     found, within = errors(20, 4)
     assert np.abs(found).max(axis=0) == pytest.approx([0.0, 0.0, 0.0], abs=0.05)
