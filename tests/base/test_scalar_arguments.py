@@ -176,6 +176,9 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "suites.record_amplification": (
         rocking.suites.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]
     ),
+    "suites.spectrum_volume": (
+        rocking.suites.spectrum_volume, [{"record": RECORD, "restitution": 0.9, "points": 2}]
+    ),
     "suites.suite_sensitivity": (rocking.suites.suite_sensitivity, [{"restitution_step": 0.05} | SUITE]),
     "time_history": (
         rocking.time_history,

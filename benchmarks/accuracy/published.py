@@ -1,0 +1,127 @@
+"""Numbers that others have published, and ours: `python -m benchmarks.accuracy.published` prints the table of
+docs/published-results.md.
+
+Formulas are evaluated here as printed, and compared with what the solver finds by bisection.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from scipy.optimize import brentq
+
+import rocking
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A published number, as `text` if it is a range.
+
+    `tolerance` is the accuracy with which it is printed or was read off a figure, or that of the search.
+    """
+
+    source: str
+    quantity: str
+    published: float
+    tolerance: float
+    ours: Callable[[], float]
+    text: str = ""
+
+
+def amplitude(number: int, pulse: str, frequency_ratio: float, restitution: float, alpha: float | None = None) -> float:
+    """The amplitude a_g/(g tan alpha) at which the outcome changes for the first, second, ... time."""
+    found = rocking.thresholds(pulse, frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha)
+    return float(found.amplitude[number - 1])
+
+
+def rectangular_limit(duration: float) -> float:
+    """Housner (1963): cosh(p t) = 1 + 1/(2 a (a - 1)) for a constant acceleration of the duration p t."""
+    return brentq(lambda a: math.cosh(duration) - 1.0 - 0.5 / (a * (a - 1.0)), 1.0 + 1e-9, 1e3, xtol=1e-12)
+
+
+def half_sine_limit(omega: float) -> float:
+    """Shi et al. (1996): omega sin psi - cos psi = exp(-(pi - psi)/omega) at uplift, a = 1/sin psi."""
+    psi = brentq(lambda x: omega * math.sin(x) - math.cos(x) - math.exp(-(math.pi - x) / omega), 1e-9, 0.5 * math.pi)
+    return 1.0 / math.sin(psi)
+
+
+def acceleration_of_cosine() -> float:
+    """Peak acceleration [g] of a cosine pulse of 2 s from which a block of 15 degrees and p = 2 rad/s overturns."""
+    alpha = math.radians(15.0)
+    eta = 1.0 - 1.5 * math.sin(alpha) ** 2
+    return amplitude(1, "cosine", 0.5 * math.pi, eta, alpha) * math.tan(alpha)
+
+
+def energy_kept(alpha: float) -> float:
+    """Share of the energy that an impact of a block leaves."""
+    return float(rocking.Block.from_slenderness_angle(alpha, 1.0).momentum_restitution ** 2)
+
+
+ZHANG_MAKRIS = "Zhang & Makris (2001)"
+MAKRIS_KONSTANTINIDIS = "Makris & Konstantinidis (2003)"
+COMPARISONS = (
+    Comparison(
+        ZHANG_MAKRIS,
+        "one sine, omega/p = 5, eta 0.9: a overturns from",
+        3.01,
+        0.015,
+        lambda: amplitude(1, "sine", 5, 0.9),
+    ),
+    Comparison(ZHANG_MAKRIS, "the same: survives again from", 6.33, 0.015, lambda: amplitude(2, "sine", 5, 0.9)),
+    Comparison(ZHANG_MAKRIS, "the same: without impact from", 7.18, 0.015, lambda: amplitude(3, "sine", 5, 0.9)),
+    Comparison(
+        MAKRIS_KONSTANTINIDIS,
+        "cosine of 2 s, alpha 15 deg, p 2 rad/s: peak acceleration [g] between standing and overturning",
+        0.3155,
+        0.0005,
+        acceleration_of_cosine,
+        "0.315 to 0.316",
+    ),
+    *(
+        Comparison(
+            "Housner (1963)",
+            f"constant acceleration, p t = {duration:g}: a overturns from",
+            rectangular_limit(duration),
+            1e-6,
+            lambda duration=duration: amplitude(1, "rectangular", math.pi / duration, 0.9),  # type: ignore[misc]
+        )
+        for duration in (0.5, 1.0, 2.0)
+    ),
+    *(
+        Comparison(
+            "Housner (1963)",
+            f"alpha {alpha:g} rad: (1 - m R^2/I_0 (1 - cos 2 alpha))^2 of the energy after an impact",
+            (1.0 - 0.75 * (1.0 - math.cos(2.0 * alpha))) ** 2,
+            1e-12,
+            lambda alpha=alpha: energy_kept(alpha),  # type: ignore[misc]
+        )
+        for alpha in (0.1, 0.3)
+    ),
+    *(
+        Comparison(
+            "Shi et al. (1996)",
+            f"half a sine, omega/p = {omega:g}: a overturns from",
+            half_sine_limit(omega),
+            1e-6,
+            lambda omega=omega: amplitude(1, "half_sine", omega, 0.9),  # type: ignore[misc]
+        )
+        for omega in (1.0, 2.0, 3.0)
+    ),
+)
+
+
+def table() -> str:
+    """The comparisons as rows of Markdown."""
+    lines = ["| source | quantity | published | ours |", "|---|---|---|---|"]
+    for one in COMPARISONS:
+        digits = max(2, min(6, round(-math.log10(one.tolerance))))
+        published = one.text or f"{one.published:.{digits}f}"
+        found = f"{one.ours():.{digits + (digits < 6)}f}"
+        lines.append(f"| {one.source} | {one.quantity} | {published} | {found} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(table())
