@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from rocking._cli.assess import assess
+from rocking._cli.floor import floor
 from rocking._cli.fragility import fragility
 from rocking._cli.identify import identify
 from rocking._cli.options import (
@@ -140,6 +141,7 @@ app.command()(record)
 app.command()(assess)
 app.command()(fragility)
 app.command()(identify)
+app.command()(floor)
 app.add_typer(plot, name="plot")
 
 

@@ -1,0 +1,60 @@
+"""`rocking floor`: the motion of a floor or above an isolation, as a file of a record."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking._cli.record import File, file_errors
+
+if TYPE_CHECKING:
+    from rocking._excitation.records.record import Record
+
+Periods = Annotated[list[str], typer.Option("--period", help="Period of a mode, such as 0.5s; once for each mode.")]
+Damping = Annotated[list[float], typer.Option(help="Damping ratio, of all modes or once for each.")]
+Participation = Annotated[
+    list[float], typer.Option(help="Participation factor times mode shape at the floor, of all modes or once for each.")
+]
+Unit = Annotated[str | None, typer.Option(help="Unit of the samples if the file states none.")]
+TimeStep = Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")]
+Component = Annotated[str | None, typer.Option(help="Column or trace of a file with several.")]
+Vertical = Annotated[str | None, typer.Option(help="Vertical component, a file or a column; the floor has the same.")]
+
+
+def floor(
+    file: File,
+    period: Periods,
+    damping: Damping = [0.05],  # noqa: B006  # typer reads it
+    participation: Participation = [1.0],  # noqa: B006
+    unit: Unit = None,
+    time_step: TimeStep = None,
+    component: Component = None,
+    vertical: Vertical = None,
+) -> None:
+    """Print the motion of a floor of a linear structure as CSV, a record for the other commands.
+
+    One mode of participation 1 is a structure on an isolation.
+    """
+    from rocking._base.errors import positive
+    from rocking._cli.arguments import option_errors
+    from rocking._datasets.csv_text import csv_text
+    from rocking._excitation.records.floor import floor_motion
+    from rocking._excitation.records.readers.read_record import read_record
+
+    with option_errors({"periods": "--period"}), file_errors():
+        periods = [positive("period", one, "s") for one in period]
+        record = read_record(file, unit=unit, time_step=time_step, component=component, vertical=vertical)
+        motion = floor_motion(record, periods=periods, damping=_each(damping), participation=_each(participation))
+    typer.echo(csv_text(_columns(motion)), nl=False)
+    typer.echo(motion.source, err=True)
+
+
+def _each(values: list[float]) -> float | list[float]:
+    return values[0] if len(values) == 1 else values
+
+
+def _columns(motion: Record) -> dict[str, Any]:
+    """Times and components, with units in the names."""
+    vertical = {} if motion.vertical is None else {"vertical_m/s2": motion.vertical.tolist()}
+    return {"time_s": motion.times.tolist(), "acceleration_m/s2": motion.acceleration.tolist(), **vertical}
