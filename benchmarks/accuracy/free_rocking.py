@@ -63,7 +63,7 @@ def free_rocking(theta: Array, alpha: Array, p: Array, eta: Array, duration: flo
 def errors(traces: int, seed: int, edges: int = 1) -> tuple[Array, NDArray[np.bool_]]:
     """Errors (traces, 3) of eta, and of alpha and p over their values; and whether each lies within its interval.
 
-    With two edges (traces times 2, 3), without traces that have too few impacts.
+    With two edges (traces times 2, 3), without bodies that overturn and traces that have too few impacts.
     """
     rng = np.random.default_rng(seed)
     alpha, p, eta = (rng.uniform(*ends, (edges, traces)) for ends in ((0.15, 0.4), (1.5, 4.0), (0.82, 0.95)))
@@ -73,7 +73,7 @@ def errors(traces: int, seed: int, edges: int = 1) -> tuple[Array, NDArray[np.bo
     clean = free_rocking(start, alpha, p, eta, 8.0)
     held = rng.integers(5, 40, traces)
     found, within = [], []
-    for k in range(traces):
+    for k in np.flatnonzero(np.abs(clean).max(axis=1) < 0.5 * np.pi):
         rotation = np.concatenate([np.full(held[k], start[k]), clean[k]])
         rotation += np.radians(0.05) * rng.normal(size=rotation.size) + 0.003 * rng.normal()
         try:
