@@ -198,7 +198,10 @@ for kind, body in (("Block", BLOCK), ("EquivalentBlock", FRAME)):
         f"{kind}.boundary": (body.boundary, [{"motion": "sine", "restitution": 0.9}]),
         f"{kind}.history": (body.history, [{"duration": 1.0, "samples": 10} | more for more in (PULSE, SCALED)]),
         f"{kind}.spectrum": (body.spectrum, [PULSE, SCALED | {"size": [1.0]}]),
-        f"{kind}.thresholds": (body.thresholds, [{"motion": "sine", "period": 0.5, "restitution": 0.9, "highest": 9.0}]),
+        f"{kind}.thresholds": (
+            body.thresholds,
+            [{"motion": "sine", "period": 0.5, "restitution": 0.9, "highest": 9.0}],
+        ),
     }
 
 CALLS |= {
