@@ -11,6 +11,7 @@ import yaml
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+BIBLIOGRAPHY = (ROOT / "paper.bib").read_text()
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text()
 
 
@@ -26,6 +27,15 @@ def test_project_and_citation_agree() -> None:
     assert [author["name"] for author in PROJECT["authors"]] == [author["name"] for author in CITATION["authors"]]
 
 
+def test_article_and_citation_cite_the_paper_alike() -> None:
+    paper = CITATION["references"][0]
+    entry = re.search(r"^@article\{DimitrakopoulosDeJong2012.*?^\}$", BIBLIOGRAPHY, re.MULTILINE | re.DOTALL)
+    assert entry is not None
+    for name in ("title", "journal", "year", "volume", "doi"):
+        assert f"{name} = {{{paper[name]}}}" in re.sub(r" +=", " =", entry[0])
+    assert f"pages = {{{paper['start']}--{paper['end']}}}" in re.sub(r" +=", " =", entry[0])
+
+
 def test_open_fields_are_in_files_that_exist() -> None:
     names = re.findall(r"`(\.?\w+\.\w+)`", CONTRIBUTING.partition("## Open until publication")[2])
     assert "CITATION.cff" in names
@@ -34,7 +44,7 @@ def test_open_fields_are_in_files_that_exist() -> None:
 
 def test_article_cites_what_it_lists_and_names_pages_that_exist() -> None:
     article = (ROOT / "paper.md").read_text().partition("\n---\n")[2]
-    listed = re.findall(r"^@\w+\{(\w+),", (ROOT / "paper.bib").read_text(), re.MULTILINE)
+    listed = re.findall(r"^@\w+\{(\w+),", BIBLIOGRAPHY, re.MULTILINE)
     assert set(re.findall(r"@(\w+)", article)) == set(listed)
     pages = re.findall(r"`(docs/[\w./-]+)`", article)
     assert pages
