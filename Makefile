@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify test browser serve docs bench stress slurm deploy-check fuzz mutants oldest newest wheel lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify deposit test browser serve docs bench stress slurm deploy-check fuzz mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -36,6 +36,9 @@ atlas: ## the same on a fine grid, 27 restitutions and 10 angles, in atlas/resul
 
 verify: .venv/project ## compare every file in results/ with the manifest and list differences (RESULTS=: others; AGAINST=: other manifest)
 	python -m workflow.verify $(dir $(RESULTS)) $(if $(AGAINST),--against $(AGAINST))
+
+deposit: .venv/project | $(RESULTS)/manifest.json ## archive the data sets for a data repository in build/rocking-data.zip (RESULTS=: others)
+	python -m workflow.deposit $(dir $(RESULTS))
 
 test: .venv/project browser ## run format, lint and type checks and all tests, including a small run of the workflow
 	ruff format --check .
