@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -49,3 +50,30 @@ def test_article_cites_what_it_lists_and_names_pages_that_exist() -> None:
     pages = re.findall(r"`(docs/[\w./-]+)`", article)
     assert pages
     assert [page for page in pages if not (ROOT / page).exists()] == []
+
+
+CONDA_NAMES = {"matplotlib": "matplotlib-base", "prometheus-client": "prometheus_client"}
+"""Names of packages in conda-forge that are not those of the Python package index."""
+
+
+def conda(lines: list[str]) -> list[str]:
+    """Requirements of pyproject.toml as a recipe states them."""
+    found = [Requirement(line) for line in lines]
+    return [f"{CONDA_NAMES.get(one.name, one.name.lower())} {one.specifier}" for one in found]
+
+
+def test_recipe_of_conda_states_what_the_project_states() -> None:
+    text = (ROOT / "deploy" / "conda" / "recipe.yaml").read_text()
+    recipe = yaml.safe_load(text.replace("${{ python_min }}", PROJECT["requires-python"].removeprefix(">=")))
+    assert recipe["context"]["version"] == PROJECT["version"]
+    assert recipe["about"] | {"license_file": PROJECT["license-files"][0]} == recipe["about"]
+    assert (recipe["about"]["summary"], recipe["about"]["license"]) == (PROJECT["description"], PROJECT["license"])
+    python = f"python {PROJECT['requires-python']}"
+    assert recipe["requirements"]["run"] == [python, *conda(PROJECT["dependencies"])]
+    extras = PROJECT["optional-dependencies"]
+    assert recipe["requirements"]["run_constraints"] == conda([*extras["plot"], *extras["service"]])
+    commands = [f"{name} = {target}" for name, target in PROJECT["scripts"].items()]
+    assert recipe["build"]["python"]["entry_points"] == commands
+    assert recipe["requirements"]["host"][2:] == ["setuptools >=77"]
+    (command,) = recipe["tests"][1]["script"]
+    assert command in (ROOT / "README.md").read_text()
