@@ -1,0 +1,69 @@
+"""The five tasks of docs/tasks.md, performed on a copy of the repository as they are written."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "tasks.md").read_text()
+TASKS = dict(re.findall(r"^## Add a (\w+)\n(.*?)(?=^\(add-a-|\Z)", PAGE, re.MULTILINE | re.DOTALL))
+STEP = re.compile(
+    r"^(?:(?P<how>New file|In) `(?P<path>[^`]+)`(?:, (?P<where>after|before|in place of) `(?P<line>[^`]+)`)?:\n\n)?"
+    r"```(?P<language>\w+)\n(?P<text>.*?)^```$",
+    re.MULTILINE | re.DOTALL,
+)
+COPIED = ("api", "profiles", "rocking", "workflow")
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository with all five changes; the compiled kernels are copied too."""
+    folder = tmp_path_factory.mktemp("tasks") / "repository"
+    for name in COPIED:
+        shutil.copytree(ROOT / name, folder / name)
+    shutil.copy(ROOT / "Snakefile", folder)
+    for text in TASKS.values():
+        for step in STEP.finditer(text):
+            if step["path"]:
+                perform(folder / step["path"], step)
+    return folder
+
+
+def perform(path: Path, step: re.Match[str]) -> None:
+    """Make one change."""
+    if step["how"] == "New file":
+        assert not path.exists(), path
+        path.write_text(step["text"])
+        return
+    before, line, after = path.read_text().partition(f"\n{step['line']}\n")
+    assert line, f"{path} has no line {step['line']}"
+    line = line.removeprefix("\n")
+    parts = {"after": line + step["text"], "before": step["text"] + line, "in place of": step["text"]}
+    path.write_text(f"{before}\n{parts[step['where']]}{after}")
+
+
+def test_there_are_five_tasks() -> None:
+    assert [*TASKS] == ["motion", "body", "figure", "route", "field"]
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_task(copy: Path, task: str) -> None:
+    environment = os.environ | {"PYTHONPATH": f"{copy}{os.pathsep}{copy / 'api'}", "PYTHONWARNINGS": "error"}
+    (step,) = [step for step in STEP.finditer(TASKS[task]) if not step["path"]]
+    command = ["-c", step["text"]] if step["language"] == "python" else shlex.split(step["text"])[1:]
+    if task == "figure":
+        environment["PYTHONWARNINGS"] = "default"  # those of Snakemake are not ours
+    done = subprocess.run(
+        [sys.executable, *command], cwd=copy, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    if task == "figure":
+        assert (copy / "build/one-figure/results/figures/figure-lowest.png").stat().st_size > 10_000
