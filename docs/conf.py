@@ -12,6 +12,9 @@ sys.path[:0] = [str(ROOT / "docs" / "_extensions"), str(ROOT), str(ROOT / "api")
 os.environ.setdefault("ROCKING_RESULTS", str(ROOT / "results"))  # read by the examples
 os.environ.setdefault("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
 
+GUIDE_URL = os.environ.get("GUIDE_URL", "").rstrip("/")
+"""Address of the site whose folders are the guides of all versions; docs/README.md."""
+
 from rocking._base.version import __version__  # noqa: E402  (from this tree)
 
 project = "rocking"
@@ -72,6 +75,7 @@ warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive") 
 
 html_theme = "furo"
 html_title = f"rocking {release}"
+html_baseurl = f"{GUIDE_URL}/{'.'.join(release.split('.')[:2])}/" if GUIDE_URL else ""  # of this version, for ever
 html_static_path = ["_static"]
 html_favicon = "_static/icon.svg"
 html_css_files = ["guide.css"]

@@ -1,18 +1,21 @@
-"""What the guide shows otherwise than the files of a checkout: titles as the text of links, pictures of the figures.
+"""What the guide has that the files of a checkout have not: titles as the text of links, figures, lists for programs.
 
 A link such as `[fragility.md](fragility.md)`, which names a file for a reader of the checkout, gets the title of that
 page. A figure that the table of `figures.md` links to a section, and that the results folder holds, is drawn in that
-section.
+section. Beside the pages lie `llms.txt`, a list of them, and `openapi.json`, the description of the service.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
 
 FIGURES = "figures"
 """Name of the page with the captions."""
@@ -54,9 +57,27 @@ def omit_aliases(_app: Any, _kind: str, _name: str, member: Any, skip: bool, _op
     return True if (getattr(member, "__doc__", None) or "").startswith("Alias for field number") else skip or None
 
 
+def write_lists(app: Any, exception: Exception | None) -> None:
+    """Write `llms.txt` (title, address and first sentence of each page) and `openapi.json` beside the pages."""
+    if exception is not None or app.builder.format != "html":
+        return
+    lines = [f"# {app.config.html_title}", "", "> Whether, and how far, a free-standing block rocks or overturns.", ""]
+    for page in sorted(app.env.titles, key=lambda page: (page.count("/"), page)):
+        if not page.startswith(("gallery/", "reference/generated/")):
+            paragraphs = app.env.get_doctree(page).findall(nodes.paragraph)
+            text = " ".join(next((one.astext() for one in paragraphs), "").split())
+            first = re.split(r"(?<=[.:?]) ", text)[0]
+            lines.append(f"- [{app.env.titles[page].astext()}]({app.builder.get_target_uri(page)}): {first}")
+    folder = Path(app.outdir)
+    (folder / "llms.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    document = create_app(Settings()).openapi()
+    (folder / "openapi.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+
+
 def setup(app: Any) -> dict[str, bool]:
     """Connect these; the pictures before Sphinx collects the images of a page."""
     app.connect("doctree-read", draw_figures, priority=400)
     app.connect("doctree-resolved", use_titles)
     app.connect("autodoc-skip-member", omit_aliases)
+    app.connect("build-finished", write_lists)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
