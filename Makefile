@@ -52,8 +52,8 @@ browser: .venv/project ## fetch Chromium for the tests of the web page if there 
 serve: .venv/project | $(RESULTS)/manifest.json ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=, RESULTS=)
 	rocking serve --host $(HOST) --port $(PORT) --results $(RESULTS)
 
-docs: .venv/project | results/manifest.json ## build the guide in build/docs; its examples read results/, which is made first if missing
-	sphinx-build -W --keep-going -q -b html docs build/docs
+docs: .venv/project | results/manifest.json ## build the guide in build/docs; its examples read results/, which is made first if missing (GUIDE_URL=: address of the site)
+	GUIDE_URL=$(GUIDE_URL) sphinx-build -W --keep-going -q -b html docs build/docs
 	@echo 'open build/docs/index.html, or make serve and http://$(HOST):$(PORT)/guide/'
 
 bench: .venv/project ## run the benchmarks: run time, error, interpolation, service, ablations; about 13 minutes

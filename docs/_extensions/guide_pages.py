@@ -66,7 +66,7 @@ def write_lists(app: Any, exception: Exception | None) -> None:
         if not page.startswith(("gallery/", "reference/generated/")):
             paragraphs = app.env.get_doctree(page).findall(nodes.paragraph)
             text = " ".join(next((one.astext() for one in paragraphs), "").split())
-            first = re.split(r"(?<=[.:?]) ", text)[0]
+            first = re.split(r"(?<=[.?]) ", text)[0]
             lines.append(f"- [{app.env.titles[page].astext()}]({app.builder.get_target_uri(page)}): {first}")
     folder = Path(app.outdir)
     (folder / "llms.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")

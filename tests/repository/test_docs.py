@@ -26,7 +26,11 @@ from tests.api.servers import serving
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = [path for path in sorted([*DOCS.glob("*.md"), *DOCS.glob("howto/*.md")]) if "```python" in path.read_text()]
+PAGES = [
+    path
+    for path in sorted([*DOCS.glob("*.md"), *DOCS.glob("howto/*.md")])
+    if "```python" in path.read_text() and path.stem != "tasks"  # test_tasks.py
+]
 
 PRINTED = {
     "ask_a_server": ["meaning: rocks and comes to rest", "OVERTURNED_AFTER_IMPACT", "1.85"],
@@ -49,6 +53,9 @@ PICTURES = {
     **dict.fromkeys(PRINTED, 1), "ask_a_server": 0, "does_it_overturn": 2, "large_rotations": 2,
 }  # fmt: skip
 """Pictures that each example draws."""
+
+LOADED = re.compile(r'<(?:script|link(?! rel="canonical")|img)[^>]*?(?:src|href)="(https?://[^"]+)"')
+"""Addresses of other hosts that a page loads."""
 
 
 @pytest.fixture(autouse=True)
@@ -147,6 +154,7 @@ def test_guide_builds_without_warning(tmp_path):
     target = tmp_path / "html"
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-D", "plot_gallery=0", "docs", str(target)]
     environment = os.environ | {"PYTHONWARNINGS": "ignore", "ROCKING_RESULTS": str(tmp_path / "results")}
+    environment["GUIDE_URL"] = "https://guide.example/"
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     index = " ".join(
@@ -165,12 +173,14 @@ def test_guide_builds_without_warning(tmp_path):
     assert 'src="_images/figure-05.svg"' in section
     assert not [page.name for page in target.rglob("*.html") if re.search(r">[\w./-]+\.md</a>", page.read_text())]
     assert "--csv prints" in (target / "reference/command.html").read_text()  # no dash
-    loaded = [
-        (page.name, url)
-        for page in target.rglob("*.html")
-        for url in re.findall(r'<(?:script|link|img)[^>]*?(?:src|href)="(https?://[^"]+)"', page.read_text())
-    ]
+    loaded = [(page.name, url) for page in target.rglob("*.html") for url in re.findall(LOADED, page.read_text())]
     assert loaded == []  # nothing comes from other hosts
+    (outside,) = re.findall(r'<link rel="canonical" href="([^"]*)"', (target / "concepts.html").read_text())
+    assert outside == f"https://guide.example/{rocking.__version__.rpartition('.')[0]}/concepts.html"
+    listed = re.findall(r"^- \[.+\]\((.+)\): \S", (target / "llms.txt").read_text(), re.MULTILINE)
+    assert {"start.html", "howto/assess.html", "performance.html", "reference/http.html"} <= set(listed)
+    assert [page for page in listed if not (target / page).is_file()] == []
+    assert "/v1/response" in json.loads((target / "openapi.json").read_text())["paths"]
     assert json.loads((target / "searchindex.js").read_text()[len("Search.setIndex(") : -1])["titles"]
 
 
