@@ -108,7 +108,7 @@ wheel: $(UV) ## build dist/, check its metadata, install the wheel into an empty
 	    rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
 
 # Extras `seismic` and `slurm` are optional: they are not locked.
-LOCKED := service plot mesh dask workflow docs dev
+LOCKED := service plot mesh sheets dask workflow docs dev
 
 RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
 

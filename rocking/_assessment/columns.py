@@ -2,65 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class Column:
-    """One quantity of an object or of a result.
-
-    Attributes
-    ----------
-    name : str
-        In Python and in tables that are written.
-    unit : str
-        SI unit; "-" for a number, "" for text, "bool" for yes or no.
-    meaning : str
-        In one sentence.
-    aliases : tuple of str
-        Other names in the headers of tables, in small letters without accents.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    aliases: tuple[str, ...] = ()
-
-    @property
-    def label(self) -> str:
-        """The name with its unit, in the header of a table."""
-        return self.name if self.unit in ("", "-", "bool") else f"{self.name} [{self.unit}]"
-
+from rocking._dimensional.table_reader import HEIGHT, NAME, RESTITUTION, WIDTH, Column
 
 INPUTS = (
-    Column(
-        "name",
-        "",
-        "name of the object",
-        (
-            *("object", "item", "title", "id", "inventory number", "inventory no", "inv no", "inv nr", "no", "nr"),
-            *(
-                "bezeichnung",
-                "objekt",
-                "inventarnummer",
-                "nome",
-                "oggetto",
-                "inventario",
-                "nom",
-                "objet",
-                "designation",
-            ),
-            *("nombre", "objeto", "onoma", "antikeimeno"),
-        ),
-    ),
-    Column("width", "m", "width of the base", ("w", "breite", "larghezza", "largeur", "ancho", "anchura", "platos")),
+    NAME,
+    WIDTH,
     Column(
         "depth", "m", "depth of the base", ("d", "tiefe", "profondita", "profondeur", "fondo", "profundidad", "vathos")
     ),
     Column("diameter", "m", "diameter of a round base", ("dia", "durchmesser", "diametro", "diametre", "diametros")),
-    Column(
-        "height", "m", "height of the object", ("h", "hohe", "hoehe", "altezza", "hauteur", "alto", "altura", "ypsos")
-    ),
+    HEIGHT,
     Column(
         "mass_height",
         "m",
@@ -102,12 +53,7 @@ INPUTS = (
             "trivi",
         ),
     ),
-    Column(
-        "restitution",
-        "-",
-        "coefficient of restitution; by default from the angular momentum",
-        ("coefficient of restitution", "eta", "stosszahl", "restituzione", "restitucion"),
-    ),
+    RESTITUTION,
     Column("tolerance", "m", "how far the dimensions are uncertain", ("dimension tolerance", "toleranz", "tolleranza")),
     Column("pedestal", "", "what the object stands on", ("sockel", "piedistallo", "socle", "pedestal type", "vathro")),
     Column(

@@ -11,8 +11,8 @@ from rocking._assessment.columns import INPUTS, OUTPUTS, VERDICTS
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
 from rocking._assessment.site import Site
-from rocking._assessment.tables import BadRow
 from rocking._base.version import __version__
+from rocking._dimensional.table_reader import BadRow
 
 TEMPLATE = "report.html"
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from rocking._assessment.columns import OUTPUTS, VERDICTS
 from rocking._assessment.objects import Object
-from rocking._assessment.tables import BadRow
 from rocking._base.equality import EqualByValue
 from rocking._datasets.csv_text import csv_text
+from rocking._dimensional.table_reader import BadRow
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from rocking._assessment.report import Project
     from rocking._assessment.result import Assessment
     from rocking._assessment.site import Site
-    from rocking._assessment.tables import BadRow
     from rocking._cli.printing import Form
+    from rocking._dimensional.table_reader import BadRow
     from rocking._excitation.records.record import Record
 
 SHOWN = (

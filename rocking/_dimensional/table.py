@@ -1,47 +1,50 @@
-"""Many blocks in SI units: a CSV table with units in its header in, columns of responses out."""
+"""Many blocks in SI units: a table with units in its header or its cells in, columns of responses out."""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from os import PathLike
 from typing import Any
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, plain_number, positive
-from rocking._base.units import UNITS as FACTORS
-from rocking._base.units import unit_name
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.table_reader import (
+    HEIGHT,
+    NAME,
+    RESTITUTION,
+    WIDTH,
+    Column,
+    Schema,
+    Table,
+    read_csv,
+    read_file,
+)
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import solve_with_bound
 
-UNITS = {
-    "width": "m",
-    "height": "m",
-    "peak_acceleration": "m/s2",
-    "period": "s",
-}
-"""Columns with units, and the SI units of their values."""
+COLUMNS = (
+    NAME,
+    WIDTH,
+    HEIGHT,
+    Column(
+        "peak_acceleration",
+        "m/s2",
+        "peak acceleration of the pulse",
+        ("pga", "a g", "peak ground acceleration", "acceleration", "beschleunigung", "accelerazione", "aceleracion"),
+    ),
+    Column("period", "s", "period of the pulse", ("t p", "tp", "t", "periode", "periodo")),
+    RESTITUTION,
+)
+"""Columns of a table of blocks; others are passed through."""
 
-OTHER_COLUMNS = ("name", "restitution")
-"""Columns without units: a label, and a number or momentum."""
-
-_EXAMPLES = {"m": ("m", "cm"), "m/s2": ("g", "m/s2", "gal"), "s": ("s", "ms")}
-
-_HEADER = re.compile(r"(\w+)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))?")
-
-MAX_NAME = 100
-"""Longest name of a column with its unit [characters]."""
-
-_ALLOWED = "columns " + ", ".join(f"{name} [unit]" for name in UNITS) + f", {', '.join(OTHER_COLUMNS)}"
+_NEEDED = ("width", "height", "peak_acceleration", "period")
 
 
 @dataclass(frozen=True)
@@ -51,125 +54,90 @@ class BlockTable:
     Attributes
     ----------
     problems : list of BlockProblem
-        One for each row.
+        One for each row that could be read.
     names : list of str
         Labels, empty without a column `name`.
+    read : Table
+        The table that they were read from, with the rows that could not be read.
     """
 
     problems: list[BlockProblem]
     names: list[str]
+    read: Table[BlockProblem] = field(default_factory=lambda: Table([]))
+
+    def check(self) -> None:
+        """Refuse a table with a row that could not be read.
+
+        Raises
+        ------
+        InvalidArgumentError
+            With the row and the column.
+        SeveralArgumentsError
+            If there are several, with the first of each row.
+        """
+        errors = [
+            InvalidArgumentError(f"blocks, row {row}, {one.parameter}".removesuffix(", row"), one.value, one.allowed)
+            for row, one in self.read.errors
+        ]
+        if errors:
+            raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
 
 
 def read_table(text: str, pulse: str | AbstractPulse, restitution: float | str = "momentum") -> BlockTable:
-    """Parse a table of blocks.
+    """Read a table of blocks from text, as `read_blocks` does from a file."""
+    return _blocks(read_csv(text, _schema(pulse, {"restitution": restitution})))
+
+
+def read_blocks(
+    source: str | PathLike[str],
+    pulse: str | AbstractPulse,
+    restitution: float | str = "momentum",
+    *,
+    peak_acceleration: float | None = None,
+    period: float | None = None,
+) -> BlockTable:
+    """Read a table of blocks from a file, CSV or a sheet; `-` is standard input.
 
     Parameters
     ----------
-    text : str
-        CSV with a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`. Columns
-        may be separated by semicolons; numbers have decimal points. Names are kept with their blanks.
+    source : str or path
+        With a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`.
     pulse : str or AbstractPulse
         The pulse.
     restitution : float or "momentum"
         For rows that state none.
+    peak_acceleration, period : float, optional
+        a_g [m/s2] and T_p [s] for rows that state none; the table needs these columns without them.
 
     Raises
     ------
     InvalidArgumentError
-        If a column is missing, unknown or without a unit, a value is not allowed, or it is no CSV; the line is named.
-    SeveralArgumentsError
-        If the values of several lines are not allowed, with the first of each line.
+        If the file cannot be read, a column is missing or without a unit, or a number is ambiguous.
+    ImportError
+        If the package for sheets is not installed, the extra `sheets`.
     """
-    rows = _rows(text.removeprefix("\ufeff"))
-    names, units = _read_header(next(rows, (1, []))[1])
-    labels: list[str] = []
-    problems: list[BlockProblem] = []
-    errors: list[InvalidArgumentError] = []
-    for line, row in rows:
-        if not row:
-            continue
-        if len(row) != len(names):
-            wrong = f"{len(row)} values"
-            errors.append(InvalidArgumentError(f"blocks, line {line}", wrong, f"{len(names)}, as in the header"))
-            continue
-        given = dict(zip(names, (entry.strip() for entry in row), strict=True))
-        try:
-            problems.append(_problem(given, units, pulse, restitution))
-        except InvalidArgumentError as error:
-            errors.append(InvalidArgumentError(f"blocks, line {line}, {error.parameter}", error.value, error.allowed))
-        if "name" in given:
-            labels.append(row[names.index("name")])
-    if errors:
-        raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
-    return BlockTable(problems, labels)
+    given = {"restitution": restitution, "peak_acceleration": peak_acceleration, "period": period}
+    return _blocks(read_file(source, _schema(pulse, {name: one for name, one in given.items() if one is not None})))
 
 
-def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The rows of CSV with commas, or semicolons if its header has no comma, and the line where each begins."""
-    header = next(iter(io.StringIO(text, newline="")), "")
-    delimiter = ";" if ";" in header and "," not in header else ","
-    rows = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-    while True:
-        line = rows.line_num + 1
-        try:
-            row = next(rows)
-        except StopIteration:
-            return
-        except csv.Error as error:
-            allowed = f"values of at most {csv.field_size_limit()} characters; in quotes, with each inner quote doubled"
-            raise InvalidArgumentError(f"blocks, line {line}", str(error), allowed) from None
-        yield line, row
+def _schema(pulse: str | AbstractPulse, given: dict[str, float | str]) -> Schema[BlockProblem]:
+    """A table of blocks under a pulse; `given` stands for cells that are empty."""
+
+    def block(_: int, values: dict[str, Any]) -> BlockProblem:
+        one = given | values
+        for name in _NEEDED:
+            if name not in one:
+                raise InvalidArgumentError(name, None, "a value in each row")
+        return BlockProblem(
+            Block(one["width"], one["height"]), pulse, one["peak_acceleration"], one["period"], one["restitution"]
+        )
+
+    return Schema("blocks", COLUMNS, tuple((name,) for name in _NEEDED if name not in given), block)
 
 
-def _read_header(header: Sequence[str]) -> tuple[list[str], dict[str, str]]:
-    """Names of the columns, and their units."""
-    names: list[str] = []
-    units: dict[str, str] = {}
-    for text in header:
-        if len(text) > MAX_NAME:
-            raise InvalidArgumentError(
-                "blocks, header", f"{text[:MAX_NAME]}...", f"{_ALLOWED}, of at most {MAX_NAME} characters"
-            )
-        found = _HEADER.fullmatch(text.strip())
-        name, unit = (found[1], found[2] or found[3]) if found else (text, None)
-        if name in names or (name not in UNITS and name not in OTHER_COLUMNS):
-            raise InvalidArgumentError("blocks, header", text, f"{_ALLOWED}, each at most once")
-        if name in UNITS:
-            examples = _EXAMPLES[UNITS[name]]
-            if unit is None:
-                raise InvalidArgumentError(
-                    "blocks, header", text, f"a column with its unit (missing unit: write {name} [{examples[0]}])"
-                )
-            known = unit_name(unit, UNITS[name])
-            if known is None:
-                raise InvalidArgumentError("blocks, header", text, f"a unit such as {', '.join(examples)}")
-            units[name] = known
-        names.append(name)
-    for name in UNITS:
-        if names.count(name) != 1:
-            raise InvalidArgumentError("blocks, header", ",".join(header), f"one column {name}")
-    return names, units
-
-
-def _problem(
-    given: Mapping[str, str], units: Mapping[str, str], pulse: str | AbstractPulse, restitution: float | str
-) -> BlockProblem:
-    values = {name: _positive(name, given[name], unit) for name, unit in units.items()}
-    eta = given.get("restitution") or restitution
-    if isinstance(eta, str) and eta != "momentum":
-        eta = plain_number("restitution", eta)
-    return BlockProblem(
-        Block(values["width"], values["height"]), pulse, values["peak_acceleration"], values["period"], eta
-    )
-
-
-def _positive(name: str, text: str, unit: str) -> float:
-    """A value in SI units; an error repeats it in the unit of its column."""
-    try:
-        value = float(text)
-    except ValueError:
-        raise InvalidArgumentError(name, text, "a number with a decimal point, such as 0.4") from None
-    return positive(name, value, unit) * FACTORS[UNITS[name]][unit]
+def _blocks(read: Table[BlockProblem]) -> BlockTable:
+    names = next((read.cells[label] for label, name in read.columns.items() if name == "name"), [])
+    return BlockTable(read.items, names, read)
 
 
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:

@@ -329,15 +329,15 @@ def test_all_wrong_numbers_of_a_json_body_are_named_with_units(client):
     ]
 
 
-def test_every_line_of_a_table_with_an_error_is_named(client):
+def test_every_row_of_a_table_with_an_error_is_named(client):
     header, row = TABLE.splitlines()[:2]
     body = "\n".join([header, row, row.replace("80", "tall"), row.replace("0.2,", "-20,")])
     problem = assert_problem(
         client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": "text/csv"}), 422
     )
     assert [(error["name"], error["value"]) for error in problem["errors"]] == [
-        ("blocks, line 3, height", "tall"),
-        ("blocks, line 4, width", -20.0),
+        ("blocks, row 3, height", "tall"),
+        ("blocks, row 4, width", "-20"),
     ]
 
 
@@ -346,7 +346,6 @@ def test_every_line_of_a_table_with_an_error_is_named(client):
     [
         (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
         (TABLE.replace("vase", "v" * 131_073), 2, "field larger than field limit"),
-        (TABLE.replace("vase", "va\rse"), 2, "1 values"),
         (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
         (TABLE.replace("name", '"name'), 1, "unexpected end of data"),
     ],
@@ -385,8 +384,9 @@ def test_types_of_a_body_and_of_the_response_are_those_that_are_offered(client):
     [
         ('{"blocks": []}', "application/json", "blocks"),
         ('{"blocks": [{"width": 2}]}', "application/json", "blocks[0].height"),
-        (TABLE.replace("[cm]", ""), "text/csv", "blocks, header"),
-        (TABLE.replace("80", "tall"), "text/csv", "blocks, line 2, height"),
+        (TABLE.replace("[cm]", ""), "text/csv", "blocks, row 2, height"),
+        (TABLE.replace("[cm]", "[kg]"), "text/csv", "blocks, header"),
+        (TABLE.replace("80", "tall"), "text/csv", "blocks, row 2, height"),
         (TABLE.replace("0.2,", "1e9,"), "text/csv", "width"),
         ("CDF", "application/x-netcdf", "Content-Type"),
     ],

@@ -19,7 +19,7 @@ from rocking_api.settings import Settings
 import rocking
 from rocking._assessment.columns import INPUTS, OUTPUTS
 from rocking._cli.app import app
-from rocking._dimensional.table import OTHER_COLUMNS, UNITS
+from rocking._dimensional.table import COLUMNS
 from rocking._lookup.cube import Cube
 
 ROOT = Path(__file__).parents[2]
@@ -89,7 +89,7 @@ def http_parameters() -> Iterator[str]:
 
 def columns() -> Iterator[str]:
     """Columns of the tables of blocks and of objects."""
-    yield from (*UNITS, *OTHER_COLUMNS, *(one.name for one in INPUTS))
+    yield from (one.name for one in (*COLUMNS, *INPUTS))
 
 
 INTERFACES = {"Python": python_arguments, "command line": options, "HTTP": http_parameters, "column": columns}

@@ -86,7 +86,7 @@ async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request
     """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
 
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in
-    brackets, and optionally name and restitution.
+    brackets or in its cells, and optionally name and restitution; others are not used.
     """
     given = body_form(request, _FORMS)
     form = negotiated_form(request, params.format, _FORMS, default=given)
@@ -109,6 +109,7 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksPa
         text = body.decode("utf-8-sig", "replace")
         _check_count(text.count("\n"))
         table = read_table(text, params.pulse, params.restitution)
+        table.check()
     else:
         _check_count(len(rows.blocks))
         problems = [
