@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import atexit
 import gc
-from typing import Annotated
+import sys
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from rocking._cli.assess import assess
 from rocking._cli.floor import floor
@@ -28,10 +30,33 @@ from rocking._cli.options import (
 from rocking._cli.plot import plot
 from rocking._cli.record import record
 
+UsageError: Any = typer.BadParameter.__mro__[1]
+"""What typer raises for arguments that it does not understand; newer versions bring their own copy of click."""
+
+
+class Commands(TyperGroup):
+    """The commands; what is wrong with an argument is printed in a line of its own."""
+
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run the command of the arguments."""
+        if not extra.get("standalone_mode", True):
+            return super().main(*args, **extra)
+        extra["standalone_mode"] = False
+        try:
+            sys.exit(super().main(*args, **extra) or 0)
+        except UsageError as error:
+            command = error.ctx.command_path if error.ctx else "rocking"
+            if error.format_message():  # no command: the help was printed
+                typer.echo(f"{command}: {error.format_message()}", err=True)
+            sys.exit(error.exit_code)
+
+
 app = typer.Typer(
+    cls=Commands,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
+    epilog="Exit codes: 0 done; 1 a package is missing, or the output was closed; 2 an argument, a file or a row of a "
+    "table is not allowed; 130 interrupted.",
 )
 
 
@@ -61,25 +86,30 @@ def main(
 def response(
     block: ProblemOptions,
     output: OutputOptions,
-    blocks: Annotated[
+    file: Annotated[
         str | None,
-        typer.Option(
-            help="CSV file of many blocks, - for standard input; the header has units: 'width (m),height (cm),"
-            "peak_acceleration (g),period (s)', optionally name and restitution. Prints CSV.",
-            rich_help_panel="With units",
+        typer.Argument(
+            help="Table of many blocks: CSV, XLSX or ODS, - for standard input; columns width, height, "
+            "peak_acceleration, period and optionally name and restitution, with units in the header or in the cells."
         ),
     ] = None,
 ) -> None:
-    """Outcome and peak rotation of one block or of many, by the solver."""
+    """Outcome and peak rotation of one block or of the blocks of a table, by the solver.
+
+    Rows of a table that cannot be read are named at the end, and the exit code is 2; the others are solved.
+    """
     from rocking._cli import arguments, printing
 
-    with arguments.option_errors():
-        if blocks is None:
-            form = printing.output_format(output)
-            printing.response(arguments.read_params(block), form)
-        else:
-            form = printing.output_format(output, default="csv")
-            printing.responses(arguments.read_blocks(blocks, block), form)
+    with arguments.option_errors({"blocks": "FILE"}):
+        if file is None:
+            printing.response(arguments.read_params(block), printing.output_format(output, block))
+            return
+        table = arguments.read_blocks(file, block)
+        printing.responses(table, printing.output_format(output, block, table.read.units))
+    bad = [f"{file}, {printing.printable(str(one))}" for one in table.read.bad_rows]
+    if bad:
+        typer.echo("\n".join(bad), err=True)
+        raise typer.Exit(2)
 
 
 @app.command()
@@ -88,7 +118,8 @@ def history(
     block: ProblemOptions,
     output: OutputOptions,
     duration: Annotated[
-        str | None, typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.")
+        str | None,
+        typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
     ] = None,
     samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.")] = 400,
     contact: Annotated[
@@ -101,7 +132,7 @@ def history(
     with arguments.option_errors():
         params = arguments.read_params(block)
         length = arguments.read_duration(duration, params)
-        printing.history(params, length, samples, contact, printing.output_format(output))
+        printing.history(params, length, samples, contact, printing.output_format(output, block))
 
 
 @app.command()
@@ -118,7 +149,7 @@ def spectrum(
 
     with arguments.option_errors():
         params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max)
-        printing.spectrum(params, window, points, printing.output_format(output))
+        printing.spectrum(params, window, points, printing.output_format(output, block))
 
 
 @app.command()
@@ -134,7 +165,41 @@ def boundary(
 
     with arguments.option_errors():
         params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
-        printing.boundary(params, window, printing.output_format(output))
+        printing.boundary(params, window, printing.output_format(output, block))
+
+
+@app.command()
+@with_options
+def pulses(output: OutputOptions) -> None:
+    """Names of pulses, with their durations in periods."""
+    import math
+
+    from rocking._cli import printing
+    from rocking._excitation import pulses as module
+
+    made = [module.as_pulse(name) for name in module.PULSE_NAMES]
+    columns: dict[str, list[Any]] = {
+        "pulse": [one.name for one in made],
+        "periods": [(one.end - one.start) / (2.0 * math.pi) for one in made],
+        "description": [(getattr(module, name).__doc__ or "").partition("\n")[0] for name in module.PULSE_NAMES],
+    }
+    printing.print_columns(columns, printing.output_format(output))
+
+
+@app.command()
+@with_options
+def units(output: OutputOptions) -> None:
+    """Names of units, for options and for tables; the case of letters, blanks and signs of a power do not matter."""
+    from rocking._base.units import EXAMPLES, UNITS
+    from rocking._cli import printing
+
+    known = {unit: list(names) for unit, names in UNITS.items()}
+    columns: dict[str, list[Any]] = {
+        "si_unit": list(known),
+        "units": list(known.values()),
+        "examples": [EXAMPLES.get(unit, "85 %") for unit in known],
+    }
+    printing.print_columns(columns, printing.output_format(output))
 
 
 app.command()(record)

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
+from rocking._base.units import split_quantity, unit_name
 from rocking._cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
 from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
 from rocking._model.checks import check_window
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from rocking._dimensional.problem import BlockProblem
     from rocking._dimensional.table import BlockTable
 
-_SI_UNITS = {
+SI_UNITS = {
     "width": "m",
     "height": "m",
     "peak_acceleration": "m/s2",
@@ -187,25 +186,39 @@ def read_block(options: SizeOptions) -> Block:
 
 
 def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
-    """The blocks of a CSV file; `-` is standard input.
+    """The blocks of a table in a file; `-` is standard input.
 
     Raises
     ------
     InvalidArgumentError
         If the file cannot be read, or blocks are also given by options.
     """
-    from rocking._dimensional.table import read_table
+    from rocking._dimensional.table import read_blocks as read_table
 
-    for name in (*_SIZES, "peak_acceleration", "period", "slenderness", "frequency_ratio", "alpha"):
+    for name in (*_SIZES, "slenderness", "frequency_ratio", "alpha"):
         if getattr(options, name) is not None:
-            raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the file --blocks")
-    try:
-        data = sys.stdin.buffer.read() if path == "-" else Path(path).read_bytes()  # line breaks in names are kept
-        text = data.decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidArgumentError("blocks", path, f"a CSV file that can be read: {error}") from None
+            raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the table")
     given = options.restitution or "momentum"
-    return read_table(text, read_pulse(options.pulse), given if given == "momentum" else _eta(given))
+    strength = {
+        name: _positive(options, name) for name in ("peak_acceleration", "period") if getattr(options, name) is not None
+    }
+    try:
+        return read_table(path, read_pulse(options.pulse), given if given == "momentum" else _eta(given), **strength)
+    except ImportError as error:
+        typer.echo(f"rocking response: {error}", err=True)
+        raise typer.Exit(1) from error
+
+
+def given_units(options: object, columns: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The unit in which the user gave lengths, accelerations and times, by the SI unit; of a table its columns'."""
+    found: dict[str, str] = {}
+    for name, unit in SI_UNITS.items():
+        text = getattr(options, name, None)
+        parts = split_quantity(text) if text else None
+        known = (columns or {}).get(name) or (parts and unit_name(parts[1], unit))
+        if known:
+            found.setdefault(unit, known)
+    return found
 
 
 def read_duration(text: str | None, params: Params) -> float | None:
@@ -227,7 +240,7 @@ def read_duration(text: str | None, params: Params) -> float | None:
 
 
 def _has_units(options: ShapeOptions) -> bool:
-    return any(getattr(options, name, None) for name in _SI_UNITS)
+    return any(getattr(options, name, None) for name in SI_UNITS)
 
 
 def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
@@ -273,7 +286,7 @@ def _given(options: SizeOptions, name: str) -> str:
 
 
 def _positive(options: SizeOptions, name: str) -> float:
-    return positive(name, _given(options, name), _SI_UNITS[name])
+    return positive(name, _given(options, name), SI_UNITS[name])
 
 
 def _eta(text: str | None) -> float:

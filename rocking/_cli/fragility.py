@@ -36,8 +36,8 @@ TableOption = Annotated[
     Literal["levels", "curves", "sensitivity"],
     typer.Option(
         "--table",
-        help="What --csv prints: counts at each level; fitted curves; friction demand, and the effect of restitution "
-        "and sampling, if the configuration asks for them.",
+        help="What --format csv holds: counts at each level; fitted curves; friction demand, and the effect of "
+        "restitution and sampling, if the configuration asks for them.",
     ),
 ]
 
@@ -81,10 +81,10 @@ def fragility(
         if table == "sensitivity" and suite.sensitivity is None:
             raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
         if table != "levels" and form.kind != "csv":
-            raise InvalidArgumentError("table", table, "with --csv; the other formats hold all tables")
-        if file is not None and (form.kind != "text" or not file.lower().endswith(ENDINGS)):
+            raise InvalidArgumentError("table", table, "with --format csv; the other formats hold all tables")
+        if file is not None and (form.kind != "table" or not file.lower().endswith(ENDINGS)):
             raise InvalidArgumentError(
-                "output", file, f"a name that ends in {', '.join(ENDINGS)}, without --json or --csv"
+                "output", file, f"a name that ends in {', '.join(ENDINGS)}, without --format csv or json"
             )
         curve = suite.hazard if hazard is None else read_hazard(hazard)
     found = suite_fragility(suite)
@@ -109,7 +109,7 @@ def fragility(
     if form.kind == "json":
         printing.print_json({**about, "confidence": suite.confidence, **rows})
         return
-    printing.print_text({**about, "records": len(about["records"]), "unit": usual})
+    printing.print_text({**about, "records": len(about["records"]), "unit": usual}, form)
     printing.print_table(_with_intervals(rows["curves"]), units)
     typer.echo()
     printing.print_table(rows["levels"], units)

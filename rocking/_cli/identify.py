@@ -44,7 +44,7 @@ def identify(
         printing.print_json({**columns, **about})
         return
     printing.print_table(columns)
-    printing.print_text(about)
+    printing.print_text(about, form)
 
 
 def _columns() -> list[str]:

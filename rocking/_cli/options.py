@@ -11,7 +11,7 @@ import inspect
 import re
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, fields
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
@@ -21,21 +21,28 @@ _GROUPS = "In groups"
 _UNITS = "With units"
 
 
-def _in_groups(text: str) -> Any:
+def _in_groups(text: str, unit: str = "-") -> Any:
     # a word in brackets would be taken for markup
-    return typer.Option(help=re.sub(r"\[(?=[a-z])", r"\\[", text), rich_help_panel=_GROUPS)
+    return typer.Option(help=re.sub(r"\[(?=[a-z])", r"\\[", text), rich_help_panel=_GROUPS, metavar=f"[{unit}]")
 
 
-def _with_units(text: str) -> Any:
-    return typer.Option(help=text, rich_help_panel=_UNITS)
+def _pulses(incomplete: str) -> list[str]:
+    """Names of pulses, for the completion of the shell."""
+    from rocking._excitation.pulses import pulse_names
+
+    return [name for name in pulse_names() if name.startswith(incomplete)]
+
+
+def _with_units(text: str, unit: str) -> Any:
+    return typer.Option(help=text, rich_help_panel=_UNITS, metavar=f"[{unit}]")
 
 
 @dataclass(frozen=True, kw_only=True)
 class SizeOptions:
     """The size of a block."""
 
-    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.")] = None
-    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.")] = None
+    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.", "m")] = None
+    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.", "m")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,17 +53,20 @@ class ShapeOptions(SizeOptions):
         str,
         typer.Option(
             help="Pulse, such as sine, or a file of samples: columns of numbers (accelerations, or times and "
-            "accelerations) or JSON; a leading minus mirrors it."
+            "accelerations) or JSON; a leading minus mirrors it.",
+            metavar="[NAME|FILE]",
+            autocompletion=_pulses,
         ),
     ]
     restitution: Annotated[
         str | None,
         typer.Option(
             help=f"{RESTITUTION.help}, {RESTITUTION.interval}; momentum for a block with units (its default): (2.4), 0 "
-            "where negative."
+            "where negative.",
+            metavar="[-]",
         ),
     ] = None
-    alpha: Annotated[str | None, _in_groups(f"{ALPHA.help}, such as '20 deg'.")] = None
+    alpha: Annotated[str | None, _in_groups(f"{ALPHA.help}, such as '20 deg'.", "rad")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,10 +75,10 @@ class ProblemOptions(ShapeOptions):
 
     slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
     frequency_ratio: Annotated[float | None, _in_groups(f"{FREQUENCY_RATIO.help}.")] = None
-    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
+    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.", "m/s2")] = None
     period: Annotated[
         str | None,
-        _with_units("T_p = 2 pi/omega_g, such as 0.5s; a half sine or rectangular pulse lasts half of it."),
+        _with_units("T_p = 2 pi/omega_g, such as 0.5s; a half sine or rectangular pulse lasts half of it.", "s"),
     ] = None
 
 
@@ -76,8 +86,8 @@ class ProblemOptions(ShapeOptions):
 class WindowOptions(ShapeOptions):
     """A block under pulses of all periods of a window."""
 
-    period_min: Annotated[str | None, _with_units("Shortest T_p, such as 0.1s.")] = None
-    period_max: Annotated[str | None, _with_units("Longest T_p, such as 2s.")] = None
+    period_min: Annotated[str | None, _with_units("Shortest T_p, such as 0.1s.", "s")] = None
+    period_max: Annotated[str | None, _with_units("Longest T_p, such as 2s.", "s")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +95,7 @@ class SpectrumOptions(WindowOptions):
     """The same with an amplitude."""
 
     slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
-    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.")] = None
+    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.", "m/s2")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,16 +103,24 @@ class RecordOptions(SizeOptions):
     """A block, and what the file of a record does not state."""
 
     restitution: Annotated[
-        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).")
+        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).", metavar="[-]")
     ] = "momentum"
-    scale: Annotated[float, typer.Option(help="Factor of the record.")] = 1.0
+    scale: Annotated[float, typer.Option(help="Factor of the record.", metavar="[-]")] = 1.0
     unit: Annotated[
-        str | None, typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.")
+        str | None,
+        typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", metavar="[UNIT]"),
     ] = None
-    time_step: Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")] = None
-    component: Annotated[str | None, typer.Option(help="Column or trace of a file with several.")] = None
+    time_step: Annotated[
+        str | None, typer.Option(help="Time step if the file states none, such as 0.01s.", metavar="[s]")
+    ] = None
+    component: Annotated[str | None, typer.Option(help="Column or trace of a file with several.", metavar="[NAME]")] = (
+        None
+    )
     vertical: Annotated[
-        str | None, typer.Option(help="File of the vertical component, upwards, or its column or trace in the file.")
+        str | None,
+        typer.Option(
+            help="File of the vertical component, upwards, or its column or trace in the file.", metavar="[FILE|NAME]"
+        ),
     ] = None
     baseline_order: Annotated[
         int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
@@ -111,11 +129,13 @@ class RecordOptions(SizeOptions):
 
 @dataclass(frozen=True)
 class OutputOptions:
-    """Format of the output; text without."""
+    """Format of the output."""
 
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False
-    csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False
-    units: Annotated[bool, typer.Option("--units", help="Name units in the header of CSV.")] = False
+    format: Annotated[
+        Literal["table", "csv", "json"],
+        typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
+    ] = "table"
+    all: Annotated[bool, typer.Option("--all", help="All values in the table; CSV and JSON always have them.")] = False
 
 
 @dataclass(frozen=True)
@@ -123,12 +143,15 @@ class PictureOptions:
     """Where a picture goes."""
 
     output: Annotated[
-        str | None, typer.Option("--output", "-o", help="File to write, .png or .svg; by default a window opens.")
+        str | None,
+        typer.Option(
+            "--output", "-o", help="File to write, .png or .svg; by default a window opens.", metavar="[FILE]"
+        ),
     ] = None
 
 
-FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.")]
-FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.")]
+FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.", metavar="[-]")]
+FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.", metavar="[-]")]
 
 
 def with_options(command: Callable[..., None]) -> Callable[..., None]:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import typer
 
-from rocking._base.errors import InvalidArgumentError, in_range
-from rocking._cli.arguments import Params
+from rocking._base.errors import in_range
+from rocking._base.units import UNITS
+from rocking._cli.arguments import Params, given_units
 from rocking._cli.options import OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
@@ -30,26 +31,40 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Form:
-    """Format of the output; `units`: the header of CSV names units."""
+    """Format of the output; `units`: those of tables and CSV, by the SI unit; `all`: a table has all values."""
 
-    kind: Literal["text", "json", "csv"]
-    units: bool = False
+    kind: Literal["table", "csv", "json"]
+    all: bool
+    units: Mapping[str, str]
+
+    def labels(self) -> dict[str, str]:
+        """The units of all values and columns."""
+        return {name: self.units.get(unit, unit) for name, unit in _UNITS.items()}
+
+    def shown(self, result: Mapping[str, Any]) -> dict[str, Any]:
+        """Values or columns in SI units in those of the user."""
+        return {
+            name: value
+            if _UNITS.get(name) not in self.units
+            else _divided(value, UNITS[_UNITS[name]][self.units[_UNITS[name]]])
+            for name, value in result.items()
+        }
 
 
-def output_format(options: OutputOptions, default: Literal["text", "csv"] = "text") -> Form:
-    """The output format of the options; `default` without any.
+def _divided(value: Any, factor: float) -> Any:
+    if isinstance(value, dict):
+        return {name: _divided(one, factor) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_divided(one, factor) for one in value]
+    return value / factor if isinstance(value, float) else value
 
-    Raises
-    ------
-    InvalidArgumentError
-        If options exclude each other.
+
+def output_format(options: OutputOptions, given: object = None, columns: Mapping[str, str] | None = None) -> Form:
+    """The output format of the options.
+
+    `given` are options with quantities and `columns` the units of a table, whose units tables and CSV have.
     """
-    if options.json and options.csv:
-        raise InvalidArgumentError("csv", True, "one of --json and --csv")
-    kind: Literal["text", "json", "csv"] = "json" if options.json else "csv" if options.csv else default
-    if options.units and kind != "csv":
-        raise InvalidArgumentError("units", True, "with --csv")
-    return Form(kind, options.units)
+    return Form(options.format, options.all, given_units(given, columns))
 
 
 def response(params: Params, form: Form) -> None:
@@ -67,12 +82,14 @@ def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -
     if form.kind == "json":
         print_json(result)
     elif form.kind == "csv":
-        print_csv({name: [_csv_cell(value)] for name, value in result.items()}, form)
+        print_csv({name: [value] for name, value in result.items()}, form)
     else:
         for line in (*sentences, *(f"warning: {text}" for text in result.get("warnings", ()))):
             typer.echo(line)
-        names = dict.fromkeys((*(name for name in _FIRST_LINES if name in result), *result))
-        print_text({name: _words(name, result) for name in names if name not in _NO_LINES})
+        first = [name for name in (_FIRST_LINES if "peak_rotation_deg" in result else _IN_GROUPS) if name in result]
+        shown = form.shown(result)
+        names = dict.fromkeys((*first, *result) if form.all else first)
+        print_text({name: _words(name, shown) for name in names if name not in _NO_LINES}, form)
 
 
 def _response(params: Params) -> tuple[dict[str, Any], str]:
@@ -97,15 +114,26 @@ def _response(params: Params) -> tuple[dict[str, Any], str]:
 
 
 def responses(table: BlockTable, form: Form) -> None:
-    """Print the responses of many blocks: CSV, or JSON with one list for each column."""
+    """Print the responses of many blocks: the columns of the table as they stand, and those of the responses."""
     from rocking._dimensional.table import respond_table
 
     with progress(f"solving {len(table.problems)} blocks"):
-        columns = respond_table(table)
+        found = respond_table(table)
     if form.kind == "json":
-        print_json(columns)
-    else:
-        print_csv(columns, form)
+        print_json(found | {"table": table.read.cells, "bad_rows": [vars(one) for one in table.read.bad_rows]})
+        return
+    found = {name: column for name, column in found.items() if name not in table.read.columns.values()}
+    results = {name: found[name] for name in dict.fromkeys((*_OF_ROWS, *found))}
+    taken = {_label(name, form.labels()) for name in results}
+    given = {f"{label} (given)" if label in taken else label: column for label, column in table.read.cells.items()}
+    if form.kind == "table" and not form.all:
+        given = {label: table.read.cells[label] for label, name in table.read.columns.items() if name == "name"}
+        results = {name: results[name] for name in _OF_ROWS}
+    print_columns(given | results, form)
+
+
+_OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
+"""Responses of many blocks that a table holds, or begins with."""
 
 
 def _contact(found: ContactExtremes) -> dict[str, Any]:
@@ -147,9 +175,14 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
 
 _FIRST_LINES = (
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
-    *("nearest_acceleration", "nearest_period", "period", "pulse_duration"),
+    *("nearest_acceleration", "nearest_period", "period", "pulse_duration", "overturning_scale"),
+    *("peak_rotation", "impacts", "restitution", "friction_demand"),
+    *("pulse", "pulse_peak_acceleration", "pulse_cycles", "pulse_phase", "pulse_explained", "pulse_scale_ratio"),
 )
-"""What the values of the text output of a block with units begin with."""
+"""What the table of a block with units holds, or begins with."""
+
+_IN_GROUPS = ("peak_rotation", "impacts", "exceeded_alpha", "error_bound", "friction_demand")
+"""The same of a block in groups."""
 
 _NO_LINES = ("margin", "warnings", "overturns_above")
 """What the text output says before the values, or in one line with another value."""
@@ -251,8 +284,8 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     elif form.kind == "json":
         print_json(about | columns)
     else:
-        print_text(about)
-        print_table(shown)
+        print_text(form.shown(about), form)
+        print_table(form.shown(columns if form.all else shown), form.labels())
 
 
 def spectrum(params: Params, window: tuple[float, float], points: int, form: Form) -> None:
@@ -284,8 +317,8 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
     elif form.kind == "csv":
         print_csv(columns, form)
     else:
-        print_text(about)
-        print_table(shown)
+        print_text(form.shown(about), form)
+        print_table(form.shown(columns if form.all else shown), form.labels())
 
 
 def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
@@ -310,13 +343,10 @@ def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
 
         curves = add_si_axes(curves, params.problem.block)
         columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
-    if form.kind == "json":
-        about = {"pulse": params.pulse.name, "restitution": params.restitution, "alpha": params.alpha}
-        print_json(about | columns)
-    elif form.kind == "csv":
-        print_csv(columns, form)
-    else:
-        print_table(columns)
+        if form.kind == "table" and not form.all:
+            columns = {name: columns[name] for name in ("curve", "period", "peak_acceleration", "outcome", "impacts")}
+    about = {"pulse": params.pulse.name, "restitution": params.restitution, "alpha": params.alpha}
+    print_columns((about if form.kind == "json" else {}) | columns, form)
 
 
 def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
@@ -353,16 +383,26 @@ def print_json(result: Mapping[str, Any]) -> None:
     typer.echo(json_writer.dumps(result, allow_nan=False))
 
 
+def print_columns(columns: Mapping[str, Any], form: Form) -> None:
+    """Print columns in SI units, or texts, in any format."""
+    if form.kind == "json":
+        print_json(columns)
+    elif form.kind == "csv":
+        print_csv(columns, form)
+    else:
+        print_table(form.shown(columns), form.labels())
+
+
 def print_csv(columns: Mapping[str, Sequence[Any]], form: Form, units: Mapping[str, str] | None = None) -> None:
-    """Print a header and rows; `units` as for `print_table`."""
-    known = _UNITS | dict(units or {})
-    named = {_label(name, known): values for name, values in columns.items()} if form.units else columns
-    typer.echo(csv_text(named), nl=False)
+    """Print a header and rows in the units of the user; `units` as for `print_table`."""
+    known = form.labels() | dict(units or {})
+    cells = {name: [_csv_cell(value) for value in values] for name, values in form.shown(columns).items()}
+    typer.echo(csv_text({_label(name, known): values for name, values in cells.items()}), nl=False)
 
 
-def print_text(result: Mapping[str, Any]) -> None:
+def print_text(result: Mapping[str, Any], form: Form) -> None:
     """Print a name with its unit and a value a line."""
-    labels = {name: _label(name, _UNITS) for name in result}
+    labels = {name: _label(name, form.labels()) for name in result}
     width = max(map(len, labels.values()))
     for name, value in result.items():
         if value is not None:
@@ -372,10 +412,13 @@ def print_text(result: Mapping[str, Any]) -> None:
 def print_table(columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None) -> None:
     """Print aligned columns with their names and units; `units` are those of columns that depend on the question."""
     labels = [_label(name, _UNITS | dict(units or {})) for name in columns]
-    rows = [labels, *([_text(value) for value in row] for row in zip(*columns.values(), strict=True))]
-    widths = [max(len(row[k]) for row in rows) for k in range(len(columns))]
-    for row in rows:
-        typer.echo("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+    cells = [[label, *map(_text, values)] for label, values in zip(labels, columns.values(), strict=True)]
+    texts = [all(isinstance(value, str | list) for value in values) for values in columns.values()]
+    widths = [max(map(len, column)) for column in cells]
+    for row in zip(*cells, strict=True):
+        aligned = zip(row, widths, texts, strict=True)
+        line = "  ".join(cell.ljust(width) if text else cell.rjust(width) for cell, width, text in aligned)
+        typer.echo(line.rstrip())
 
 
 def _label(name: str, units: Mapping[str, str]) -> str:

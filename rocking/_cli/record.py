@@ -37,7 +37,7 @@ def record(
     from rocking._cli.progress import progress
 
     with option_errors(), file_errors():
-        form = printing.output_format(output)
+        form = printing.output_format(output, block)
         problem = read_problem(file, block)
         with progress("solving the block under the record"):
             about, sentences = _solved(*problem, block.scale, thresholds, fit)

@@ -358,7 +358,7 @@ def walk_commands(walk: Walk, folder: Path) -> None:
         words = name.split()[1:]
         start = [*words, *(["--pulse=sine"] if "pulse" in takes else []), *cases.get(words[-1], [])]
         start += ["--output=picture.png"] if "output" in takes else []
-        start += ["--csv"] if "csv" in takes and words != ["record"] else []
+        start += ["--format=csv"] if "format" in takes and words != ["record"] else []
         done: set[str] = set()
         for variant in VARIANTS:
             options = {key: OPTIONS[key] for key in OPTIONS if key in takes & (variant | COMMON)}
@@ -370,7 +370,9 @@ def walk_commands(walk: Walk, folder: Path) -> None:
             done |= options.keys()
     for other in replaced(SUITE):
         (folder / "suite.json").write_text(json.dumps(other), encoding="utf-8")
-        walk.call("rocking fragility", other, partial(run_command, ["fragility", str(folder / "suite.json"), "--json"]))
+        walk.call(
+            "rocking fragility", other, partial(run_command, ["fragility", str(folder / "suite.json"), "--format=json"])
+        )
 
 
 def commands(name: str, command: Any) -> Iterator[tuple[str, Any]]:

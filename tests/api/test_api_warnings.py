@@ -21,7 +21,7 @@ NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
 def command_line(*arguments):
     """JSON, and the lines of the text."""
     runner = CliRunner()
-    as_json, as_text = (runner.invoke(app, [*arguments, *form]) for form in (["--json"], []))
+    as_json, as_text = (runner.invoke(app, [*arguments, *form]) for form in (["--format=json"], []))
     assert as_json.exit_code == as_text.exit_code == 0, as_json.output
     return json.loads(as_json.stdout), as_text.stdout.splitlines()
 

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 import rocking
 from rocking._base.errors import InvalidArgumentError, si_value
+from rocking._base.units import UNITS as KNOWN_UNITS
 from rocking._boundary.tracing import overturning_boundary
 from rocking._cli.app import app
 from rocking._dimensional.block import Block
@@ -41,16 +42,19 @@ def refused(*arguments):
 
 
 def read_csv(text):
-    return list(csv.DictReader(io.StringIO(text)))
+    """The rows of CSV, by the names of the columns without their units."""
+    rows = csv.DictReader(io.StringIO(text))
+    rows.fieldnames = [re.sub(r" \[[^]]*\]$", "", name) for name in rows.fieldnames]
+    return list(rows)
 
 
 def test_response_in_three_formats():
     expected = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
-    result = json.loads(run("response", *GROUPS, "--json"))
+    result = json.loads(run("response", *GROUPS, "--format=json"))
     assert result["peak_rotation"] == expected.peak_rotation
     assert result["outcome"] == "SAFE"
     assert 0 < result["error_bound"] < 1e-10
-    (row,) = read_csv(run("response", *GROUPS, "--csv"))
+    (row,) = read_csv(run("response", *GROUPS, "--format=csv"))
     assert float(row["peak_rotation"]) == result["peak_rotation"]
     assert row["overturned"] == "false"
     text = run("response", *GROUPS)
@@ -67,20 +71,20 @@ def test_response_with_units_is_that_of_the_rigid_block():
         restitution=block.momentum_restitution,
         alpha=block.alpha,
     )
-    result = json.loads(run("response", *UNITS, "--json"))
+    result = json.loads(run("response", *UNITS, "--format=json"))
     assert result["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-9)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.peak_rotation * block.alpha), rel=1e-9)
 
 
 def test_alpha_is_an_angle_with_a_unit():
-    degrees = run("response", *GROUPS, "--alpha", "20 deg", "--json")
+    degrees = run("response", *GROUPS, "--alpha", "20 deg", "--format=json")
     expected = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, alpha=math.radians(20))
     assert json.loads(degrees)["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-9)
 
 
 def test_overturned_has_no_peak():
     falls = [*GROUPS[:3], "0.2", *GROUPS[4:]]
-    assert json.loads(run("response", *falls, "--json"))["peak_rotation"] is None
+    assert json.loads(run("response", *falls, "--format=json"))["peak_rotation"] is None
     assert run("response", *falls).startswith("overturns")
 
 
@@ -89,11 +93,11 @@ def test_first_line_states_that_the_rocking_model_does_not_apply():
     options = ["response", *UNITS[:2], *cube, *UNITS[8:]]
     first = run(*options).splitlines()[0]
     assert first.startswith("would slide: the rocking model does not apply")
-    result = json.loads(run(*options, "--json"))
+    result = json.loads(run(*options, "--format=json"))
     assert (result["outcome"], result["rocking_model_applies"]) == ("SAFE", False)
     assert result["friction_demand"] == pytest.approx(17.9, abs=0.1)
-    assert json.loads(run("response", *UNITS, "--json"))["rocking_model_applies"]
-    assert "rocking_model_applies" not in json.loads(run("response", *GROUPS, "--json"))  # the slender limit
+    assert json.loads(run("response", *UNITS, "--format=json"))["rocking_model_applies"]
+    assert "rocking_model_applies" not in json.loads(run("response", *GROUPS, "--format=json"))  # the slender limit
 
 
 def test_squat_block_does_not_uplift():
@@ -103,17 +107,17 @@ def test_squat_block_does_not_uplift():
 
 def test_history_in_three_formats():
     expected = time_history("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, samples=20)
-    result = json.loads(run("history", *GROUPS, "--samples", "20", "--json"))
+    result = json.loads(run("history", *GROUPS, "--samples", "20", "--format=json"))
     assert result["rotation"] == expected["rotation"].values.tolist()
     assert result["impact_time"] == expected["impact_time"].values.tolist()
-    rows = read_csv(run("history", *GROUPS, "--samples", "20", "--csv"))
+    rows = read_csv(run("history", *GROUPS, "--samples", "20", "--format=csv"))
     assert [float(row["tau"]) for row in rows] == expected["tau"].values.tolist()
     assert len(run("history", *GROUPS, "--samples", "20").splitlines()) > len(rows)
 
 
 def test_history_of_a_given_length():
-    assert json.loads(run("history", *GROUPS, "--duration", "2", "--json"))["tau"][-1] == 2.0
-    result = json.loads(run("history", *UNITS, "--duration", "900 ms", "--json"))
+    assert json.loads(run("history", *GROUPS, "--duration", "2", "--format=json"))["tau"][-1] == 2.0
+    result = json.loads(run("history", *UNITS, "--duration", "900 ms", "--format=json"))
     assert result["time"][-1] == pytest.approx(0.9)
     assert "missing unit: write 2s" in refused("history", *UNITS, "--duration", "2")
 
@@ -126,7 +130,7 @@ BLOCK = rocking.Block(0.4, 1.6)
 
 
 def test_response_of_a_block_in_si_units():
-    result = json.loads(run("response", *WHOLE, "--json"))
+    result = json.loads(run("response", *WHOLE, "--format=json"))
     found = BLOCK.response("sine", peak_acceleration=4.0, period=0.5)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(found.rotation), rel=1e-9)
     assert result["top_displacement"] == pytest.approx(found.displacement, rel=1e-9)
@@ -137,11 +141,12 @@ def test_response_of_a_block_in_si_units():
     text = run("response", *WHOLE)
     assert text.splitlines()[0] == found.sentence
     assert text.splitlines()[1].split() == ["peak_rotation_deg", "[deg]", "7.41882221"]
-    assert "overturns above 4.70006, survives above 13.1272, overturns above 13.9939" in text
-    (row,) = read_csv(run("response", *WHOLE, "--csv"))
-    assert [float(a) for a in row["thresholds"].split()] == [one["peak_acceleration"] for one in result["thresholds"]]
+    assert "overturns above 470.006, survives above 1312.72, overturns above 1399.39" in text
+    (row,) = read_csv(run("response", *WHOLE, "--format=csv"))
+    changes = [100.0 * one["peak_acceleration"] for one in result["thresholds"]]
+    assert [float(a) for a in row["thresholds"].split()] == pytest.approx(changes, rel=1e-15)
     assert result["pulse_duration"] == 0.5
-    half_sine = json.loads(run("response", "--pulse", "half_sine", *WHOLE[2:], "--json"))
+    half_sine = json.loads(run("response", "--pulse", "half_sine", *WHOLE[2:], "--format=json"))
     assert half_sine["pulse_duration"] == pytest.approx(0.25)
     near = run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:])
     assert near == run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:], "--restitution", "momentum")
@@ -149,7 +154,7 @@ def test_response_of_a_block_in_si_units():
 
 
 def test_history_of_a_block_in_si_units():
-    result = json.loads(run("history", *WHOLE, "--samples", "20", "--json"))
+    result = json.loads(run("history", *WHOLE, "--samples", "20", "--format=json"))
     expected = BLOCK.history("sine", peak_acceleration=4.0, period=0.5, samples=20)
     assert result["time"] == pytest.approx(expected["time"].values, rel=1e-12)
     assert result["rotation_deg"] == pytest.approx(np.degrees(expected["rotation"].values), rel=1e-9)
@@ -162,7 +167,7 @@ def test_history_of_a_block_in_si_units():
 
 def test_spectrum_of_a_block_in_si_units():
     options = [*WHOLE[:8], "--period-min", "0.3s", "--period-max", "1.2s", "--points", "3"]
-    result = json.loads(run("spectrum", *options, "--json"))
+    result = json.loads(run("spectrum", *options, "--format=json"))
     assert result["period"] == pytest.approx([1.2, 0.6, 0.3])
     expected = BLOCK.spectrum("sine", peak_acceleration=4.0, period=result["period"])
     assert result["overturned"] == expected["overturned"].values.tolist()
@@ -174,7 +179,7 @@ def test_spectrum_of_a_block_in_si_units():
 
 def test_boundary_of_a_block_in_si_units():
     options = ["--pulse", "sine", "--width", "0.4m", "--height", "1.6m", "--period-min", "0.4s", "--period-max", "0.8s"]
-    result = json.loads(run("boundary", *options, "--json"))
+    result = json.loads(run("boundary", *options, "--format=json"))
     assert min(result["period"]) == pytest.approx(0.4)
     assert max(result["period"]) == pytest.approx(0.8)
     at = int(np.argmin(np.abs(np.array(result["period"]) - 0.6)))
@@ -193,18 +198,20 @@ cabinet,40,1.6,800,500,0.9
 def test_table_of_blocks(tmp_path):
     path = tmp_path / "blocks.csv"
     path.write_text(TABLE)
-    rows = read_csv(run("response", "--pulse", "sine", "--blocks", str(path)))
+    command = ("response", "--pulse", "sine", "--format=csv")
+    rows = read_csv(run(*command, str(path)))
     assert [row["name"] for row in rows] == ["statue", "cabinet"]
-    single = json.loads(run("response", *WHOLE, "--json"))
-    for name in ("peak_rotation_deg", "top_displacement", "slenderness", "frequency_ratio", "restitution"):
-        assert float(rows[0][name]) == pytest.approx(single[name], rel=1e-12)
+    assert list(rows[0].values())[:5] == ["statue", "40", "1.6", "400", "500"]  # as they stand
+    single = json.loads(run("response", *WHOLE, "--format=json"))
+    for name, factor in (("peak_rotation_deg", 1.0), ("top_displacement", 100.0), ("slenderness", 1.0)):
+        assert float(rows[0][name]) == pytest.approx(single[name] * factor, rel=1e-12)
     assert (rows[1]["overturned"], rows[1]["peak_rotation_deg"], rows[1]["restitution"]) == ("true", "", "0.9")
-    as_json = json.loads(run("response", "--pulse", "sine", "--blocks", str(path), "--json"))
+    as_json = json.loads(run("response", "--pulse", "sine", str(path), "--format=json"))
     assert as_json["outcome"] == [row["outcome"] for row in rows]
-    piped = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=TABLE.replace(",", ";"))
+    piped = CliRunner().invoke(app, [*command, "-"], input=TABLE.replace(",", ";"))
     assert read_csv(piped.stdout) == rows
     path.write_text(TABLE.splitlines()[0])
-    assert read_csv(run("response", "--pulse", "sine", "--blocks", str(path))) == []
+    assert read_csv(run(*command, str(path))) == []
 
 
 def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path):
@@ -213,7 +220,7 @@ def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path)
     with path.open("w", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerows([TABLE.splitlines()[0].split(","), *([name, 40, 1.6, 400, 500, 0.9] for name in names)])
-    table = ("response", "--pulse", "sine", "--blocks")
+    table = ("response", "--pulse", "sine", "--format=csv")
     piped = CliRunner().invoke(app, [*table, "-"], input=path.read_bytes())
     assert piped.exit_code == 0
     printed = piped.stdout_bytes.decode()
@@ -227,53 +234,134 @@ def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path)
     ("table", "words"),
     [
         (TABLE.replace("statue", '"statue'), "line 2: 'unexpected end of data'"),
-        (TABLE.replace("width [cm]", "width"), "missing unit: write width [m]"),
         (TABLE.replace("[cm]", "[kg]"), "a unit such as m, cm"),
-        (TABLE.replace("name", "colour"), "name, restitution"),
-        (TABLE.replace("period [ms]", "width [m]"), "each at most once"),
-        (TABLE.replace("800", "x"), "line 3, peak_acceleration: 'x'"),
-        (TABLE.replace("800", "-1"), "line 3, peak_acceleration: -1.0 is not allowed; allowed: (0, inf) [gal]"),
-        (TABLE.replace("0.9", "1.9"), "line 3, restitution: 1.9"),
-        (TABLE.replace("400,500,", "400,500"), "line 2: '5 values'"),
-        ("", "one column"),
+        (TABLE.replace("period [ms]", "colour"), "columns width, height, peak_acceleration, period"),
+        (TABLE.replace("restitution", "width [m]"), "one column width"),
+        ("", "columns width, height"),
     ],
 )
-def test_errors_in_a_table_name_the_line(table, words):
-    result = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input=table)
-    assert result.exit_code == 2
-    text = " ".join(result.output.replace("│", " ").split())
-    assert "--blocks" in text
-    assert words in text
+def test_a_table_that_cannot_be_read_is_refused(table, words):
+    result = CliRunner().invoke(app, ["response", "--pulse", "sine", "-"], input=table)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "FILE" in result.stderr
+    assert words in result.stderr
 
 
-def test_every_line_of_a_table_with_an_error_is_named():
-    rows = [TABLE.splitlines()[0], *[f"b{k},0,1,800,400,0.9" for k in range(24)], "short"]
-    result = CliRunner().invoke(app, ["response", "--pulse", "sine", "--blocks", "-"], input="\n".join(rows))
-    assert result.exit_code == 2
-    text = " ".join(result.output.replace("│", " ").split())
-    assert "25 values are not allowed" in text
-    for line in range(2, 22):
-        assert f"line {line}, width: 0.0 is not allowed" in text
-    assert "line 22" not in text
-    assert "and 5 more" in text
-
-
-def test_the_header_of_csv_names_units_on_request(tmp_path):
+def test_rows_that_cannot_be_read_are_named_and_the_others_solved(tmp_path):
     path = tmp_path / "blocks.csv"
-    path.write_text(TABLE)
-    table = ("response", "--pulse", "sine", "--blocks", str(path))
-    plain, named = (run(*table, *more).splitlines() for more in ((), ("--units",)))
-    assert plain[1:] == named[1:]
-    assert "width [m],height [m],peak_acceleration [m/s2],period [s]," in named[0]
-    assert re.sub(r" \[[^]]*\]", "", named[0]) == plain[0]
-    assert "top_displacement [m]" in run("history", *WHOLE, "--csv", "--units").splitlines()[0]
-    for form in ((), ("--json",)):
-        assert "--units" in refused("response", *WHOLE, "--units", *form)
+    path.write_text(
+        "Inventory No;Breite;HEIGHT (m);PGA [g];Period;Material;outcome\n"
+        'A 1;20 cm;0,8;0,4;500 ms;"clay; ""red""";?\nA 2;big;0,8;0,4;500 ms;oak;\nA 3;20 cm;0,9;;500 ms;oak;\n',
+        encoding="utf-8",
+    )
+    command = ["response", "--pulse", "sine", str(path)]
+    printed = CliRunner().invoke(app, [*command, "--format=csv"])
+    assert printed.exit_code == 2
+    assert [line.split(": `")[0] for line in printed.stderr.splitlines()] == [
+        f"{path}, row 3, width",
+        f"{path}, row 4, peak_acceleration",
+    ]
+    assert "'big' is not allowed; allowed: a number, with its unit" in printed.stderr
+    (row,) = csv.DictReader(io.StringIO(printed.stdout))
+    assert list(row.values())[:7] == ["A 1", "20 cm", "0,8", "0,4", "500 ms", 'clay; "red"', "?"]
+    found = rocking.Block(0.2, 0.8).response("sine", peak_acceleration="0.4 g", period=0.5)
+    assert (row["outcome (given)"], row["outcome"]) == ("?", found.outcome.name)
+    assert float(row["uplift_acceleration [g]"]) == pytest.approx(0.25, rel=1e-12)
+    table = CliRunner().invoke(app, command)
+    assert table.exit_code == 2
+    assert table.stdout.splitlines()[1].split() == ["A", "1", found.outcome.name, "-", "-"]
+    answer = json.loads(CliRunner().invoke(app, [*command, "--format=json"]).stdout)
+    assert answer["table"]["Material"] == ['clay; "red"']
+    assert [bad["row"] for bad in answer["bad_rows"]] == [3, 4]
+
+
+def test_options_stand_for_what_a_table_lacks():
+    table = "Width [cm],Height [cm]\n40,160\n"
+    options = ["response", "--pulse", "sine", "--peak-acceleration", "400 gal", "--period", "0.5s", "-"]
+    printed = CliRunner().invoke(app, [*options, "--format=json"], input=table)
+    single = json.loads(run("response", *WHOLE, "--format=json"))
+    assert json.loads(printed.stdout)["top_displacement"] == [pytest.approx(single["top_displacement"], rel=1e-12)]
+    assert "peak_acceleration" in CliRunner().invoke(app, [*options[:3], "-"], input=table).stderr
+
+
+def test_output_has_the_units_of_the_question():
+    block = ["--pulse", "sine", "--width", "40 cm", "--height", "1.6m", "--peak-acceleration", "0.4g"]
+    si, given = json.loads(run("response", *block, "--period", "500ms", "--format=json")), {}
+    for line in run("response", *block, "--period", "500ms", "--all").splitlines():
+        name, _, value = line.partition("]")
+        given[name] = value.strip()
+    assert float(given["top_displacement [cm"]) == pytest.approx(100.0 * si["top_displacement"], rel=1e-8)
+    assert float(given["height [cm"]) == 160.0
+    assert float(given["uplift_acceleration [g"]) == pytest.approx(0.25, rel=1e-8)
+    assert float(given["nearest_period [ms"]) == pytest.approx(1000.0 * si["nearest_period"], rel=1e-5)
+    history = ["history", *block, "--period", "500ms", "--samples", "5"]
+    rows = read_csv(run(*history, "--format=csv"))
+    assert "time [ms]" in run(*history)
+    si = json.loads(run(*history, "--format=json"))
+    assert [float(row["time"]) for row in rows] == pytest.approx([1000.0 * one for one in si["time"]], rel=1e-12)
+    assert [float(row["tau"]) for row in rows] == si["tau"]
+
+
+def test_the_table_has_the_most_important_values_and_all_on_request():
+    few, many = run("response", *WHOLE).splitlines(), run("response", *WHOLE, "--all").splitlines()
+    assert many[: len(few)] == few
+    assert any(line.startswith("half_diagonal") for line in many[len(few) :])
+    assert max(map(len, few)) <= 110
+    assert len(few) < 20
+
+
+def test_pulses_and_units_that_are_allowed_are_listed():
+    rows = read_csv(run("pulses", "--format=csv"))
+    assert [row["pulse"] for row in rows] == list(rocking.PULSE_NAMES)
+    assert {row["pulse"]: float(row["periods"]) for row in rows}["half_sine"] == pytest.approx(0.5)
+    assert all(row["description"] for row in rows)
+    units = json.loads(run("units", "--format=json"))
+    for unit, names, examples in zip(units["si_unit"], units["units"], units["examples"], strict=True):
+        assert [si_value("x", f"1 {name}", unit) for name in names] == list(KNOWN_UNITS[unit].values())
+        assert all(si_value("x", one, unit) > 0.0 for one in examples.split(", "))
+
+
+def test_options_name_their_units_and_shells_complete_names():
+    text = run("response", "--help")
+    assert "--width" in text
+    assert re.search(r"--width +\[m\]", text)
+    assert re.search(r"--peak-acceleration +\[m/s2\]", text)
+    completion = {"_ROCKING_COMPLETE": "complete_bash", "COMP_WORDS": "rocking response --pulse ric", "COMP_CWORD": "3"}
+    found = CliRunner().invoke(app, [], env=completion, prog_name="rocking")
+    assert found.stdout.split() == ["ricker", "ricker_antisymmetric"]
+
+
+def test_exit_codes_are_those_of_the_help(monkeypatch, tmp_path):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    def code(*arguments):
+        return CliRunner().invoke(app, list(arguments)).exit_code
+
+    text = " ".join(run("--help").split())
+    stated = [int(one) for one in re.findall(r"[:;] (\d+) ", text.partition("Exit codes")[2])]
+    monkeypatch.setitem(sys.modules, "python_calamine", None)
+    (tmp_path / "a.xlsx").write_bytes(b"")
+    found = [code("units"), code("response", "--pulse", "sine", str(tmp_path / "a.xlsx")), code("respons")]
+    monkeypatch.setattr("rocking._cli.printing.print_columns", interrupted)
+    assert [*found, code("units")] == stated == [0, 1, 2, 130]
+
+
+def test_errors_are_one_line():
+    for arguments in (
+        ["respons"],
+        ["response", "--pulse", "sine", "--width", "3"],
+        ["record"],
+        ["units", "--format=x"],
+    ):
+        printed = CliRunner().invoke(app, arguments)
+        assert (printed.exit_code, printed.stdout) == (2, "")
+        assert len(printed.stderr.splitlines()) == 1, printed.stderr
 
 
 def test_table_and_options_exclude_each_other(tmp_path):
-    assert "--width" in refused("response", "--pulse", "sine", "--blocks", "-", "--width", "1m")
-    assert "--blocks" in refused("response", "--pulse", "sine", "--blocks", str(tmp_path / "none.csv"))
+    assert "--width" in refused("response", "--pulse", "sine", "-", "--width", "1m")
+    assert "FILE" in refused("response", "--pulse", "sine", str(tmp_path / "none.csv"))
 
 
 def test_history_with_the_reactions_of_the_ground():
@@ -288,44 +376,46 @@ def test_history_with_the_reactions_of_the_ground():
         samples=20,
         contact=True,
     )
-    result = json.loads(run(*options, "--json"))
+    result = json.loads(run(*options, "--format=json"))
     assert result["normal_reaction"] == pytest.approx(expected["normal_reaction"].values, rel=1e-9)
     assert result["largest_friction_demand"] == pytest.approx(expected.largest_friction_demand, rel=1e-9)
     assert (result["lifts_off"], result["warnings"]) == (False, None)
-    assert [float(row["friction_demand"]) for row in read_csv(run(*options, "--csv"))] == result["friction_demand"]
+    assert [float(row["friction_demand"]) for row in read_csv(run(*options, "--format=csv"))] == result[
+        "friction_demand"
+    ]
     assert f"{result['largest_friction_demand']:.9g}" in run(*options)
     assert "friction_demand" not in run(*options[:-1])
 
 
 def test_block_that_lifts_off_has_no_friction_demand():
     options = [*GROUPS[:3], "0.2", "--frequency-ratio", "12", "--restitution", "0.85", "--alpha", "45 deg", "--contact"]
-    result = json.loads(run("history", *options, "--json"))
+    result = json.loads(run("history", *options, "--format=json"))
     assert result["lifts_off"]
     assert result["largest_friction_demand"] is None
     assert None in result["friction_demand"]
     assert "lifts off" in result["warnings"]
-    assert any(row["friction_demand"] == "" for row in read_csv(run("history", *options, "--csv")))
+    assert any(row["friction_demand"] == "" for row in read_csv(run("history", *options, "--format=csv")))
     assert "the block lifts off" in run("history", *options)
 
 
 def test_spectrum_in_three_formats():
     arguments = ["--pulse", "cosine", "--slenderness", "0.6", "--restitution", "0.9", "--points", "7"]
     expected = peak_response("cosine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 7), restitution=0.9)
-    result = json.loads(run("spectrum", *arguments, "--json"))
+    result = json.loads(run("spectrum", *arguments, "--format=json"))
     assert result["outcome"] == [Outcome(code).name for code in expected.outcome]
     assert [math.nan if peak is None else peak for peak in result["peak_rotation"]] == pytest.approx(
         expected.peak_rotation.tolist(), rel=0, abs=0, nan_ok=True
     )
-    assert len(read_csv(run("spectrum", *arguments, "--csv"))) == 7
+    assert len(read_csv(run("spectrum", *arguments, "--format=csv"))) == 7
     assert run("spectrum", *arguments).splitlines()[-1].endswith(str(expected.impacts[-1]))
 
 
 def test_boundary_in_three_formats():
     arguments = ["--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-min", "2"]
     expected = overturning_boundary("sine", restitution=0.85, frequency_ratio=(2.0, 15.0))
-    result = json.loads(run("boundary", *arguments, "--json"))
+    result = json.loads(run("boundary", *arguments, "--format=json"))
     assert result["slenderness"] == expected["slenderness"].values.tolist()
-    assert len(read_csv(run("boundary", *arguments, "--csv"))) == expected.sizes["point"]
+    assert len(read_csv(run("boundary", *arguments, "--format=csv"))) == expected.sizes["point"]
     assert run("boundary", *arguments).splitlines()[0].split()[:2] == ["curve", "slenderness"]
 
 
@@ -341,28 +431,30 @@ def triangle(tmp_path):
 
 def test_every_command_takes_a_pulse_from_a_file(triangle, tmp_path):
     groups = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
-    result = json.loads(run("response", "--pulse", triangle, *GROUPS[2:], "--json"))
+    result = json.loads(run("response", "--pulse", triangle, *GROUPS[2:], "--format=json"))
     assert result["pulse"] == "triangle"
     assert result["peak_rotation"] == peak_response(TRIANGLE, **groups).peak_rotation
-    mirrored = json.loads(run("response", f"--pulse=-{triangle}", *GROUPS[2:], "--json"))
+    mirrored = json.loads(run("response", f"--pulse=-{triangle}", *GROUPS[2:], "--format=json"))
     assert (mirrored["pulse"], mirrored["peak_rotation"]) == ("-triangle", result["peak_rotation"])
-    history = json.loads(run("history", "--pulse", triangle, *GROUPS[2:], "--json"))
+    history = json.loads(run("history", "--pulse", triangle, *GROUPS[2:], "--format=json"))
     assert history["rotation"] == time_history(TRIANGLE, **groups)["rotation"].values.tolist()
-    spectrum = json.loads(run("spectrum", "--pulse", triangle, *GROUPS[2:4], *GROUPS[6:], "--points", "3", "--json"))
+    spectrum = json.loads(
+        run("spectrum", "--pulse", triangle, *GROUPS[2:4], *GROUPS[6:], "--points", "3", "--format=json")
+    )
     omega = groups | {"frequency_ratio": spectrum["frequency_ratio"]}
     overturned = peak_response(TRIANGLE, **omega).overturned
     assert [peak is None for peak in spectrum["peak_rotation"]] == overturned.tolist()
     window = {"frequency_ratio": (2.0, 3.0)}
     ends = ["--frequency-ratio-min", "2", "--frequency-ratio-max", "3"]
-    boundary = json.loads(run("boundary", "--pulse", triangle, *GROUPS[6:], *ends, "--json"))
+    boundary = json.loads(run("boundary", "--pulse", triangle, *GROUPS[6:], *ends, "--format=json"))
     expected = overturning_boundary(TRIANGLE, restitution=0.85, **window)
     assert boundary["slenderness"] == expected["slenderness"].values.tolist()
     path = tmp_path / "blocks.csv"
     path.write_text("width [m],height [m],peak_acceleration [g],period [s]\n0.4,1.6,0.4,0.5\n")
-    (row,) = read_csv(run("response", "--pulse", triangle, "--blocks", str(path)))
+    (row,) = read_csv(run("response", "--pulse", triangle, str(path), "--format=csv"))
     block = rocking.Block(0.4, 1.6).response(TRIANGLE, peak_acceleration="0.4 g", period=0.5)
     assert float(row["top_displacement"]) == block.displacement
-    printed = json.loads(run("response", "--pulse", triangle, *UNITS[2:], "--json"))
+    printed = json.loads(run("response", "--pulse", triangle, *UNITS[2:], "--format=json"))
     assert printed["pulse_duration"] == 0.5
 
 
@@ -370,11 +462,11 @@ def test_a_name_of_a_pulse_is_no_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sine").write_text("0\n1\n0\n")
     (tmp_path / "sin").write_text("0\n1\n0\n")
-    sine = json.loads(run("response", *GROUPS, "--json"))
+    sine = json.loads(run("response", *GROUPS, "--format=json"))
     assert sine["pulse"] == "sine"
     exact = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
     assert sine["peak_rotation"] == exact.peak_rotation
-    assert json.loads(run("response", "--pulse", "sin", *GROUPS[2:], "--json"))["pulse"] == "sin"
+    assert json.loads(run("response", "--pulse", "sin", *GROUPS[2:], "--format=json"))["pulse"] == "sin"
 
 
 def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
@@ -398,7 +490,7 @@ def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
         (["response", *GROUPS, "--alpha", "20"], "--alpha", "20 deg"),
         (["response", *GROUPS, "--alpha", "95 deg"], "--alpha", "[0, 1.5"),
         (["response", *GROUPS, "--width", "2m"], "--slenderness", "either groups"),
-        (["response", *GROUPS, "--json", "--csv"], "--csv", "one of --json and --csv"),
+        (["response", *GROUPS, "--format=xml"], "--format", "'table', 'csv', 'json'"),
         (["response", *UNITS[:3], "20", *UNITS[4:]], "--width", "missing unit: write 20m (such as 0.3 m"),
         (["response", *UNITS[:3], "2 kg", *UNITS[4:]], "--width", "0.3 m"),
         (["response", *UNITS[:3], "-1 m", *UNITS[4:]], "--width", "(0, inf)"),

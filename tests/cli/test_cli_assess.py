@@ -29,11 +29,11 @@ def table(tmp_path):
 def test_formats_and_file_hold_the_rows_of_python(table):
     site = rocking.Site(pga="0.3 g", pgv="0.3 m/s", shapes=["sine", "ricker"])
     expected = rocking.assess(rocking.read_objects(table).objects, site, sensitivity=False)
-    found = json.loads(run("assess", str(table), *SITE, "--json"))
+    found = json.loads(run("assess", str(table), *SITE, "--format=json"))
     for name in expected.columns:
         assert found[name] == [row[name] for row in expected.rows], name
     assert found["motions"] == ["sine", "ricker"]
-    rows = read_csv(run("assess", str(table), *SITE, "--csv"))
+    rows = read_csv(run("assess", str(table), *SITE, "--format=csv"))
     assert [float(row["factor"]) for row in rows] == expected.columns["factor"].tolist()
     file = table.with_name("out.csv")
     shown = run("assess", str(table), *SITE, "--output", str(file)).splitlines()
@@ -57,10 +57,10 @@ def test_bad_rows_are_named_and_the_others_assessed(table):
 def test_records_and_periods(table, tmp_path):
     record = tmp_path / "record.csv"
     record.write_text("".join(f"{0.05 * k:.2f},{(-1) ** (k // 5) * 2.0}\n" for k in range(40)))
-    found = json.loads(run("assess", str(table), "--record", str(record), "--unit", "m/s2", "--json"))
+    found = json.loads(run("assess", str(table), "--record", str(record), "--unit", "m/s2", "--format=json"))
     assert len(found["motions"]) == 1
     periods = ["--pga", "0.3g", "--period-min", "0.2s", "--period-max", "1s", "--shapes", "sine"]
-    assert len(json.loads(run("assess", str(table), *periods, "--no-sensitivity", "--json"))["motions"]) == 12
+    assert len(json.loads(run("assess", str(table), *periods, "--no-sensitivity", "--format=json"))["motions"]) == 12
 
 
 @pytest.mark.parametrize(

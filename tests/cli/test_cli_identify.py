@@ -1,14 +1,12 @@
 """`rocking identify`: text, JSON and CSV, degrees, and errors that name the file."""
 
-import csv
-import io
 import json
 
 import numpy as np
 import pytest
 
 from rocking._evidence.free_rocking import identify_free_rocking
-from tests.cli.test_cli import refused, run
+from tests.cli.test_cli import read_csv, refused, run
 from tests.evidence.test_free_rocking import trace
 
 
@@ -21,8 +19,8 @@ def file(tmp_path):
 
 def test_three_formats_hold_the_fit(file):
     expected = identify_free_rocking(*trace())["alpha"].item()
-    assert json.loads(run("identify", str(file), "--json"))["alpha"] == pytest.approx([expected], rel=1e-6)
-    (row,) = csv.DictReader(io.StringIO(run("identify", str(file), "--csv")))
+    assert json.loads(run("identify", str(file), "--format=json"))["alpha"] == pytest.approx([expected], rel=1e-6)
+    (row,) = read_csv(run("identify", str(file), "--format=csv"))
     assert float(row["alpha"]) == pytest.approx(expected, rel=1e-6)
     assert "alpha [rad]" in run("identify", str(file))
 
@@ -30,7 +28,7 @@ def test_three_formats_hold_the_fit(file):
 def test_degrees(file):
     time, rotation = trace()
     np.savetxt(file, np.column_stack([time, np.degrees(rotation)]), delimiter=",")
-    found = json.loads(run("identify", str(file), "--json", "--degrees"))
+    found = json.loads(run("identify", str(file), "--format=json", "--degrees"))
     assert found["alpha"] == pytest.approx([0.25], rel=1e-3)
     assert "degrees" in refused("identify", str(file))
 

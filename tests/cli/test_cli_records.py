@@ -1,7 +1,5 @@
 """`rocking record` and `rocking fragility`: three formats, errors that name the file, the line or the key."""
 
-import csv
-import io
 import json
 import math
 from pathlib import Path
@@ -14,23 +12,12 @@ from typer.testing import CliRunner
 import rocking
 from rocking._cli.app import app
 from rocking.suites.configuration import suite_configuration
+from tests.cli.test_cli import read_csv, refused, run
 from tests.excitation.record_files import at2, rows
 
 ROOT = Path(__file__).parents[2]
 NAPA = str(ROOT / "workflow/motions/napa_HNE.csv")
 SIZES = ["--width", "0.5m", "--height", "200 cm"]
-
-
-def run(*arguments):
-    result = CliRunner().invoke(app, list(arguments))
-    assert result.exit_code == 0, result.output
-    return result.stdout
-
-
-def refused(*arguments):
-    result = CliRunner().invoke(app, list(arguments))
-    assert result.exit_code == 2, result.output
-    return " ".join(result.output.replace("│", " ").split())
 
 
 @pytest.fixture(scope="module")
@@ -50,27 +37,27 @@ def test_remarks_of_the_reader_are_warnings(tmp_path):
     remark = "the file holds 100 samples, its header states 101"
     assert rocking.Block(0.5, 2.0).response(rocking.read_record(path)).warnings[0] == remark
     assert f"\nwarning: {remark}\n" in run("record", str(path), *SIZES)
-    assert json.loads(run("record", str(path), *SIZES, "--json"))["warnings"][0] == remark
+    assert json.loads(run("record", str(path), *SIZES, "--format=json"))["warnings"][0] == remark
 
 
 def test_record_in_three_formats():
     block, motion = rocking.Block(0.5, 2.0), rocking.read_record(NAPA)
     expected = block.response(motion, scale=1.1)
-    result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
+    result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--format=json"))
     assert result["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
     assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
     assert result["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
     assert result["peak_acceleration"] == motion.peak_acceleration
     assert result["warnings"] == list(expected.warnings)
-    (row,) = csv.DictReader(io.StringIO(run("record", NAPA, *SIZES, "--scale", "1.1", "--csv")))
+    (row,) = read_csv(run("record", NAPA, *SIZES, "--scale", "1.1", "--format=csv"))
     assert float(row["peak_rotation"]) == result["peak_rotation"]
     assert row["overturned"] == "false"
     assert run("record", NAPA, *SIZES, "--scale", "1.1").startswith("rocks and comes to rest\n")
 
 
 def test_thresholds_and_pulse():
-    result = json.loads(run("record", NAPA, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--json"))
+    result = json.loads(run("record", NAPA, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--format=json"))
     scales = np.array(result["threshold_scale"])
     assert np.all(np.diff(scales) > 0.0)
     assert result["overturns_above"][0] is True
@@ -93,9 +80,9 @@ def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
     path = tmp_path / "plain.txt"
     path.write_text("\n".join(map(repr, (motion.acceleration * 100.0).tolist())))
     given = ["--unit", "cm/s2", "--time-step", "5 ms"]
-    plain = json.loads(run("record", str(path), *SIZES, *given, "--json"))
+    plain = json.loads(run("record", str(path), *SIZES, *given, "--format=json"))
     assert plain["peak_rotation"] == pytest.approx(
-        json.loads(run("record", NAPA, *SIZES, "--json"))["peak_rotation"], rel=1e-6
+        json.loads(run("record", NAPA, *SIZES, "--format=json"))["peak_rotation"], rel=1e-6
     )
     assert "no unit of acceleration" in refused("record", str(path), *SIZES, "--time-step", "5 ms")
     assert "no time step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")
@@ -104,7 +91,7 @@ def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
 
 def test_baseline_is_removed_on_request_only():
     plain, corrected = (
-        json.loads(run("record", NAPA, *SIZES, *more, "--json")) for more in ([], ["--baseline-order", "1"])
+        json.loads(run("record", NAPA, *SIZES, *more, "--format=json")) for more in ([], ["--baseline-order", "1"])
     )
     assert abs(corrected["final_velocity"]) < abs(plain["final_velocity"])
 
@@ -119,7 +106,6 @@ def test_baseline_is_removed_on_request_only():
         ([NAPA, *SIZES, "--restitution", "1.5"], "--restitution"),
         ([NAPA, *SIZES, "--unit", "feet"], "--unit"),
         ([NAPA, *SIZES, "--baseline-order", "9"], "--order"),
-        ([NAPA, *SIZES, "--json", "--csv"], "--csv"),
     ],
 )
 def test_invalid_options_are_named(arguments, message):
@@ -134,7 +120,7 @@ def test_damaged_file_is_explained_by_its_line(tmp_path):
 
 
 def test_fragility_in_three_formats(small):
-    result = json.loads(run("fragility", str(small), "--json"))
+    result = json.loads(run("fragility", str(small), "--format=json"))
     assert result["records"] == ["napa_HNE", "napa_HNN"]
     suite = suite_configuration(json.loads(small.read_text()), small.parent)
     expected = rocking.fragility(suite.motions(), suite.blocks[0], intensity=suite.intensity)
@@ -143,9 +129,9 @@ def test_fragility_in_three_formats(small):
     assert result["curves"]["fit_status"][0] in {"FITTED", "SEPARATED"}
     assert result["curves"]["median_intensity"][0] == pytest.approx(float(expected.median_intensity[0]))
     assert result["curves"]["annual_rate"][0] > 0.0
-    rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv"))))
+    rows = list(read_csv(run("fragility", str(small), "--format=csv")))
     assert len(rows) == 3 * 4
-    assert "intensity [m/s2]" in run("fragility", str(small), "--csv", "--units").splitlines()[0]
+    assert "intensity [m/s2]" in run("fragility", str(small), "--format=csv").splitlines()[0]
     assert {row["demand"] for row in rows} == {"overturning", "alpha", "0.5 alpha"}
     text = run("fragility", str(small))
     assert "measure  pga" in text
@@ -160,8 +146,8 @@ def test_fragility_in_three_formats(small):
 def test_friction_restitution_and_sampling_in_three_formats(small):
     suite = suite_configuration(json.loads(small.read_text()), small.parent)
     expected = rocking.suites.suite_sensitivity(suite.motions(), suite.blocks[0], intensity=suite.sensitivity.intensity)
-    result = json.loads(run("fragility", str(small), "--json"))["sensitivity"]
-    rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv", "--table", "sensitivity"))))
+    result = json.loads(run("fragility", str(small), "--format=json"))["sensitivity"]
+    rows = list(read_csv(run("fragility", str(small), "--format=csv", "--table", "sensitivity")))
     for name in ("intensity", "fraction_low_restitution", "changed_resampled", "friction_demand_largest"):
         assert result[name] == [float(row[name]) for row in rows] == expected[name].values.tolist()
     line = run("fragility", str(small)).splitlines()[-1].split("  ")
@@ -170,27 +156,27 @@ def test_friction_restitution_and_sampling_in_three_formats(small):
 
 
 def test_table_is_for_csv_and_for_what_the_configuration_asks_for(small, tmp_path):
-    assert "with --csv" in refused("fragility", str(small), "--json", "--table", "curves")
-    rows = list(csv.DictReader(io.StringIO(run("fragility", str(small), "--csv", "--table", "curves"))))
+    assert "with --format csv" in refused("fragility", str(small), "--format=json", "--table", "curves")
+    rows = list(read_csv(run("fragility", str(small), "--format=csv", "--table", "curves")))
     assert len(rows) == 3 * 2
     given = json.loads(small.read_text())
     del given["sensitivity"]
     path = tmp_path / "plain.json"
     path.write_text(json.dumps(given))
-    assert "no sensitivity" in refused("fragility", str(path), "--csv", "--table", "sensitivity")
-    assert "sensitivity" not in json.loads(run("fragility", str(path), "--json"))
+    assert "no sensitivity" in refused("fragility", str(path), "--format=csv", "--table", "sensitivity")
+    assert "sensitivity" not in json.loads(run("fragility", str(path), "--format=json"))
 
 
 def test_a_file_in_place_of_printing(small, tmp_path):
     path = tmp_path / "curves.json"
     assert run("fragility", str(small), "--output", str(path)) == ""
-    printed = json.loads(run("fragility", str(small), "--json"))
+    printed = json.loads(run("fragility", str(small), "--format=json"))
     assert json.loads(path.read_text())["levels"] == printed["levels"]
     for ending, start in ((".csv", "demand,width"), (".xml", "<?xml")):
         run("fragility", str(small), "-o", str(path.with_suffix(ending)))
         assert path.with_suffix(ending).read_text().startswith(start)
     assert "--output" in refused("fragility", str(small), "--output", "curves.txt")
-    assert "--output" in refused("fragility", str(small), "--json", "--output", str(path))
+    assert "--output" in refused("fragility", str(small), "--format=json", "--output", str(path))
     assert "--output" in refused("fragility", str(small), "--output", str(tmp_path / "none" / "curves.csv"))
 
 
@@ -201,8 +187,8 @@ def test_a_hazard_curve_from_a_file(small, tmp_path):
     path.parent.mkdir()
     columns = [f"{x / factor:.17g}" for x in given["hazard"]["intensity"]]
     path.write_text(f"lon,lat,{','.join(columns)}\n8,47,{','.join(map(str, given['hazard']['annual_rate']))}\n")
-    rates = json.loads(run("fragility", str(small), "--json"))["curves"]["annual_rate"]
-    found = json.loads(run("fragility", str(small), "--json", "--hazard", str(path)))["curves"]["annual_rate"]
+    rates = json.loads(run("fragility", str(small), "--format=json"))["curves"]["annual_rate"]
+    found = json.loads(run("fragility", str(small), "--format=json", "--hazard", str(path)))["curves"]["annual_rate"]
     assert found == pytest.approx(rates, rel=1e-9)
     path.write_text(path.read_text().replace("lon", "x"))
     assert "--hazard" in refused("fragility", str(small), "--hazard", str(path))
@@ -211,7 +197,9 @@ def test_a_hazard_curve_from_a_file(small, tmp_path):
 def test_configuration_may_be_yaml_or_toml(small, tmp_path):
     given = json.loads(small.read_text())
     (tmp_path / "suite.yaml").write_text(yaml.safe_dump({"title": "a suite", "suite": given}))
-    assert run("fragility", str(tmp_path / "suite.yaml"), "--csv") == run("fragility", str(small), "--csv")
+    assert run("fragility", str(tmp_path / "suite.yaml"), "--format=csv") == run(
+        "fragility", str(small), "--format=csv"
+    )
 
 
 @pytest.mark.parametrize(
@@ -236,8 +224,8 @@ def test_unreadable_configuration_is_refused(name, text, tmp_path):
 
 
 def test_sizes_in_any_unit_are_the_same():
-    other = json.loads(run("record", NAPA, "--width", "50 cm", "--height", "2m", "--json"))
-    assert other == json.loads(run("record", NAPA, *SIZES, "--json"))
+    other = json.loads(run("record", NAPA, "--width", "50 cm", "--height", "2m", "--format=json"))
+    assert other == json.loads(run("record", NAPA, *SIZES, "--format=json"))
     assert "--width" in refused("record", NAPA, "--height", "2m")
 
 
@@ -274,17 +262,17 @@ def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     up = str(ROOT / "workflow/motions/napa_HNN.csv")
     motion = rocking.read_record(NAPA, vertical=up)
     expected = rocking.Block(0.5, 2.0).response(motion, scale=1.1)
-    found = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--vertical", up, "--json"))
+    found = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--vertical", up, "--format=json"))
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
-    without = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--json"))
+    without = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--format=json"))
     assert without["peak_vertical_acceleration"] is None
     assert without["peak_rotation"] != found["peak_rotation"]
     path = tmp_path / "both.csv"
     rows = np.stack([motion.times, motion.acceleration, motion.vertical], axis=1).tolist()
     path.write_text("t,h_m/s2,up_m/s2\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in rows))
     columns = "--component", "h", "--vertical", "up"
-    same = json.loads(run("record", str(path), *SIZES, "--scale", "1.1", *columns, "--json"))
+    same = json.loads(run("record", str(path), *SIZES, "--scale", "1.1", *columns, "--format=json"))
     assert same["peak_rotation"] == found["peak_rotation"]
 
 
@@ -312,7 +300,7 @@ def test_a_suite_names_the_column_of_the_vertical_component(small, tmp_path):
     np.testing.assert_allclose(records[1].vertical, 0.5 * np.roll(records[1].acceleration, 9), rtol=1e-12)
     path = tmp_path / "suite.json"
     path.write_text(json.dumps(given))
-    with_vertical = json.loads(run("fragility", str(path), "--json"))
+    with_vertical = json.loads(run("fragility", str(path), "--format=json"))
     given["records"] |= {"vertical": None}
     path.write_text(json.dumps(given))
-    assert with_vertical != json.loads(run("fragility", str(path), "--json"))
+    assert with_vertical != json.loads(run("fragility", str(path), "--format=json"))

@@ -156,7 +156,7 @@ def test_a_sampled_pulse_is_known_by_its_name_to_every_function(ramp):
     motion = {"peak_acceleration": 4.0, "period": 0.6}
     assert block.response("ramp", **motion).rotation == block.response(ramp, **motion).rotation
     options = [f"--{key.replace('_', '-')}={value}" for key, value in GROUPS.items()]
-    found = CliRunner().invoke(app, ["response", "--pulse", "ramp", "--json", *options])
+    found = CliRunner().invoke(app, ["response", "--pulse", "ramp", "--format=json", *options])
     assert json.loads(found.stdout)["peak_rotation"] == rocking.peak_response(ramp, **GROUPS).peak_rotation
     with pytest.raises(InvalidArgumentError, match=r"^`name` = "):
         register(rocking.SampledPulse([0.0, 1.0], name="two words"))

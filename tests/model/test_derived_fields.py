@@ -48,7 +48,7 @@ from rocking._cli.app import app
 groups = {"slenderness": [0.4, 0.3], "frequency_ratio": 5.0, "restitution": 0.85}
 found = rocking.peak_response("sine", **groups)
 options = ["--slenderness", "0.3", "--frequency-ratio", "5", "--restitution", "0.85"]
-printed = CliRunner().invoke(app, ["response", "--pulse", "sine", *options, "--csv"])
+printed = CliRunner().invoke(app, ["response", "--pulse", "sine", *options, "--format=csv"])
 query = {"pulse": "sine", "slenderness": 0.3, "frequency_ratio": 5.0, "restitution": 0.85, "method": "solver"}
 with TestClient(create_app(Settings(results=sys.argv[2], max_seconds=600.0)), base_url="http://127.0.0.1") as client:
     one = client.get("/v1/response", params=query).json()

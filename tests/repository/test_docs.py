@@ -172,7 +172,7 @@ def test_guide_builds_without_warning(tmp_path):
     section = (target / "figures.html").read_text().partition('id="figures-5-and-6"')[2].partition("</section>")[0]
     assert 'src="_images/figure-05.svg"' in section
     assert not [page.name for page in target.rglob("*.html") if re.search(r">[\w./-]+\.md</a>", page.read_text())]
-    assert "--csv prints" in (target / "reference/command.html").read_text()  # no dash
+    assert "--format csv holds" in (target / "reference/command.html").read_text()  # no dash
     loaded = [(page.name, url) for page in target.rglob("*.html") for url in re.findall(LOADED, page.read_text())]
     assert loaded == []  # nothing comes from other hosts
     (outside,) = re.findall(r'<link rel="canonical" href="([^"]*)"', (target / "concepts.html").read_text())

@@ -43,7 +43,7 @@ def test_commands_and_the_service_are_imported(folder, locale):
     run(folder, "-c", "import rocking_api.settings, rocking_api.command", **locale)
 
 
-RESPONSE = ("-m", "rocking._cli", "response", "--pulse", "sine", "--csv", "--blocks")
+RESPONSE = ("-m", "rocking._cli", "response", "--pulse", "sine", "--format=csv")
 
 
 @pytest.mark.parametrize("file", ["-", "blocs_é.csv"])

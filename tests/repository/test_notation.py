@@ -96,7 +96,7 @@ INTERFACES = {"Python": python_arguments, "command line": options, "HTTP": http_
 
 DIFFERENT = {
     *("alpha", "motion", "scale", "period", "frequency_ratio", "slenderness"),  # degrees; a name only; windows
-    *("path", "order", "offset_width", "--json", "--results"),
+    *("path", "order", "offset_width", "--results"),
 }
 """First names of the rows whose names differ between interfaces."""
 

@@ -134,7 +134,7 @@ def test_extras_that_are_installed_exist() -> None:
 def test_first_command_and_first_python_block_ask_the_same() -> None:
     names: dict[str, Any] = {}
     exec(PYTHON_BLOCKS[0], names)
-    command = [installed("rocking"), *ROCKING[0][1:], "--json"]
+    command = [installed("rocking"), *ROCKING[0][1:], "--format=json"]
     result = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
     response = names["response"]
     assert result["overturned"] is response.overturned is True

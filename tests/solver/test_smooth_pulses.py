@@ -132,7 +132,7 @@ def test_registered_by_name():
     block = rocking.Block(width=0.4, height=1.6)
     assert block.response("-chirp", peak_acceleration="0.4 g", period="0.6 s").peak_rotation > 0.0
     groups = [f"--{name.replace('_', '-')}={value}" for name, value in GROUPS.items()]
-    printed = CliRunner().invoke(app, ["response", "--pulse", "chirp", "--json", *groups])
+    printed = CliRunner().invoke(app, ["response", "--pulse", "chirp", "--format=json", *groups])
     assert json.loads(printed.stdout)["peak_rotation"] == pytest.approx(float(found.peak_rotation), rel=1e-12)
     with pytest.raises(InvalidArgumentError, match="name"):
         pulses.register(CHIRP)
