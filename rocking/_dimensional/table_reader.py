@@ -162,7 +162,8 @@ class Table(Generic[Item]):
     items : list
         One for each row that was read.
     cells : dict of str to list of str
-        Every column of the table as it stands, by the text of its header, for the rows that were read.
+        Every column of the table as it stands, by the text of its header, with its number where that is empty or not
+        the first; for the rows that were read.
     columns : dict of str to str
         The name of the quantity in each of these columns that is read.
     units : dict of str to str
@@ -329,7 +330,9 @@ def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
             continue
         several = [name for name, count in names.items() if count > 1 and name != "name"]
         if several:
-            raise InvalidArgumentError(f"{schema.argument}, header", "; ".join(texts), f"one column {several[0]}")
+            raise InvalidArgumentError(
+                f"{schema.argument}, header", "; ".join(texts)[:MAX_NAME], f"one column {several[0]}"
+            )
         places = [place for place, (one, _) in found.items() if one.name == "name"]
         for place in places[:-1]:  # such as number and name: the last one counts
             del found[place]
@@ -407,7 +410,11 @@ def read_rows(rows: Sequence[Sequence[str]], schema: Schema[Item], usual: str = 
             errors.append((number, _of_cell(error, row, header)))
     size = len(header.texts)
     padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
-    labels = [_free(text, header.texts[:place]) for place, text in enumerate(header.texts)]
+    first: dict[str, int] = {}
+    labels = [
+        text if text.strip() and first.setdefault(text, place) == place else f"{text}#{place + 1}"
+        for place, text in enumerate(header.texts)
+    ]
     cells = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
     cells = {label: column for label, column in cells.items() if not label.startswith("#") or any(column)}
     read = {labels[place]: one.name for place, (one, _) in header.columns.items()}
@@ -416,11 +423,6 @@ def read_rows(rows: Sequence[Sequence[str]], schema: Schema[Item], usual: str = 
         for place, (one, unit) in header.columns.items()
     }
     return Table(items, cells, read, units, errors)
-
-
-def _free(text: str, others: Sequence[str]) -> str:
-    """The text of a header, with its number in the table if another column has the same or it has none."""
-    return text if text.strip() and text not in others else f"{text}#{len(others) + 1}"
 
 
 def _written_unit(cell: str, one: Column) -> str:
