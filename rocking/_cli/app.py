@@ -49,6 +49,9 @@ class Commands(TyperGroup):
             if error.format_message():  # no command: the help was printed
                 typer.echo(f"{command}: {error.format_message()}", err=True)
             sys.exit(error.exit_code)
+        except ImportError as error:  # a package of an extra
+            typer.echo(f"rocking: {error}", err=True)
+            sys.exit(1)
 
 
 app = typer.Typer(

@@ -202,11 +202,7 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
     strength = {
         name: _positive(options, name) for name in ("peak_acceleration", "period") if getattr(options, name) is not None
     }
-    try:
-        return read_table(path, read_pulse(options.pulse), given if given == "momentum" else _eta(given), **strength)
-    except ImportError as error:
-        typer.echo(f"rocking response: {error}", err=True)
-        raise typer.Exit(1) from error
+    return read_table(path, read_pulse(options.pulse), given if given == "momentum" else _eta(given), **strength)
 
 
 def given_units(options: object, columns: Mapping[str, str] | None = None) -> dict[str, str]:

@@ -342,7 +342,10 @@ def test_exit_codes_are_those_of_the_help(monkeypatch, tmp_path):
     stated = [int(one) for one in re.findall(r"[:;] (\d+) ", text.partition("Exit codes")[2])]
     monkeypatch.setitem(sys.modules, "python_calamine", None)
     (tmp_path / "a.xlsx").write_bytes(b"")
-    found = [code("units"), code("response", "--pulse", "sine", str(tmp_path / "a.xlsx")), code("respons")]
+    sheet = str(tmp_path / "a.xlsx")
+    missing = [code("response", "--pulse", "sine", sheet), code("assess", sheet, "--pga", "0.3g", "--pgv", "0.3m/s")]
+    assert missing[0] == missing[1]
+    found = [code("units"), missing[0], code("respons")]
     monkeypatch.setattr("rocking._cli.printing.print_columns", interrupted)
     assert [*found, code("units")] == stated == [0, 1, 2, 130]
 
