@@ -36,6 +36,9 @@ HEADER_ROWS = 12
 MAX_CHARACTERS = 20_000_000
 """Longest table that is read."""
 
+MAX_COLUMNS = 1000
+"""Most columns of a table."""
+
 MAX_NAME = 200
 """Longest name of a column with its unit [characters]."""
 
@@ -321,6 +324,8 @@ def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
     """The header among the first rows; where it has two lines, the lower one completes the upper one."""
     known = {_plain(name): one for one in schema.columns for name in (one.name, *one.aliases)}
     for last, row in enumerate(rows[:HEADER_ROWS]):
+        if len(row) > MAX_COLUMNS:
+            continue
         above = _merged(rows[last - 1], len(row)) if last else [""] * len(row)
         texts = [_joined(*pair) if max(map(len, pair)) <= MAX_NAME else "" for pair in zip(above, row, strict=True)]
         pairs = [(place, _column(text, known, schema.argument)) for place, text in enumerate(texts) if text.strip()]
@@ -340,7 +345,7 @@ def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
         return _Header(after, texts, columns)
     shown = "; ".join(rows[0])[:MAX_NAME] if rows else "nothing"
     needed = ", ".join(" or ".join(group) for group in schema.required)
-    raise InvalidArgumentError(f"{schema.argument}, header", shown, f"columns {needed}")
+    raise InvalidArgumentError(f"{schema.argument}, header", shown, f"columns {needed}, of at most {MAX_COLUMNS}")
 
 
 def _joined(upper: str, lower: str) -> str:
