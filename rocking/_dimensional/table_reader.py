@@ -237,6 +237,8 @@ def read_csv(text: str, schema: Schema[Item]) -> Table[Item]:
         with suppress(InvalidArgumentError):
             sizes[delimiter] = len(_header(_start(text, delimiter, schema), schema).columns)
     delimiter = max(DELIMITERS, key=sizes.__getitem__)
+    if not sizes[delimiter]:
+        _header(list(islice(_lines(text, delimiter, schema), HEADER_ROWS)), schema)  # says what is missing
     # where commas separate the columns, a single point is the decimal sign
     return read_rows(list(_lines(text, delimiter, schema)), schema, usual="." if delimiter == "," else "")
 
