@@ -6,9 +6,10 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
-from rocking._assessment.columns import OUTPUTS, Column
+from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
 from rocking._base.errors import number
+from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
