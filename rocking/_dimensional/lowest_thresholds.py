@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -17,6 +18,7 @@ from rocking._excitation.records.record import Record
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bodies import outcome_margin_of, solve_motion
+from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -33,24 +35,33 @@ COARSE = 128
 """Number of intervals between the nodes that are solved first, a power of two.
 
 An interval between two nodes is then halved if, at a multiple of their variation there, the margin can reach zero and
-the peak rotation alpha: for the margin once for each flight up to `MOST_FLIGHTS`, since each impact makes the outcome
-depend more on the amplitude, for the peak `PEAK_VARIATION` times. Of 2,800 random bodies under seven pulses, 1,799
-overturn up to a = 12: the lowest threshold is that of all nodes for each of them. With a `PEAK_VARIATION` of 4 one is
-missed, of 2 two; with `CLOSE` = 1, ten. Of 4,000 other bodies under the pulse c2, 8 misses two and 16 none.
+the peak rotation alpha. The multiple is the number of flights, `FEWEST_FLIGHTS` at least for the peak, up to
+`MOST_FLIGHTS`, since each impact makes the outcome depend more on the amplitude. Of 2,800 random bodies under seven
+pulses, 1,799 overturn up to a = 12: with 16 at least for the peak, and `LAYERS` equal to `CLOSE`, the lowest threshold
+is that of all nodes for each of them. Of 42,000 thresholds at two sites none differs from those with the present
+values; with 8 for the peak one does, with a `MOST_FLIGHTS` of 8 one, of 4 five, all of them under the pulse c2.
 """
 
 MOST_FLIGHTS = 16
 
-PEAK_VARIATION = 16.0
+FEWEST_FLIGHTS = 4
 
-CLOSE = 32
-"""Number of nodes below the first that overturns that are all solved: layers of outcomes lie close together there."""
+CLOSE, LAYERS = 32, 4
+"""Number of nodes below the first that overturns that are all solved, at most and for each flight.
+
+Layers of outcomes lie close together there, the more of them the more flights there are.
+"""
 
 BALANCED = 1.0
 """|theta|/alpha of a body that is balanced on an edge, and of one that overturns."""
 
 AT_ONCE = 4
 """Coarse nodes solved at a time, before the bodies that have overturned are left out."""
+
+PARTS = 4
+"""Parts of an array of bodies for each core; `FEWEST` bodies in one at least, below which the overhead counts."""
+
+FEWEST = 64
 
 
 @dataclass(eq=False)
@@ -67,7 +78,7 @@ class _Nodes:
     def joined(self, other: _Nodes) -> _Nodes:
         """Those of both up to the first of each body that overturns, in order."""
         both = _Nodes(*(np.concatenate(pair) for pair in zip(vars(self).values(), vars(other).values(), strict=True)))
-        order = np.lexsort((both.place, both.line))
+        order = np.argsort(both.line * GRID.size + both.place, kind="stable")  # of two sorted runs: one merge
         line, place, overturned = both.line[order], both.place[order], both.overturned[order]
         first = np.full(line.max(initial=-1) + 1, GRID.size)
         np.minimum.at(first, line[overturned], place[overturned])
@@ -113,10 +124,22 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
     top = (np.broadcast_to(highest, shape) / uplift).ravel()
     count = np.minimum(np.searchsorted(-GRID, -1.0 / np.maximum(top, 1.0)) + 1, GRID.size)  # nodes up to the highest
 
+    found = np.full(top.size, np.nan)
+
+    def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
+        found[part] = _lowest(motion, cells[part], count[part], top[part], stop)
+
+    fill_chunks(fill, top.size, max(FEWEST, math.ceil(top.size / (PARTS * AVAILABLE_CORES))), AVAILABLE_CORES, stop)
+    return found.reshape(shape) * uplift
+
+
+def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: Array, stop: StopFlag | None) -> Array:
+    """The lowest threshold of each cell over uplift, of `count` nodes up to `top`."""
+
     def solve(line: Index, slenderness: Array) -> Solved:
         chosen = cells[line]
         chosen["slenderness"] *= slenderness[:, None]
-        records, edges = solve_motion(motion, chosen, None, stop)
+        records, edges = solve_motion(motion, chosen, 1, stop)
         margin = np.maximum(outcome_margin_of(records, edges, chosen), -1.0)
         overturned = records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
         return margin, np.where(overturned, BALANCED, records["peak_rotation"]), records["impacts"], overturned
@@ -140,8 +163,7 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
         ends = GRID[nodes.place[pair]]
         bracket = refine_brackets(0, points, ends, nodes.margin[pair], codes, met, classify, RESOLUTION)
         found[line] = 1.0 / bracket.ends[:, 0]
-    found[found > top] = np.nan
-    return found.reshape(shape) * uplift
+    return np.where(found > top, np.nan, found)
 
 
 def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Index) -> _Nodes:
@@ -167,10 +189,10 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
         gap = np.where(same, np.diff(nodes.place), 0)
         flights = np.minimum(1 + np.maximum(nodes.impacts[:-1], nodes.impacts[1:]), MOST_FLIGHTS)
         likely = _reach(nodes.margin, same, flights) >= 0.0
-        likely &= _reach(nodes.peak, same, PEAK_VARIATION) >= BALANCED
+        likely &= _reach(nodes.peak, same, np.maximum(flights, FEWEST_FLIGHTS)) >= BALANCED
         first = np.full(count.size, 2 * GRID.size)
         first[nodes.line[nodes.overturned]] = nodes.place[nodes.overturned]
-        close = nodes.place[1:] > first[nodes.line[1:]] - CLOSE
+        close = first[nodes.line[1:]] - nodes.place[1:] < np.minimum(CLOSE, LAYERS * flights)
         below = nodes.overturned[1:] | np.append(nodes.overturned, False)[2:]
         halved = np.flatnonzero((gap > 1) & (likely | close | below))
         if not halved.size:
@@ -178,7 +200,7 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
         nodes = nodes.joined(solved(nodes.line[halved], (nodes.place[halved] + nodes.place[halved + 1]) // 2))
 
 
-def _reach(values: Array, same: NDArray[np.bool_], multiple: Index | float) -> Array:
+def _reach(values: Array, same: NDArray[np.bool_], multiple: NDArray[np.integer]) -> Array:
     """The larger of two consecutive values of a body plus a multiple of the variation there; arrays (values - 1,)."""
     step = np.where(same, np.abs(np.diff(values)), 0.0)
     variation = np.maximum(step, np.maximum(np.append(0.0, step)[:-1], np.append(step, 0.0)[1:]))
