@@ -4,36 +4,46 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 DELAY = 1.0
 """Time after which the indicator appears [s]; commands that are faster do not load what it needs."""
+
+REFRESH = 0.2
+"""Time between updates of the indicator [s]."""
 
 LONG = 4.0
 """Time after which the indicator says that first calls are longer [s]."""
 
 
 @contextmanager
-def progress(text: str) -> Iterator[None]:
+def progress(text: str) -> Iterator[Callable[[float], None]]:
     """Show `text` and the elapsed time on a terminal until the block ends; nothing if stderr is piped.
 
     Parameters
     ----------
     text : str
         What is done.
+
+    Yields
+    ------
+    callable
+        To be called with the share of the work that is done [-], where that is known.
     """
     ended = threading.Event()
-    shown = threading.Thread(target=_show, args=(text, ended), daemon=True)
+    shares: deque[float] = deque(maxlen=1)
+    shown = threading.Thread(target=_show, args=(text, shares, ended), daemon=True)
     shown.start()
     try:
-        yield
+        yield shares.append
     finally:
         ended.set()
         shown.join()
 
 
-def _show(text: str, ended: threading.Event) -> None:
+def _show(text: str, shares: deque[float], ended: threading.Event) -> None:
     """Show the indicator from `DELAY` on until the work has ended."""
     begin = time.monotonic()
     if ended.wait(DELAY):
@@ -49,6 +59,8 @@ def _show(text: str, ended: threading.Event) -> None:
     with Progress(*columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False) as shown:
         task = shown.add_task(text, total=None)
         shown.tasks[0].start_time = begin
-        if not ended.wait(LONG):
-            shown.update(task, description=f"{text} (the first calls compile parts of the solver)")
-        ended.wait()
+        while not ended.wait(REFRESH):
+            note = f", {100.0 * shares[-1]:.0f} %" if shares else ""
+            if time.monotonic() - begin > LONG and not note:
+                note = " (the first calls compile parts of the solver)"
+            shown.update(task, description=text + note)
