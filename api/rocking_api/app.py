@@ -19,6 +19,7 @@ from rocking_api.http.host import HostCheck
 from rocking_api.http.memory_budget import MemoryBudgetMiddleware
 from rocking_api.http.request_log import RequestLog
 from rocking_api.http.zarr_store import ZarrStores
+from rocking_api.models.assess import AssessBody
 from rocking_api.models.blocks import BlockRows
 from rocking_api.models.pulses import BODIES
 from rocking_api.models.responses import VERSION
@@ -134,7 +135,8 @@ def _describe_bodies(app: FastAPI) -> None:
     def described() -> dict[str, object]:
         if app.openapi_schema is None:
             schemas = generate()["components"]["schemas"]
-            models: list[type[BaseModel]] = [Problem, BlockRows, *sorted(BODIES, key=lambda body: body.__name__)]
+            bodies = sorted(BODIES, key=lambda body: body.__name__)
+            models: list[type[BaseModel]] = [Problem, BlockRows, AssessBody, *bodies]
             for model in models:
                 schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
                 schemas.update(schema.pop("$defs", {}))

@@ -82,14 +82,18 @@ INPUTS = (
 
 OUTPUTS = (
     Column("object", "", "name of the object"),
-    Column("direction", "", "along which dimension of the base it rocks: width, depth, or any of a round base"),
+    Column(
+        "direction",
+        "",
+        "along which it rocks: width, depth, any of a round base, or an angle from the x axis of a mesh",
+    ),
     Column("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
     Column("uplifts", "bool", "whether a motion of the site makes it uplift"),
     Column("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
     Column("factor", "-", "lowest factor on the motions of the site at which one of them overturns it"),
     Column("governing", "", "that motion"),
     Column("overturned_by", "", "motions that overturn it at the strength of the site or below"),
-    Column("share", "-", "share of the motions of the site that overturn it"),
+    Column("share", "-", "share of the motions of the site, a pair of components being one, that overturn it"),
     Column("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
     Column("share_upper", "-", "upper end of it"),
     Column("rotation", "rad", "largest rotation under the motions that do not overturn it"),
@@ -97,13 +101,17 @@ OUTPUTS = (
     Column("yearly_rate", "1/year", "annual rate of overturning, where a hazard curve is given"),
     Column("friction_needed", "-", "coefficient of friction that uplift needs"),
     Column("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
+    Column("slides_at", "s", "earliest time at which a motion needs more friction than that, where it slides first"),
     Column("sliding", "m", "displacement if it only slides, where it slides first; the other bound"),
-    Column("smallest_width", "m", "smallest base at this height that the pulses of the site do not overturn"),
-    Column("largest_height", "m", "largest height on this base that they do not overturn"),
+    Column(
+        "smallest_width", "m", "smallest base at this height up to which the motions of the site do not overturn it"
+    ),
+    Column("largest_height", "m", "largest height on this base up to which they do not overturn it"),
     Column("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
     Column("factor_more_restitution", "-", "the factor with one higher by 0.05"),
     Column("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
     Column("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
+    Column("sampled_share", "-", "share of its variants within tolerance and restitution that a motion overturns"),
     Column("warnings", "", "what is in doubt"),
 )
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,12 @@ Array = NDArray[np.float64]
 
 LENGTHS = 1e-4, 1e3
 """Smallest and largest dimension of an object [m]."""
+
+STEP = 15
+"""Between the directions of a mesh [degrees]."""
+
+CYLINDER = 0.75
+"""12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +67,7 @@ class Object:
 
     Notes
     -----
-    The radius of gyration is that of a homogeneous box, or cylinder, of these dimensions.
+    The radius of gyration is that of a homogeneous box, or cylinder, of these dimensions; of a mesh it is computed.
     """
 
     name: str
@@ -81,35 +88,147 @@ class Object:
     def __post_init__(self) -> None:
         if (self.width is None) == (self.diameter is None) or (self.diameter is not None and self.depth is not None):
             raise InvalidArgumentError("width", self.width, "a width, with or without a depth; or a diameter")
-        for name in ("name", "pedestal", "notes"):
-            if not isinstance(getattr(self, name), str):
-                raise InvalidArgumentError(name, getattr(self, name), "a text")
+        self._check_texts()
         checked: dict[str, float] = {}
         for name in ("width", "height", "depth", "diameter", "mass_height"):
             value = getattr(self, name)
             if value is not None or name == "height":
                 checked[name] = number(name, value, *LENGTHS, unit="m")
+        for name, size in (("offset_width", "width"), ("offset_depth", "depth")):
+            half = 0.5 * checked.get(size, checked.get("diameter", math.inf))
+            checked[name] = number(name, getattr(self, name), -half, half, closed="neither", unit="m")
+        self._set(checked)
+        self._check_others()
+
+    def _check_texts(self) -> None:
+        for name in ("name", "pedestal", "notes"):
+            if not isinstance(getattr(self, name), str):
+                raise InvalidArgumentError(name, getattr(self, name), "a text")
+
+    def _set(self, values: dict[str, float]) -> None:
+        for name, value in values.items():
+            object.__setattr__(self, name, value)  # a frozen dataclass
+
+    def _check_others(self) -> None:
+        """Check what is not a dimension."""
+        checked: dict[str, float] = {}
         for name, unit in (("mass", "kg"), ("friction", "-")):
             if getattr(self, name) is not None:
                 checked[name] = positive(name, getattr(self, name), unit)
         if not (isinstance(self.restitution, str) and self.restitution == "momentum"):
             checked["restitution"] = check_number(RESTITUTION, self.restitution)
-        sizes = [checked[name] for name in ("width", "height", "depth", "diameter") if name in checked]
-        checked["tolerance"] = number("tolerance", self.tolerance, 0.0, 0.5 * min(sizes), closed="left", unit="m")
-        for name, size in (("offset_width", "width"), ("offset_depth", "depth")):
-            half = 0.5 * checked.get(size, checked.get("diameter", math.inf))
-            checked[name] = number(name, getattr(self, name), -half, half, closed="neither", unit="m")
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+        half = 0.5 * min(size for plane in self.planes.values() for size in (plane.base, plane.height))
+        checked["tolerance"] = number("tolerance", self.tolerance, 0.0, half, closed="left", unit="m")
+        self._set(checked)
+
+    @staticmethod
+    def from_mesh(path: str | Path, *, unit: str = "m", name: str | None = None, **others: Any) -> MeshObject:
+        """An object of uniform density from a surface mesh, z upwards, as of `rocking.RigidBody.from_mesh`.
+
+        It is assessed in vertical planes every 15 degrees from the x axis towards the y axis, from both sides.
+
+        Parameters
+        ----------
+        path : str or Path
+            A file that trimesh reads (STL, PLY, OBJ, GLB, ...); needs the extra `mesh`.
+        unit : str
+            Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft".
+        name : str, optional
+            For output; the name of the file by default.
+        others
+            mass, friction, restitution, tolerance, pedestal and notes, as above.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the file cannot be read, encloses no volume, or does not stand; as for an object.
+        ImportError
+            If trimesh is not installed.
+        """
+        return MeshObject(Path(path).stem if name is None else name, path=str(path), unit=unit, **others)
 
     @property
-    def directions(self) -> dict[str, tuple[float, float]]:
-        """Size of the base and offset of the centre of mass [m] of each direction in which it can rock."""
+    def planes(self) -> dict[str, Plane]:
+        """The planes in which it can rock, by name of the direction."""
         given: dict[str, Any] = vars(self)
+        height = given["height"]
+        centre = 0.5 * height if self.mass_height is None else given["mass_height"]
         if self.diameter is not None:
-            return {"any": (given["diameter"], math.hypot(given["offset_width"], given["offset_depth"]))}
+            offset = math.hypot(given["offset_width"], given["offset_depth"])
+            return {"any": Plane(given["diameter"], offset, height, centre, CYLINDER, 1.0)}
         names = ("width",) if self.depth is None else ("width", "depth")
-        return {name: (given[name], given[f"offset_{name}"]) for name in names}
+        return {name: Plane(given[name], given[f"offset_{name}"], height, centre, 1.0, 1.0) for name in names}
+
+    def outline(self, direction: str) -> Array:
+        """Outline from the side, x from the middle of the base and heights [m]; array (points, 2)."""
+        plane = self.planes[direction]
+        half = 0.5 * plane.base
+        return np.array([(-half, 0.0), (half, 0.0), (half, plane.height), (-half, plane.height)])
+
+
+@dataclass(frozen=True)
+class Plane:
+    """An object in a plane in which it rocks.
+
+    Attributes
+    ----------
+    base, offset : float
+        Size of the base, and distance of the centre of mass from its middle towards the right edge [m].
+    height, mass_height : float
+        Of the object, and of its centre of mass [m].
+    base_share, inertia : float
+        12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-].
+    """
+
+    base: float
+    offset: float
+    height: float
+    mass_height: float
+    base_share: float
+    inertia: float
+
+
+@dataclass(frozen=True)
+class MeshObject(Object):
+    """What `Object.from_mesh` makes.
+
+    Attributes
+    ----------
+    path, unit : str
+        The file, and the unit of its lengths.
+    """
+
+    path: str = ""
+    unit: str = "m"
+
+    def __post_init__(self) -> None:
+        for size in ("width", "depth", "diameter", "height", "mass_height"):
+            if getattr(self, size) is not None:
+                raise InvalidArgumentError(size, getattr(self, size), "nothing beside a mesh, which has it")
+        self._check_texts()
+        self._check_others()
+
+    @cached_property
+    def planes(self) -> dict[str, Plane]:
+        return {f"{angle} deg": _mesh_plane(self.path, angle, self.unit) for angle in range(0, 180, STEP)}
+
+    def outline(self, direction: str) -> Array:
+        from rocking._assessment.outline import mesh_outline  # noqa: PLC0415  (trimesh is an extra)
+
+        angle = float(direction.removesuffix(" deg"))
+        offset = np.array([self.planes[direction].offset, 0.0])  # of the centre of mass from the middle of the base
+        return np.asarray(mesh_outline(self.path, angle, self.unit) + offset)
+
+
+def _mesh_plane(path: str | Path, angle: int, unit: str) -> Plane:
+    """A mesh in the vertical plane at an angle from the x axis [degrees]."""
+    given = RigidBody.from_mesh(path, math.radians(angle), unit=unit).parameters
+    left, right, height, gyration, top = (
+        float(given[name]) for name in ("left", "right", "height", "gyration", "top_height")
+    )
+    base = left + right
+    inertia = 12.0 * gyration**2 / (base**2 + top**2)
+    return Plane(base, 0.5 * (left - right), top, height, 1.0, inertia)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,10 +237,8 @@ class Bodies:
 
     Attributes
     ----------
-    base, offset, height, mass_height : float array [m]
-        Dimensions along the direction.
-    round : bool array
-        Whether the base is round.
+    base, offset, height, mass_height, base_share, inertia : float array
+        As of `Plane`.
     restitution : float array [-]
         Nan: from the angular momentum.
     """
@@ -130,35 +247,31 @@ class Bodies:
     offset: Array
     height: Array
     mass_height: Array
-    round: NDArray[np.bool_]
+    base_share: Array
+    inertia: Array
     restitution: Array
 
     @classmethod
     def of(cls, objects: Iterable[Object]) -> Bodies:
         """The bodies of some objects, those of one object in a row."""
         rows = [
-            (
-                *(base, offset, one.height, 0.5 * one.height if one.mass_height is None else one.mass_height),  # type: ignore[operator]
-                *(one.diameter is not None, np.nan if one.restitution == "momentum" else one.restitution),
-            )
+            (*astuple(plane), np.nan if one.restitution == "momentum" else one.restitution)
             for one in objects
-            for base, offset in one.directions.values()
+            for plane in one.planes.values()
         ]
-        columns = np.array(rows, dtype=np.float64).reshape(-1, 6).T
-        return cls(columns[0], columns[1], columns[2], columns[3], columns[4] > 0.0, columns[5])
+        return cls(*np.array(rows, dtype=np.float64).reshape(-1, 7).T)
 
     def take(self, rows: NDArray[np.intp]) -> Bodies:
         """Some of them."""
         return Bodies(**{name: column[rows] for name, column in vars(self).items()})
 
-    def scaled(self, base: Array | float = 1.0, height: Array | float = 1.0, change: float = 0.0) -> BodyArray:
+    def scaled(self, base: Array | float = 1.0, height: Array | float = 1.0, change: Array | float = 0.0) -> BodyArray:
         """The bodies with base and height multiplied by factors (bodies,), and `change` added to the restitution."""
         b, h, centre = self.base * base, self.height * height, self.mass_height * height
-        square = np.where(self.round, 0.75 * b * b, b * b) + h * h
         middle, offset = 0.5 * b, self.offset * base
-        gyration = np.sqrt(square / 12.0)
+        gyration = np.sqrt(self.inertia * (self.base_share * b * b + h * h) / 12.0)
         body = RigidBody(left=middle + offset, right=middle - offset, height=centre, gyration=gyration, top_height=h)
-        return BodyArray(body, self.restitution, change)
+        return BodyArray(body, self.restitution, np.broadcast_to(change, b.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,13 +284,13 @@ class BodyArray(AbstractBody):
         The bodies, arrays (bodies,) or (bodies, 1).
     own : float array [-]
         Restitution of each; nan: from the angular momentum, of each edge.
-    change : float
+    change : float array [-]
         Added to the restitution, which stays in [0, 1].
     """
 
     rigid: RigidBody
     own: Array
-    change: float
+    change: Array
 
     @cached_property
     def right(self) -> Edge:
@@ -216,4 +329,4 @@ class BodyArray(AbstractBody):
     def column(self) -> BodyArray:
         """The bodies along the first of two axes."""
         given = {name: value[..., None] if value.ndim else value for name, value in self.rigid.parameters.items()}
-        return BodyArray(RigidBody(**given), self.own[:, None], self.change)
+        return BodyArray(RigidBody(**given), self.own[:, None], self.change[:, None])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,8 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.motions import friction_of, history_of
 from rocking._assessment.objects import Object
+from rocking._assessment.site import Motion, Site
 from rocking._base.equality import EqualByValue
+from rocking._base.errors import integer
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.table_reader import BadRow
 
@@ -39,6 +42,10 @@ class Assessment(EqualByValue):
         The object of each row.
     factors : float array (rows, motions)
         Lowest factor on each motion that overturns the object, nan where none up to `highest_factor` does [-].
+    rotations : float array (rows, motions)
+        Largest rotation under each motion at the strength of the site, nan where it overturns the object [rad].
+    site : Site
+        The site.
     """
 
     columns: Mapping[str, NDArray[Any]]
@@ -46,12 +53,46 @@ class Assessment(EqualByValue):
     highest_factor: float
     objects: tuple[Object, ...]
     factors: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    site: Site
 
     @property
     def rows(self) -> list[dict[str, Any]]:
         """The rows, each by the names of the columns; a number or answer that is not known is None."""
         columns = [[None if value != value else value for value in column.tolist()] for column in self.columns.values()]
         return [dict(zip(self.columns, row, strict=True)) for row in zip(*columns, strict=True)]
+
+    def worst_motion(self, row: int) -> Motion:
+        """The motion that overturns a row from the lowest factor on, or under which it rotates most."""
+        integer("row", row, 0, len(self.objects) - 1)
+        factors, rotations = self.factors[row], np.nan_to_num(self.rotations[row])
+        worst = rotations.argmax() if np.isnan(factors).all() else np.nanargmin(factors)
+        return self.site.motions[int(worst)]
+
+    def strength(self, row: int) -> float:
+        """The factor on its worst motion from which a row overturns, 1 if that is above 1 [-]."""
+        return float(np.nanmin([1.0, *self.factors[row]]))
+
+    def history(self, row: int = 0) -> xr.Dataset:
+        """The motion of a row under its worst motion, as of `rocking.RigidBody.history`.
+
+        It has the strength of the site, or that from which the row overturns if that is less.
+        """
+        motion, factor = self.worst_motion(row), self.strength(row)
+        weaker = replace(motion, peak_acceleration=factor * motion.peak_acceleration)
+        return history_of(self.objects[row], str(self.columns["direction"][row]), weaker)
+
+    def friction(self, row: int = 0) -> xr.Dataset:
+        """Friction that a row needs under each motion at the strength of the site, if it does not slide.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `motion`: `friction_needed`, the largest one [-], infinite where it lifts off; `exceeded_at`, the time
+            at which the coefficient of the object is first exceeded [s], nan where it is not, or not given.
+        """
+        integer("row", row, 0, len(self.objects) - 1)
+        return friction_of(self.objects[row], str(self.columns["direction"][row]), self.site.motions)
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a data frame."""

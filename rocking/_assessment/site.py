@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import InvalidArgumentError, number
-from rocking._base.units import Scalar
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number
+from rocking._base.units import Scalar, Values
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, as_pulse
+from rocking._excitation.records.floor import PERIODS as MODE_PERIODS
+from rocking._excitation.records.floor import floor_motion
 from rocking._excitation.records.record import Record
 from rocking.suites.hazard_curve import check_hazard_curve
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Array = NDArray[np.float64]
 
@@ -24,6 +30,15 @@ STRENGTHS = 1e-3, 1e3
 
 LENGTH = 0.01, 10.0
 """Shortest and longest period of a pulse, and ratio of PGV to PGA [s]."""
+
+PAIR_ANGLES = 12
+"""Directions in which the components of a pair are assessed, over 180 degrees [-]; even."""
+
+SHAPE_PIECES = 2000
+"""Linear pieces for a pulse that is not given by samples [-]: from its largest value they depart by 2e-6."""
+
+MOST_SAMPLES = 20_000_000
+"""Most samples of all motions of a floor together [-]."""
 
 PERIODS = 12
 """Periods of each shape where the site has a range of periods, in equal ratios from its ends [-]."""
@@ -40,15 +55,21 @@ class Motion:
     motion : AbstractPulse or Record
         The ground motion.
     peak_acceleration : float
-        At the site [m/s2].
+        At the site [m/s2]; on a floor, that of the floor.
     period : float
         Of a pulse [s]; 1 for a record.
+    group : int
+        Motions of one group are one event: the components of a pair, and a pair at other angles.
+    ground : float
+        Peak ground acceleration that belongs to `peak_acceleration` [m/s2].
     """
 
     name: str
     motion: AbstractPulse | Record
     peak_acceleration: float
     period: float
+    group: int
+    ground: float
 
 
 @dataclass(frozen=True)
@@ -68,14 +89,20 @@ class Site:
     periods : (float, float)
         Shortest and longest period of the pulses [s], 0.01 to 10, shortest <= longest; `PERIODS` of them are
         assessed.
-    records : sequence of Record
-        The suite; its records count as independent and equally likely.
-    hazard : (array_like, array_like)
-        Peak ground accelerations [m/s2], ascending, and annual rates of exceedance [1/year]; with records.
+    records : sequence of Record or (Record, Record)
+        The suite; its records count as independent and equally likely, with their vertical components. Two horizontal
+        components of one station are assessed at angles every 15 degrees from the first towards the second one and
+        count as one record, which overturns an object if it does so at an angle. The PGA of a pair is the larger one.
+    hazard : xarray.DataArray or (array_like, array_like)
+        Peak ground accelerations [m/s2], ascending, and annual rates of exceedance [1/year]; with records. As of
+        `rocking.suites.read_hazard`.
     shapes : sequence of str or AbstractPulse, optional
         Pulse shapes; by default all pulses by name that leave the ground at rest.
     moving_ground : bool
         Whether the default shapes include those that leave the ground moving: half sine, rectangular.
+    floor_periods, floor_damping, floor_participation : float or sequence of float
+        Modes of a building of which the objects are on a floor, as `periods`, `damping` and `participation` of
+        `rocking.floor_motion`; without periods they are on the ground. Factors are on the motion of the ground.
 
     Raises
     ------
@@ -86,26 +113,41 @@ class Site:
     pga: Scalar | None = None
     pgv: Scalar | None = None
     periods: tuple[Scalar, Scalar] | None = None
-    records: Sequence[Record] = ()
-    hazard: tuple[ArrayLike, ArrayLike] | None = None
+    records: Sequence[Record | tuple[Record, Record]] = ()
+    hazard: xr.DataArray | tuple[ArrayLike, ArrayLike] | None = None
     shapes: Sequence[str | AbstractPulse] | None = None
     moving_ground: bool = False
+    floor_periods: Values | None = None
+    floor_damping: Values = 0.05
+    floor_participation: Values = 1.0
 
     def __post_init__(self) -> None:
         for name, unit in (("pga", "m/s2"), ("pgv", "m/s")):
             if getattr(self, name) is not None:
                 value = number(name, getattr(self, name), *STRENGTHS, unit=unit)
                 object.__setattr__(self, name, value)  # a frozen dataclass
-        object.__setattr__(self, "records", tuple(self.records))
+        object.__setattr__(self, "records", tuple(_checked_pair(one) for one in self.records))
         ways = (self.pgv is not None) + (self.periods is not None) + bool(self.records)
         if ways != 1:
             raise InvalidArgumentError("site", f"{ways} of pgv, periods, records", "exactly one of them")
         if not self.records and self.pga is None:
             raise InvalidArgumentError("pga", None, "a peak ground acceleration, with pgv or periods")
+        if self.floor_periods is not None:
+            given = self.floor_periods if isinstance(self.floor_periods, (list, tuple)) else (self.floor_periods,)
+            periods = tuple(number("floor_periods", one, *MODE_PERIODS, unit="s") for one in given)
+            damping = in_range("floor_damping", self.floor_damping, 0.0, 1.0, closed="left")
+            participation = in_range("floor_participation", self.floor_participation, -100.0, 100.0)
+            modes: dict[str, Any] = {
+                "floor_periods": periods,
+                "floor_damping": damping,
+                "floor_participation": participation,
+            }
+            for name, modal in zip(modes, broadcast(modes, [np.array(periods), damping, participation]), strict=True):
+                object.__setattr__(self, name, tuple(modal.tolist()))
         if self.hazard is not None:
             if not self.records:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
-            check_hazard_curve(self.hazard)
+            object.__setattr__(self, "hazard", check_hazard_curve(_hazard_pair(self.hazard)))
         if self.periods is not None:
             low, high = (number("periods", value, *LENGTH, unit="s") for value in self.periods)
             if low > high:
@@ -118,29 +160,107 @@ class Site:
                 raise InvalidArgumentError("shapes", self.shapes, "one or more pulses")
             object.__setattr__(self, "shapes", tuple(as_pulse(shape) for shape in self.shapes))
 
-    @property
+    @cached_property
     def motions(self) -> list[Motion]:
         """The motions, each once; of a pulse its mirror image is not listed, which is assessed as well."""
-        pga, pgv, periods = (_floats(value) for value in (self.pga, self.pgv, self.periods))
-        if self.records:
-            return [
-                Motion(record.name or f"record {k}", record, (pga or [record.peak_acceleration])[0], 1.0)
-                for k, record in enumerate(self.records, start=1)
+        found = self._records() if self.records else self._pulses()
+        if self.floor_periods is None:
+            return found
+        floors, size = [], 0
+        for one in found:
+            floors.append(self._on_floor(one))
+            size += floors[-1].motion.samples  # type: ignore[operator]
+            if size > MOST_SAMPLES:
+                allowed = f"periods at which all motions together have at most {MOST_SAMPLES} samples"
+                raise InvalidArgumentError("floor_periods", self.floor_periods, allowed)
+        return floors
+
+    def _records(self) -> list[Motion]:
+        found = []
+        for group, given in enumerate(self.records):
+            components = [("", given)] if isinstance(given, Record) else rotated(*given)
+            name = (given if isinstance(given, Record) else given[0]).name or f"record {group + 1}"
+            peak = max(one.peak_acceleration for _, one in components[:: PAIR_ANGLES // 2])  # of the given ones
+            ground = _floats(self.pga)[0] if self.pga is not None else peak
+            found += [
+                Motion(name + angle, one, ground / peak * one.peak_acceleration, 1.0, group, ground)
+                for angle, one in components
             ]
+        return found
+
+    def _pulses(self) -> list[Motion]:
+        pga, pgv, periods = (_floats(value) for value in (self.pga, self.pgv, self.periods))
         shapes = self.shapes
         if shapes is None:
             named = map(as_pulse, PULSE_NAMES)
             shapes = [shape for shape in named if self.moving_ground or impulse_of(shape).ends_at_rest]
+        pulses = [as_pulse(shape) for shape in shapes]
         if pgv:
             unit = 2.0 * math.pi * pgv[0] / pga[0]
-            return [Motion(one.name, one, pga[0], unit / impulse_of(one).largest) for one in map(as_pulse, shapes)]
-        tried = np.geomspace(periods[0], periods[1], PERIODS if periods[0] < periods[1] else 1).tolist()
-        return [Motion(f"{one.name}, {t:.3g} s", one, pga[0], t) for one in map(as_pulse, shapes) for t in tried]
+            chosen = [(one.name, one, unit / impulse_of(one).largest) for one in pulses]
+        else:
+            tried = np.geomspace(periods[0], periods[1], PERIODS if periods[0] < periods[1] else 1).tolist()
+            chosen = [(f"{one.name}, {t:.3g} s", one, t) for one in pulses for t in tried]
+        return [Motion(name, one, pga[0], t, group, pga[0]) for group, (name, one, t) in enumerate(chosen)]
 
-    @property
-    def hazard_curve(self) -> tuple[Array, Array] | None:
-        """Peak ground accelerations [m/s2] and annual rates of exceedance [1/year], where they are given."""
-        return None if self.hazard is None else check_hazard_curve(self.hazard)
+    def _on_floor(self, motion: Motion) -> Motion:
+        given = motion.motion
+        ground = given if isinstance(given, Record) else sampled(motion)
+        modes: Any = (self.floor_periods, self.floor_damping, self.floor_participation)
+        found = floor_motion(ground, **dict(zip(("periods", "damping", "participation"), modes, strict=True)))
+        scale = motion.peak_acceleration / ground.peak_acceleration
+        return replace(motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0)
+
+
+def _hazard_pair(given: Any) -> tuple[ArrayLike, ArrayLike]:
+    """Intensities and rates of a hazard curve of PGA."""
+    if isinstance(given, Sequence) and len(given) == 2:
+        return given[0], given[1]
+    if getattr(given, "dims", None) != ("intensity",):
+        raise InvalidArgumentError("hazard", given, "intensities and annual rates")
+    if given.attrs.get("measure", "pga") != "pga":
+        raise InvalidArgumentError("hazard", given.attrs["measure"], "a hazard curve of pga")
+    return given["intensity"].values, given.values
+
+
+def _checked_pair(given: Any) -> Record | tuple[Record, Record]:
+    """A record, or two with one step."""
+    if isinstance(given, Record):
+        return given
+    pair = tuple(given) if isinstance(given, Sequence) else ()
+    if len(pair) != 2 or not all(isinstance(one, Record) for one in pair):
+        raise InvalidArgumentError("records", given, "records, or pairs of two records")
+    first, second = pair
+    if first.time_step != second.time_step:
+        allowed = f"the time step of its first component, {first.time_step:g} s"
+        raise InvalidArgumentError("records", f"a pair whose second component has {second.time_step:g} s", allowed)
+    return first, second
+
+
+def rotated(first: Record, second: Record) -> list[tuple[str, Record]]:
+    """Components of a pair along directions every 15 degrees, with the name of the angle."""
+    size = max(first.samples, second.samples)
+    x, y = (np.pad(one.acceleration, (0, size - one.samples)) for one in (first, second))
+    vertical = next((one.vertical for one in (first, second) if one.vertical is not None), None)
+    up = None if vertical is None else np.pad(vertical, (0, size - vertical.size))
+    remarks = tuple(dict.fromkeys((*first.remarks, *second.remarks)))
+    found = []
+    for k in range(PAIR_ANGLES):
+        angle = math.pi * k / PAIR_ANGLES
+        along = math.cos(angle) * x + math.sin(angle) * y
+        record = Record(along, first.time_step, "m/s2", first.name, first.source, remarks, up)
+        found.append((f", {180 * k // PAIR_ANGLES} deg", record))
+    return found
+
+
+def sampled(motion: Motion) -> Record:
+    """A pulse at the strength of the site as a record of linear pieces."""
+    pulse = motion.motion
+    if isinstance(pulse, Record):
+        return pulse
+    phases = np.linspace(pulse.start, pulse.end, SHAPE_PIECES + 1)
+    step = (phases[1] - phases[0]) * motion.period / (2.0 * math.pi)
+    return Record(pulse.shape(phases) * motion.peak_acceleration, step, "m/s2", motion.name)
 
 
 def _floats(value: Any) -> list[float]:

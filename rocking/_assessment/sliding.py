@@ -12,19 +12,16 @@ Newmark N. M. (1965), Effects of earthquakes on dams and embankments, Geotechniq
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from bisect import bisect_left
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._assessment.site import Motion
+from rocking._assessment.site import Motion, sampled
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record
 
 Array = NDArray[np.float64]
-
-SHAPE_PIECES = 2000
-"""Linear pieces for a pulse that is not given by samples."""
 
 
 def sliding_displacement(motion: Motion, friction: float) -> float:
@@ -37,27 +34,58 @@ def sliding_displacement(motion: Motion, friction: float) -> float:
     friction : float
         Coefficient of friction [-], > 0.
     """
-    given = motion.motion
-    if isinstance(given, Record):
-        times, samples = given.times, given.acceleration * (motion.peak_acceleration / given.peak_acceleration)
-    else:
-        phases, values = given.samples or _sampled(given.start, given.end, given.shape)
-        times, samples = phases * (motion.period / (2.0 * math.pi)), values * motion.peak_acceleration
+    times, samples, _ = _pieces(motion)
     return largest_slip(times, samples, friction * STANDARD_GRAVITY)
 
 
-def _sampled(start: float, end: float, shape: object) -> tuple[Array, Array]:
-    phases = np.linspace(start, end, SHAPE_PIECES + 1)
-    return phases, shape(phases)  # type: ignore[operator]
+def first_exceedance(motion: Motion, friction: float) -> float:
+    """Time at which a body at rest needs more than a coefficient of friction, nan if it never does [s].
+
+    It needs |a|/(g + w) of the horizontal and vertical acceleration.
+    """
+    times, samples, vertical = _pieces(motion)
+    excess = np.abs(samples) - friction * (STANDARD_GRAVITY + vertical)  # linear on a piece between zeros of a
+    over = np.flatnonzero(excess > 0.0)
+    if not over.size:
+        return math.nan
+    k = int(over[0])
+    if k == 0:
+        return 0.0
+    sign = math.copysign(1.0, samples[k])
+    before = sign * samples[k - 1] - friction * (STANDARD_GRAVITY + vertical[k - 1])
+    return float(times[k - 1] + (times[k] - times[k - 1]) * -before / (excess[k] - before))
+
+
+def _pieces(motion: Motion) -> tuple[Array, Array, Array]:
+    """Times [s], and horizontal and vertical accelerations [m/s2] that are linear between them."""
+    given = motion.motion
+    if isinstance(given, Record) or given.samples is None:
+        record = sampled(motion)
+        scale = motion.peak_acceleration / (
+            record.peak_acceleration if isinstance(given, Record) else motion.peak_acceleration
+        )
+        upwards = np.zeros(record.samples) if record.vertical is None else record.vertical * scale
+        return record.times, record.acceleration * scale, upwards
+    phases, values = given.samples
+    return phases * (motion.period / (2.0 * math.pi)), values * motion.peak_acceleration, np.zeros(values.size)
 
 
 def largest_slip(times: Array, acceleration: Array, resistance: float) -> float:
     """Largest |displacement| [m] under accelerations that are linear between times; arrays (samples,), SI units."""
     slip = velocity = largest = 0.0
-    for (start, end), (first, last) in zip(pairwise(times.tolist()), pairwise(acceleration.tolist()), strict=True):
-        left = end - start
-        rate = (last - first) / left
-        here = first
+    exceeds = np.abs(acceleration) > resistance
+    starts = np.flatnonzero(exceeds[:-1] | exceeds[1:]).tolist()  # pieces on which a block at rest may start to slide
+    at, values = times.tolist(), acceleration.tolist()
+    k = 0
+    while k < len(at) - 1:
+        if velocity == 0.0:
+            following = bisect_left(starts, k)
+            if following == len(starts):
+                break
+            k = starts[following]
+        left, here = at[k + 1] - at[k], values[k]
+        rate = (values[k + 1] - here) / left
+        k += 1
         while left > 0.0:
             if velocity == 0.0:
                 wait = _time_to_slip(here, rate, resistance)

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._assessment.assess import CONFIDENCE, overturned_by
+from rocking._assessment.assess import CONFIDENCE
 from rocking._assessment.objects import Bodies
+from rocking._assessment.search import overturned_by
 from rocking._assessment.site import Site
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, integer
@@ -147,4 +148,5 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
         if isinstance(eta, str)
         else np.clip(np.broadcast_to(np.asarray(eta, float), size), 0.0, 1.0)
     )
-    return Bodies(width, offset, height, centre, np.zeros(size, dtype=np.bool_), own).scaled()
+    one = np.ones(size)
+    return Bodies(width, offset, height, centre, one, one, own).scaled()

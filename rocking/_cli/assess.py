@@ -16,7 +16,6 @@ from rocking._cli.options import OutputOptions, with_options
 if TYPE_CHECKING:
     from rocking._assessment.report import Project
     from rocking._assessment.result import Assessment
-    from rocking._assessment.site import Site
     from rocking._cli.printing import Form
     from rocking._dimensional.table_reader import BadRow
     from rocking._excitation.records.record import Record
@@ -30,17 +29,54 @@ SHOWN = (
 MOST = 5
 """Objects that are named beside a warning at most."""
 
-HINTS = {"objects": "OBJECTS", "site": "--pgv", "periods": "--period-min", "pulse": "--shapes"}
+HINTS = {
+    "records": "--pair",
+    "objects": "OBJECTS",
+    "site": "--pgv",
+    "periods": "--period-min",
+    "pulse": "--shapes",
+    "path": "--mesh",
+}
 """Where a value was given, by the argument that an error names; others have the name of the option."""
 
 Objects = Annotated[
-    str, typer.Argument(help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells.")
+    str | None,
+    typer.Argument(help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells."),
 ]
+Mesh = Annotated[
+    list[str] | None,
+    typer.Option(help="Closed surface of an object (STL, PLY, OBJ, ...), z upwards, from all sides; may be repeated."),
+]
+MeshUnit = Annotated[str, typer.Option(help="Unit of the lengths of the meshes.")]
+Friction = Annotated[float | None, typer.Option(help="Coefficient of friction of the meshes.")]
 Pga = Annotated[str | None, typer.Option(help="Peak ground acceleration, such as 0.3g; records are scaled to it.")]
 Pgv = Annotated[str | None, typer.Option(help="Peak ground velocity, such as '0.3 m/s': each pulse has this one.")]
 PeriodMin = Annotated[str | None, typer.Option(help="In place of PGV: shortest period of the pulses, such as 0.2s.")]
 PeriodMax = Annotated[str | None, typer.Option(help="Longest period of the pulses, such as 1s.")]
 Records = Annotated[list[str] | None, typer.Option("--record", help="Accelerogram of the suite; may be repeated.")]
+Pair = Annotated[
+    list[str] | None,
+    typer.Option(help="Two horizontal components, FILE,FILE: one record at all angles; may be repeated."),
+]
+Vertical = Annotated[
+    list[str] | None,
+    typer.Option(help="Vertical component: one for each --record, then one for each --pair, or none."),
+]
+Hazard = Annotated[str | None, typer.Option(help="Hazard curve of PGA of the site, as of OpenQuake or the USGS.")]
+FloorPeriods = Annotated[
+    str | None,
+    typer.Option(
+        "--floor-periods", "--floor", help="Periods of a building of which the objects are on a floor: 0.5s,0.2s."
+    ),
+]
+FloorDamping = Annotated[str, typer.Option(help="Damping ratios of these modes, one or one for each.")]
+FloorParticipation = Annotated[
+    str, typer.Option(help="Participation factors times mode shapes at the floor, one or one for each.")
+]
+Samples = Annotated[
+    int, typer.Option(help="Variants of each object within its tolerance that are tried, such as 10000.")
+]
+Seed = Annotated[int, typer.Option(help="Seed of these variants.")]
 Unit = Annotated[str | None, typer.Option(help="Unit of the records if their files state none.")]
 TimeStep = Annotated[str | None, typer.Option(help="Time step of the records if their files state none.")]
 Shapes = Annotated[
@@ -61,6 +97,7 @@ Output = Annotated[str | None, typer.Option("--output", "-o", help="CSV file to 
 
 
 Report = Annotated[str | None, typer.Option(help="HTML file to write: verdicts, drawings, inputs; prints on A4.")]
+Author = Annotated[str, typer.Option(help="Author of the report.")]
 Title = Annotated[str, typer.Option(help="Title of the report.")]
 Place = Annotated[str, typer.Option("--site", help="Name of the site in the report.")]
 Date = Annotated[str | None, typer.Option(help="Date of the report; by default today.")]
@@ -68,21 +105,33 @@ Date = Annotated[str | None, typer.Option(help="Date of the report; by default t
 
 @with_options
 def assess(
-    objects: Objects,
     form: OutputOptions,
+    objects: Objects = None,
+    mesh: Mesh = None,
+    mesh_unit: MeshUnit = "m",
+    friction: Friction = None,
     pga: Pga = None,
     pgv: Pgv = None,
     period_min: PeriodMin = None,
     period_max: PeriodMax = None,
     record: Records = None,
+    pair: Pair = None,
+    vertical: Vertical = None,
     unit: Unit = None,
     time_step: TimeStep = None,
+    hazard: Hazard = None,
+    floor_periods: FloorPeriods = None,
+    floor_damping: FloorDamping = "0.05",
+    floor_participation: FloorParticipation = "1",
     shapes: Shapes = None,
     moving_ground: MovingGround = False,
     sensitivity: Sensitivity = True,
+    samples: Samples = 0,
+    seed: Seed = 0,
     output: Output = None,
     report: Report = None,
     title: Title = "Assessment of free-standing objects",
+    author: Author = "",
     place: Place = "",
     date: Date = None,
 ) -> None:
@@ -91,55 +140,100 @@ def assess(
     Rows of the table that cannot be read are named at the end, and the exit code is 2; the others are assessed.
     """
     from rocking._assessment.assess import assess as assess_objects
+    from rocking._assessment.objects import Object
     from rocking._assessment.report import Project
     from rocking._assessment.site import Site
-    from rocking._assessment.tables import read_objects
+    from rocking._assessment.tables import ObjectTable, read_objects
     from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
     from rocking._cli.record import file_errors
+    from rocking.suites.hazard_files import read_hazard
 
     with option_errors(HINTS), file_errors():
         kind = printing.output_format(form)
         if (period_min is None) != (period_max is None):
             missing = "period_min" if period_min is None else "period_max"
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
-        periods = None if period_min is None or period_max is None else (period_min, period_max)
-        names = None if shapes is None else shapes.split(",")
-        site = Site(pga, pgv, periods, _read(record or (), unit, time_step), None, names, moving_ground)
-        table = read_objects(objects)
+        if friction is not None and not mesh:
+            raise InvalidArgumentError("friction", friction, "a mesh beside it; a table has a column for it")
+        site = Site(
+            pga,
+            pgv,
+            None if period_min is None or period_max is None else (period_min, period_max),
+            _read(record or (), pair or (), vertical or (), unit, time_step),
+            None if hazard is None else read_hazard(hazard),
+            None if shapes is None else shapes.split(","),
+            moving_ground,
+            None if floor_periods is None else floor_periods.split(","),
+            _numbers("floor_damping", floor_damping),
+            _numbers("floor_participation", floor_participation),
+        )
+        table = ObjectTable([], []) if objects is None else read_objects(objects)
         bad = [f"{objects}, {printing.printable(str(one))}" for one in table.bad_rows]
-        if not table.objects:
-            raise InvalidArgumentError("objects", objects, "\n".join(["a table with one object or more", *bad]))
-        with progress(f"assessing {len(table.objects)} objects"):
-            found = assess_objects(table.objects, site, sensitivity=sensitivity)
+        meshes = [Object.from_mesh(path, unit=mesh_unit, friction=friction) for path in mesh or ()]
+        given = [*table.objects, *meshes]
+        if not given:
+            raise InvalidArgumentError(
+                "objects", objects, "\n".join(["a table with one object or more, or a mesh", *bad])
+            )
+        with progress(f"assessing {len(given)} objects") as advance:
+            found = assess_objects(given, site, sensitivity=sensitivity, samples=samples, seed=seed, progress=advance)
         if output is not None:
             _write("output", output, found.to_csv(bad_rows=table.bad_rows))
         if report is not None:
             day = date or dt.datetime.now().astimezone().date().isoformat()
-            project = Project(title, place, day, shlex.join(["rocking", *sys.argv[1:]]))
-            _write("report", report, _html(found, site, project, table.bad_rows))
+            command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
+            project = Project(title, author, place, day, command)
+            _write("report", report, _html(found, project, table.bad_rows))
     _print(found, kind, bad)
     if bad:
         typer.echo("\n".join(bad), err=True)
         raise typer.Exit(2)
 
 
-def _read(paths: Sequence[str], unit: str | None, time_step: str | None) -> list[Record]:
-    """The records of a suite."""
+def _read(
+    paths: Sequence[str], pairs: Sequence[str], verticals: Sequence[str], unit: str | None, time_step: str | None
+) -> list[Record | tuple[Record, Record]]:
+    """The records and pairs of components of a suite."""
+    from rocking._base.errors import InvalidArgumentError
     from rocking._excitation.records.readers.read_record import read_record
 
-    return [read_record(path, unit=unit, time_step=time_step) for path in paths]
+    if verticals and len(verticals) != len(paths) + len(pairs):
+        allowed = f"{len(paths) + len(pairs)} of them, one for each record and pair"
+        raise InvalidArgumentError("vertical", f"{len(verticals)} files", allowed)
+    up = iter(verticals)
+
+    def read(path: str) -> Record:
+        return read_record(path, vertical=next(up, None), unit=unit, time_step=time_step)
+
+    found: list[Record | tuple[Record, Record]] = [read(path) for path in paths]
+    for one in pairs:
+        first, comma, second = one.partition(",")
+        if not comma:
+            raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
+        found.append((read(first), read_record(second, unit=unit, time_step=time_step)))
+    return found
 
 
-def _html(found: Assessment, site: Site, project: Project, bad_rows: Sequence[BadRow]) -> str:
+def _numbers(option: str, text: str) -> list[float]:
+    """Numbers separated by commas."""
+    from rocking._base.errors import InvalidArgumentError
+
+    try:
+        return [float(one) for one in text.split(",")]
+    except ValueError:
+        raise InvalidArgumentError(option, text, "a number, or several separated by commas") from None
+
+
+def _html(found: Assessment, project: Project, bad_rows: Sequence[BadRow]) -> str:
     """The report."""
     from rocking._assessment.report import report_html
     from rocking._base.errors import InvalidArgumentError
 
     try:
-        return report_html(found, site, project, bad_rows)
+        return report_html(found, project, bad_rows)
     except ModuleNotFoundError as error:
         raise InvalidArgumentError(
             "report", error.name, "with the extra `report`: pip install 'rocking[report]'"

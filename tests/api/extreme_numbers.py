@@ -76,6 +76,7 @@ NUMBERS: dict[str, Any] = {
     "start_phase": 1.0, "impact_phase": 3.0, "impact_velocity": 0.5,
     "depth": 0.3, "diameter": 0.4, "mass_height": 0.7, "offset": 0.0, "friction": 0.5,
     "offset_width": 0.01, "offset_depth": 0.01, "pga": 3.0, "pgv": 0.4, "seed": 1,
+    "floor_periods": [0.5, 0.1], "floor_damping": 0.1, "floor_participation": 1.3,
     "hazard": ([1.0, 10.0], [1e-2, 1e-4]),
     "exponents": {"a_g/g": 1, "alpha": -2}, "largest": 2, "cos_alpha": math.cos(0.3),
 }  # fmt: skip
@@ -99,7 +100,7 @@ FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.
 OBJECTS: dict[str, Any] = {
     "pulse": "sine", "motion": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
     "record": RECORD, "records": [RECORD, noise(2)], "outcomes": np.arange(4) > 1,
-    "blocks": BLOCK, "body": BLOCK,
+    "blocks": BLOCK, "body": BLOCK, "objects": rocking.Object("vase", width=0.4, height=1.6),
     "motions": [noise(k) for k in range(4)], "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
     "fragility": FRAGILITY, "site": rocking.Site(pga=3.0, pgv=0.4), "argument": Orientation.L0,
@@ -128,6 +129,7 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
     "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
+    "seed": (1, ""), "friction": (0.5, ""),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -135,10 +137,14 @@ TEXTS = {
     "pulse", "blocks", "json", "csv", "units", "contact", "output", "file", "unit", "component", "vertical",
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
+    "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
 }  # fmt: skip
 """Options and arguments that take none."""
 
-COMMON = {"edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"}
+COMMON = {
+    *("edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"),
+    *("seed", "friction"),
+}
 VARIANTS = (
     {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
     {"width", "height", "peak_acceleration", "period", "period_min", "period_max", "duration", "pga"},

@@ -3,6 +3,7 @@
 import csv
 import io
 
+import numpy as np
 import pytest
 from rocking_api.models.assess import AssessedRow
 from rocking_api.routers import assess as router
@@ -32,6 +33,63 @@ def test_rows_are_those_of_a_direct_call(client):
         assert answer["motions"] == ["sine", "ricker"]
         assert answer["bad_rows"] == []
     assert list(AssessedRow.model_fields) == [one.name for one in OUTPUTS]
+
+
+def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
+    times = 0.05 * np.arange(60)
+    x, y, z = np.sin(4 * times), np.cos(3 * times), 0.2 * np.sin(9 * times)
+    about = {"time_step": 0.05, "unit": "m/s2"}
+    pair = {"acceleration": x.tolist(), "second": y.tolist(), "vertical": z.tolist(), "name": "A", **about}
+    curve = {"intensity": [0.5, 3.0, 9.0], "annual_rate": [1e-2, 1e-3, 1e-5]}
+    body = {"objects": ROWS, "records": [pair, {"acceleration": y.tolist(), **about}], "hazard": curve}
+    query = "pga=2&sensitivity=false&samples=50&seed=3&floor_periods=0.5,0.1&floor_participation=1.2,-0.2"
+    answer = client.post(f"/v1/assess?{query}", json=body)
+    assert answer.status_code == 200, answer.text
+    first, second, other = (
+        rocking.Record(x, 0.05, "m/s2", "A", vertical=z),
+        rocking.Record(y, 0.05, "m/s2", "A"),
+        rocking.Record(y, 0.05, "m/s2", "record 2"),
+    )
+    site = rocking.Site(
+        2.0,
+        records=[(first, second), other],
+        hazard=(curve["intensity"], curve["annual_rate"]),
+        floor_periods=[0.5, 0.1],
+        floor_participation=[1.2, -0.2],
+    )
+    expected = rocking.assess([rocking.Object(**row) for row in ROWS], site, sensitivity=False, samples=50, seed=3)
+    assert answer.json()["rows"] == expected.rows
+    assert len(answer.json()["motions"]) == 13
+    without = client.post("/v1/assess?sensitivity=false", json=body | {"hazard": None})
+    assert without.json()["rows"][0]["yearly_rate"] is None
+
+
+@pytest.mark.parametrize(
+    ("body", "parameter"),
+    [
+        ({"objects": ROWS, "records": [{"acceleration": [1.0, 0.0], "time_step": 0.1}], "hazard": {}}, "hazard"),
+        ({"objects": ROWS, "records": [{"acceleration": [], "time_step": 0.1}]}, "acceleration"),
+        ({"objects": ROWS, "records": [{"acceleration": [1.0, 0.0], "time_step": 0.1, "unit": "ly"}]}, "unit"),
+        ({"objects": ROWS, "records": 3}, "records"),
+        ({"objects": ROWS, "mesh": "/etc/passwd"}, "mesh"),
+        ({"objects": [{"path": "/etc/passwd"}]}, "objects"),
+        ({"objects": []}, "objects"),
+    ],
+)
+def test_wrong_records_are_refused_by_name(client, body, parameter):
+    response = client.post("/v1/assess?pga=2", json=body)
+    assert response.status_code == 422
+    assert parameter in response.text
+
+
+def test_a_floor_of_too_many_samples_and_too_many_motions_are_refused(client, monkeypatch):
+    assert_problem(client.post(f"{URL}&floor_periods=0", json=ROWS), 422, "floor_periods")
+    assert_problem(client.post(f"{URL}&floor_periods=a", json=ROWS), 422, "floor_periods")
+    assert_problem(client.post(f"{URL}&samples=1000000", json=ROWS), 422, "samples")
+    monkeypatch.setattr("rocking._assessment.site.MOST_SAMPLES", 3000)
+    assert_problem(client.post(f"{URL}&floor_periods=1", json=ROWS), 422, "floor_periods")
+    monkeypatch.setattr(router, "MAX_PAIRS", 5)
+    assert_problem(client.post(URL, json=ROWS), 413, "objects")
 
 
 def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
@@ -75,6 +133,7 @@ def test_names_that_a_spreadsheet_would_evaluate_are_text(client):
         ("pga=3&pgv=0.3&shapes=", "pulse"),
         ("pga=3&pgv=0.3&shapes=sine,square", "pulse"),
         ("pga=3&pgv=0.3&hazard=1", "hazard"),
+        ("pga=3&pgv=0.3&samples=1.5&floor_periods=0.5&shapes=sine", "samples"),
     ],
 )
 def test_a_wrong_site_is_refused_by_name(client, query, parameter):

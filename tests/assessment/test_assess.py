@@ -6,9 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from rocking._assessment.assess import HIGHEST_FACTOR, assess
+from rocking._assessment.assess import assess
 from rocking._assessment.columns import OUTPUTS, VERDICTS
 from rocking._assessment.objects import Bodies, Object
+from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.rigid_body import RigidBody
@@ -38,7 +39,8 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
             top = HIGHEST_FACTOR if row["factor"] is None else row["factor"]
             below = top * np.linspace(0.05, 0.997, 60)
             tried = np.concatenate([below, below * 1.0025, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
-            width, offset = one.directions[row["direction"]]
+            plane = one.planes[row["direction"]]
+            width, offset = plane.base, plane.offset
             gyration = math.hypot(width, one.height) / math.sqrt(12.0)
             hit = set()
             for motion, side in itertools.product(site.motions, (offset, -offset)):

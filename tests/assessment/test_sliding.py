@@ -14,7 +14,7 @@ from rocking._excitation.pulses import as_pulse
 def test_rectangular_pulse_in_closed_form() -> None:
     friction, peak, period = 0.2, 5.0, 0.6
     speed, resistance = peak * 0.5 * period, friction * STANDARD_GRAVITY
-    found = sliding_displacement(Motion("", as_pulse("rectangular"), peak, period), friction)
+    found = sliding_displacement(Motion("", as_pulse("rectangular"), peak, period, 0, peak), friction)
     assert found == pytest.approx(
         speed**2 / (2.0 * resistance) * (1.0 - resistance / peak), rel=1e-12
     )  # Newmark (1965)

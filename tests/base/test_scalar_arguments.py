@@ -51,6 +51,11 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
          {"name": "amphora", "diameter": 0.4, "height": 1.6}],
     ),
     "Site": (rocking.Site, [{"pga": 3.0, "pgv": 0.4}]),
+    "assess": (
+        rocking.assess,
+        [{"objects": rocking.Object("vase", width=0.4, height=1.6), "site": rocking.Site(3.0, 0.4, shapes=["sine"]),
+          "sensitivity": False, "samples": 64, "seed": 1}],
+    ),
     "overturning_probability": (
         rocking.overturning_probability,
         [{"site": rocking.Site(pga=3.0, pgv=0.4), "width": stats.norm(0.4, 0.01), "height": 1.6, "samples": 64,

@@ -4,6 +4,7 @@ import json
 import re
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -63,6 +64,52 @@ def test_records_and_periods(table, tmp_path):
     assert len(json.loads(run("assess", str(table), *periods, "--no-sensitivity", "--format=json"))["motions"]) == 12
 
 
+def test_pairs_with_vertical_on_a_floor_with_a_hazard_curve(table, tmp_path):
+    times = 0.05 * np.arange(60)
+    parts = {"x": np.sin(4 * times), "y": np.cos(3 * times), "z": 0.2 * np.sin(9 * times)}
+    for name, values in parts.items():
+        (tmp_path / f"{name}.csv").write_text("".join(f"{t:.2f},{a:.6f}\n" for t, a in zip(times, values, strict=True)))
+    files = {name: str(tmp_path / f"{name}.csv") for name in parts}
+    curve = tmp_path / "PGA" / "curves.csv"
+    curve.parent.mkdir()
+    curve.write_text("lon,lat,0.05,0.2,1.0\n0,0,1e-2,1e-3,1e-5\n")
+    options = ["--pair", f"{files['x']},{files['y']}", "--vertical", files["z"], "--unit", "m/s2", "--pga", "2 m/s2"]
+    options += ["--hazard", str(curve), "--floor", "0.5s", "--floor-participation", "1.3"]
+    found = json.loads(run("assess", str(table), *options, "--no-sensitivity", "--format=json"))
+    x, y, z = (np.round(parts[name], 6) for name in "xyz")
+    pair = rocking.Record(x, 0.05, "m/s2", vertical=z), rocking.Record(y, 0.05, "m/s2")
+    site = rocking.Site(
+        2.0,
+        records=[pair],
+        hazard=rocking.suites.read_hazard(curve),
+        floor_periods=0.5,
+        floor_participation=1.3,
+    )
+    expected = rocking.assess(rocking.read_objects(table).objects, site, sensitivity=False)
+    for name in ("factor", "share", "yearly_rate"):
+        assert found[name] == [row[name] for row in expected.rows], name
+    assert len(found["motions"]) == 12
+    assert "--vertical" in refused("assess", str(table), *options, "--vertical", files["z"])
+    assert "--pair" in refused("assess", str(table), "--pair", files["x"], "--unit", "m/s2")
+
+
+def test_meshes_are_assessed_from_all_sides(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    path = tmp_path / "plinth.stl"
+    trimesh.creation.box((400, 300, 1600)).export(path)
+    options = ["--mesh", str(path), "--mesh-unit", "mm", "--friction", "0.5", *SITE]
+    found = json.loads(run("assess", *options, "--format=json"))
+    assert sorted(found["direction"]) == sorted(f"{angle} deg" for angle in range(0, 180, 15))
+    assert set(found["object"]) == {"plinth"}
+    site = rocking.Site(pga="0.3 g", pgv="0.3 m/s", shapes=["sine", "ricker"])
+    block = rocking.assess(rocking.Object("block", width=0.4, depth=0.3, height=1.6), site, sensitivity=False)
+    factors = dict(zip(block.columns["direction"], block.columns["factor"], strict=True))
+    by_angle = dict(zip(found["direction"], found["factor"], strict=True))
+    assert by_angle["0 deg"] == pytest.approx(factors["width"], rel=1e-6)
+    assert by_angle["90 deg"] == pytest.approx(factors["depth"], rel=1e-6)
+    assert "OBJECTS" in refused("assess", *SITE)
+
+
 @pytest.mark.parametrize(
     ("options", "text"),
     [
@@ -72,6 +119,8 @@ def test_records_and_periods(table, tmp_path):
         (["--pga", "0.3g", "--pgv", "0.3 m/s", "--shapes", "square"], "--shapes"),
         ([*SITE, "--output", "/none/table.csv"], "No such file"),
         (["--record", "none.at2"], "none.at2"),
+        ([*SITE, "--friction", "0.5"], "--friction"),
+        ([*SITE, "--floor", "x"], "--floor-periods"),
     ],
 )
 def test_errors_name_the_option(table, options, text):
@@ -101,7 +150,19 @@ class Page(HTMLParser):
 
 def test_report_is_self_contained_and_escapes_names(table, monkeypatch):
     file = table.with_name("report.html")
-    argv = ["assess", str(table), *SITE, "--report", str(file), "--title", "Room <7>", "--site", "Athens & Rome"]
+    argv = [
+        "assess",
+        str(table),
+        *SITE,
+        "--report",
+        str(file),
+        "--title",
+        "Room <7>",
+        "--author",
+        "A & B",
+        "--site",
+        "Athens & Rome",
+    ]
     monkeypatch.setattr("sys.argv", ["rocking", *argv])
     table.write_text(TABLE + '"<img src=http://example.org/x>",x,1,1,\n')
     assert CliRunner().invoke(app, [*argv, "--date", "2026-11-24"]).exit_code == 2
@@ -110,8 +171,10 @@ def test_report_is_self_contained_and_escapes_names(table, monkeypatch):
     assert {"script", "img", "link", "iframe", "object"}.isdisjoint(page.tags)
     assert {"src", "href", "onload", "onclick"}.isdisjoint(name for name, _ in page.attributes)
     assert not re.search(r"https?://(?!example)|@import|url\(", file.read_text())
-    for text in ("Room <7>", "Athens & Rome", "2026-11-24", "<script>alert(1)</script>", "row 5", "--title"):
+    for text in ("Room <7>", "Athens & Rome", "A & B", "2026-11-24", "<script>alert(1)</script>", "row 5", "--title"):
         assert text in page.text, text
-    assert page.tags.count("svg") == 5  # three objects, two of them in two directions
+    # three objects, two of them in two directions: drawing, thresholds, ground acceleration and rotation of each
+    assert page.tags.count("svg") == 4 * 5
+    assert page.tags.count("math") == 4
     assert page.text.index("Verdicts") < page.text.index("Objects")
     assert f"rocking {rocking.__version__}" in page.text

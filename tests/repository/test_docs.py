@@ -121,6 +121,7 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     trace: dict[str, Any] = {}
     exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/identify.md").read_text(), re.DOTALL)[0], trace)
     np.savetxt("trace.csv", np.column_stack([trace["time"], np.degrees(trace["rotation"])]), delimiter=",")
+    exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/statue.md").read_text(), re.DOTALL)[0], {})
     pages = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md"))]
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]

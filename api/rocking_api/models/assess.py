@@ -4,25 +4,40 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, Field, SerializeAsAny, create_model
+from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
-from rocking._base.errors import number
+from rocking._base.errors import InvalidArgumentError, integer, number
 from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse
+from rocking._excitation.records.record import Record
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
 from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD
+
+MAX_OBJECTS = 2000
+"""Most rows of a table [-]."""
+
+MAX_RECORDS = 100
+"""Most records of a site [-]."""
+
+MAX_SAMPLES = 20_000
+"""Most variants of an object [-]."""
 
 _STRENGTH: dict[str, Any] = {"minimum": STRENGTHS[0], "maximum": STRENGTHS[1]}
 _LENGTH: dict[str, Any] = {"minimum": LENGTH[0], "maximum": LENGTH[1]}
 
 
 class AssessParams(Params):
-    """A site, by PGA and PGV or by PGA and a range of periods."""
+    """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
-    pga: float = Field(description="peak ground acceleration [m/s2]", examples=[3.0], json_schema_extra=_STRENGTH)
+    pga: float | None = Field(
+        None,
+        description="peak ground acceleration [m/s2], required without records, which are scaled to it",
+        examples=[3.0],
+        json_schema_extra=_STRENGTH,
+    )
     pgv: float | None = Field(
         None,
         description="peak ground velocity, from which each pulse has its period [m/s]; either this or periods",
@@ -41,6 +56,19 @@ class AssessParams(Params):
         examples=["sine,ricker"],
     )
     moving_ground: bool = Field(False, description="also half sine and rectangular, which leave the ground moving")
+    floor_periods: str | None = Field(
+        None, description="periods of a building of which the objects are on a floor [s], separated by commas"
+    )
+    floor_damping: str = Field("0.05", description="damping ratios of these modes [-], one or one for each")
+    floor_participation: str = Field(
+        "1", description="participation factors times mode shapes at the floor [-], one or one for each"
+    )
+    samples: int = Field(
+        0,
+        description="variants of each object within its tolerance and 0.05 of the restitution that are tried [-]",
+        json_schema_extra={"minimum": 0, "maximum": MAX_SAMPLES},
+    )
+    seed: int = Field(0, description="seed of these variants [-]", json_schema_extra={"minimum": 0, "maximum": 2**53})
     sensitivity: bool = Field(True, description="find the factors of changed objects, and sizes not overturned")
     format: TableFormat = None
 
@@ -49,13 +77,16 @@ class AssessParams(Params):
         ranges = {"pga": STRENGTHS, "pgv": STRENGTHS, "period_min": LENGTH, "period_max": LENGTH}
         if name in ranges and value is not None:
             number(name, value, *ranges[name], unit={"pga": "m/s2", "pgv": "m/s"}.get(name, "s"))
+        elif name in ("samples", "seed"):
+            integer(name, value, 0, MAX_SAMPLES if name == "samples" else 2**53)
+        elif name.startswith("floor_") and value is not None:
+            _numbers(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
-            for shape in value.split(","):
+            for shape in str(value).split(","):
                 as_pulse(shape)
 
-    @property
-    def site(self) -> Site:
-        """The site.
+    def site(self, given: AssessBody) -> Site:
+        """The site, with the records and the hazard curve of a body.
 
         Raises
         ------
@@ -65,8 +96,67 @@ class AssessParams(Params):
         periods: Any = (
             None if self.period_min is None and self.period_max is None else (self.period_min, self.period_max)
         )
-        shapes = None if self.shapes is None else self.shapes.split(",")
-        return Site(self.pga, self.pgv, periods, shapes=shapes, moving_ground=self.moving_ground)
+        return Site(
+            self.pga,
+            self.pgv,
+            periods,
+            [one.motion(k) for k, one in enumerate(given.records, start=1)],
+            None if given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
+            None if self.shapes is None else self.shapes.split(","),
+            self.moving_ground,
+            None if self.floor_periods is None else _numbers("floor_periods", self.floor_periods),
+            _numbers("floor_damping", self.floor_damping),
+            _numbers("floor_participation", self.floor_participation),
+        )
+
+
+def _numbers(name: str, text: str) -> list[float]:
+    try:
+        return [float(one) for one in text.split(",")]
+    except ValueError:
+        raise InvalidArgumentError(name, text, "a number, or several separated by commas") from None
+
+
+class SuiteRecordBody(BaseModel):
+    """A record of the suite of a site."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    acceleration: list[float] = Field(description="horizontal acceleration at uniform steps, in `unit`")
+    second: list[float] | None = Field(
+        None, description="other horizontal component: the pair is assessed at all angles and counts as one record"
+    )
+    vertical: list[float] | None = Field(None, description="vertical acceleration, upwards")
+    time_step: float = Field(description="time between samples [s]")
+    unit: str = Field("m/s2", description="unit of the samples")
+    name: str = Field("", description="name for the answer", max_length=40)
+
+    def motion(self, number: int) -> Record | tuple[Record, Record]:
+        """The record, or the pair."""
+        name = self.name or f"record {number}"
+        first = Record(self.acceleration, self.time_step, self.unit, name, vertical=self.vertical)
+        return first if self.second is None else (first, Record(self.second, self.time_step, self.unit, name))
+
+
+class HazardBody(BaseModel):
+    """A hazard curve of PGA."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    intensity: list[float] = Field(description="peak ground accelerations, ascending [m/s2]")
+    annual_rate: list[float] = Field(description="annual rates of exceedance [1/year]")
+
+
+class AssessBody(BaseModel):
+    """Objects, with the records of the site if they are not in the query by PGA and PGV or periods."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    objects: list[dict[str, Any]] = Field(
+        description="one object for each row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS
+    )
+    records: list[SuiteRecordBody] = Field([], description="suite of records of the site", max_length=MAX_RECORDS)
+    hazard: HazardBody | None = Field(None, description="hazard curve of the site, with records")
 
 
 def _field(column: Column) -> Any:

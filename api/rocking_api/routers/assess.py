@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
+import json
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._assessment.assess import assess
 from rocking._assessment.site import Site
-from rocking._assessment.tables import ObjectTable, objects_of_text
+from rocking._assessment.tables import ObjectTable, objects_of_json, objects_of_text
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.batch import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, json_response, negotiated_form, text_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
-from rocking_api.models.assess import AssessParams, AssessResponse
+from rocking_api.models.assess import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-MAX_OBJECTS = 2000
-"""Most rows of a table [-]."""
+MAX_BODY = 8 * 1024 * 1024
+"""Largest table with records [bytes]."""
 
-MAX_BODY = 1024 * 1024
-"""Largest table [bytes]."""
+MAX_PAIRS = 500_000
+"""Most objects times motions, a pair of components being twelve [-]."""
 
 _FORMS: tuple[Form, ...] = ("json", "csv")
 
@@ -42,7 +43,12 @@ _ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0
             "description": "table of objects; the columns are those of `rocking.Object`",
             "content": {
                 MEDIA_TYPES["json"]: {
-                    "schema": {"type": "array", "items": {"type": "object"}, "maxItems": MAX_OBJECTS},
+                    "schema": {
+                        "anyOf": [
+                            {"type": "array", "items": {"type": "object"}, "maxItems": MAX_OBJECTS},
+                            {"$ref": "#/components/schemas/AssessBody"},
+                        ]
+                    },
                     "example": [_ROW],
                 },
                 MEDIA_TYPES["csv"]: {
@@ -56,31 +62,41 @@ _ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0
 async def post_assess(params: Annotated[AssessParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Which objects the motions of a site overturn, from which factor on these motions, the worst first.
 
-    The table is CSV with units in its header or cells, or a JSON list of objects in SI units. The response has the
-    format of the body, or that of `format` or `Accept`; CSV ends with the rows that were not read.
+    The table is CSV with units in its header or cells, or a JSON list of objects in SI units; or a JSON object with
+    that list, records of the site and a hazard curve. The response has the format of the body, or that of `format` or
+    `Accept`; CSV ends with the rows that were not read.
     """
     given = body_form(request, _FORMS)
     form = negotiated_form(request, params.format, _FORMS, default=given)
     params.check()
-    site = params.site
     body = await service.read_body(request, MAX_BODY)
-    table = await service.run_parser(lambda _: _read(body, given), request, large=True)
+    table, site = await service.run_parser(lambda _: _read(body, given, params), request, large=True)
     return await service.run_heavy(params, lambda stop: _assess(params, site, table, form, stop), request)
 
 
-def _read(body: bytes, form: Form) -> ObjectTable:
-    table = objects_of_text(body, json=form == "json")
+def _read(body: bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, Site]:
+    if form == "json" and body.lstrip()[:1] == b"{":
+        given = AssessBody.model_validate_json(body)
+        table = objects_of_json(json.dumps(given.objects))
+    else:
+        given = AssessBody(objects=[], records=[], hazard=None)
+        table = objects_of_text(body, json=form == "json")
     count = len(table.objects) + len(table.bad_rows)
     if count > MAX_OBJECTS:
         raise TooLargeError("objects", count, f"at most {MAX_OBJECTS}")
     if not table.objects:
         reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
         raise InvalidArgumentError("objects", reasons, "one object or more")
-    return table
+    site = params.site(given)
+    size = sum(len(one.planes) for one in table.objects) * len(site.motions)
+    if size > MAX_PAIRS:
+        raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
+    return table, site
 
 
 def _assess(params: AssessParams, site: Site, table: ObjectTable, form: Form, stop: StopFlag) -> Response:
-    found = assess(table.objects, site, sensitivity=params.sensitivity, stop=stop)
+    kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed")}
+    found = assess(table.objects, site, **kept, stop=stop)
     if form == "csv":
         return text_response(found.to_csv(bad_rows=table.bad_rows), "assessment")
     return json_response(

@@ -1,0 +1,117 @@
+"""One object under the motions of a site: its history, the friction it needs, and its thresholds over the period."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._assessment.objects import Bodies, BodyArray, Object
+from rocking._assessment.search import least
+from rocking._assessment.site import LENGTH, Motion
+from rocking._assessment.sliding import first_exceedance
+from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.lowest_thresholds import lowest_thresholds
+from rocking._dimensional.rigid_body import RigidBody
+from rocking._excitation.pulses import AbstractPulse
+from rocking._excitation.records.record import Record
+from rocking._model.parameters import FREQUENCY_RATIO
+from rocking._numba.cancellation import StopFlag
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+
+ENVELOPE_PERIODS = 25
+"""Periods of an envelope, from a third of the shortest period of the site to three times the longest [-]."""
+
+
+def bodies_of(given: Sequence[tuple[Object, str]]) -> BodyArray:
+    """The bodies of objects in one direction each."""
+    rows = [list(one.planes).index(direction) for one, direction in given]
+    starts = np.cumsum([0, *(len(one.planes) for one, _ in given)])[:-1]
+    return Bodies.of(one for one, _ in given).take(starts + np.array(rows)).scaled()
+
+
+def history_of(one: Object, direction: str, motion: Motion, *, contact: bool = False) -> xr.Dataset:
+    """The motion of an object under a motion of a site, from the side from which it rotates more."""
+    sides = [
+        RigidBody(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
+        for side in bodies_of([(one, direction)]).sides
+    ]
+    peak: dict[str, Any] = {"peak_acceleration": motion.peak_acceleration, "period": motion.period}
+    if isinstance(motion.motion, Record):
+        peak = {"scale": motion.peak_acceleration / motion.motion.peak_acceleration}
+    found = [side.history(motion.motion, restitution=one.restitution, contact=contact, **peak) for side in sides]
+    return max(found, key=lambda each: float(np.abs(each["rotation"]).max()))
+
+
+def friction_of(one: Object, direction: str, motions: Sequence[Motion]) -> xr.Dataset:
+    """The friction that an object needs under each motion, see `Assessment.friction`."""
+    import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
+    body = bodies_of([(one, direction)])
+    slope = float((body.uplift_acceleration / body.gravity)[0])
+    friction: Any = one.friction  # a number, see `Object`
+    needed, exceeded = [], []
+    for motion in motions:
+        found = history_of(one, direction, motion, contact=True)
+        needed.append(found.attrs["largest_friction_demand"])
+        if friction is None:
+            exceeded.append(math.nan)
+        elif friction < slope:
+            exceeded.append(first_exceedance(motion, friction))
+        else:
+            over = np.flatnonzero(found["friction_demand"].values > friction)
+            exceeded.append(float(found["time"].values[over[0]]) if over.size else math.nan)
+    variables = {
+        "friction_needed": ("motion", needed, {"units": "1", "long_name": "largest coefficient of friction needed"}),
+        "exceeded_at": (
+            "motion",
+            exceeded,
+            {"units": "s", "long_name": "time at which that of the object is exceeded"},
+        ),
+    }
+    return xr.Dataset(variables, {"motion": [motion.name for motion in motions]})
+
+
+def envelope_of(
+    given: Sequence[tuple[Object, str]], motions: Sequence[Motion], highest: float, stop: StopFlag | None = None
+) -> tuple[Array, dict[str, Array]]:
+    """Lowest peak accelerations that overturn objects, for the pulse shapes of a site over the period.
+
+    Parameters
+    ----------
+    given : sequence of (Object, str)
+        Objects and directions.
+    motions : sequence of Motion
+        Of the site; records have none.
+    highest : float
+        Peak acceleration that is searched [m/s2].
+    stop : StopFlag, optional
+        Cancels the work.
+
+    Returns
+    -------
+    (float array (periods,), dict of str to float array (objects, periods))
+        Periods [s], and for each shape the peak acceleration, nan where none was found [m/s2].
+    """
+    pulses = {one.motion.name: one.motion for one in motions if isinstance(one.motion, AbstractPulse)}
+    if not pulses or not given:
+        return np.empty(0), {}
+    body = bodies_of(given).column
+    site = [one.period for one in motions]
+    p = body.right.frequency_parameter
+    shortest = max(min(site) / 3.0, LENGTH[0], float(2.0 * math.pi / (FREQUENCY_RATIO.upper * p.min())))
+    longest = min(3.0 * max(site), LENGTH[1], float(2.0 * math.pi / (FREQUENCY_RATIO.lower * p.max())))
+    periods = np.geomspace(shortest, longest, ENVELOPE_PERIODS)
+    found = {}
+    for name, pulse in pulses.items():
+        problems = [BodyProblem(side, pulse, np.asarray(1.0), periods, None) for side in body.sides]
+        lowest = [lowest_thresholds(one, highest, stop) for one in problems]
+        found[name] = least(np.stack([one.ravel() for one in lowest], axis=1)).reshape(lowest[0].shape)
+    return periods, found

@@ -1,0 +1,214 @@
+"""Pairs of components, floors and records of a site, meshes, samples and friction."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking
+from rocking._assessment.motions import envelope_of, history_of
+from rocking._assessment.search import LEVELS
+from rocking._assessment.sensitivity import ETA_CHANGE
+from rocking._assessment.site import Motion
+from rocking._assessment.sliding import first_exceedance
+from rocking._base.errors import InvalidArgumentError, StoppedError
+from rocking._numba.cancellation import StopFlag
+
+STEP = 0.02
+SIZE = 400
+
+
+def record(seed: int, name: str = "", *, vertical: bool = False) -> rocking.Record:
+    rng = np.random.default_rng(seed)
+    smooth = np.hanning(11) / np.hanning(11).sum()
+    x, z = (np.convolve(rng.normal(size=SIZE) * np.hanning(SIZE), smooth, "same") for _ in range(2))
+    return rocking.Record(x, STEP, "m/s2", name, vertical=0.5 * z if vertical else None)
+
+
+@pytest.fixture(scope="module")
+def pair() -> tuple[rocking.Record, rocking.Record]:
+    return record(1, "station", vertical=True), record(2)
+
+
+STATUE = rocking.Object("statue", width=0.25, depth=0.3, height=1.2, friction=0.5, tolerance=0.01)
+
+
+def test_a_pair_is_one_record_at_angles_every_15_degrees(pair) -> None:
+    site = rocking.Site(2.5, records=[pair, record(3, "other")])
+    assert [one.group for one in site.motions] == [0] * 12 + [1]
+    scale = 2.5 / max(one.peak_acceleration for one in pair)
+    for k, motion in enumerate(site.motions[:12]):
+        angle = math.radians(15 * k)
+        along = math.cos(angle) * pair[0].acceleration + math.sin(angle) * pair[1].acceleration
+        np.testing.assert_allclose(motion.motion.acceleration, along, rtol=1e-12, atol=1e-15)
+        np.testing.assert_array_equal(motion.motion.vertical, pair[0].vertical)
+        assert motion.peak_acceleration == pytest.approx(scale * np.abs(along).max())
+    found = rocking.assess(STATUE, site, sensitivity=False)
+    assert set(found.columns["share"].tolist()) <= {0.0, 0.5, 1.0}
+    for row, factors in zip(found.rows, found.factors, strict=True):
+        events = [(factors[:12] <= 1.0).any(), factors[12] <= 1.0]
+        assert row["share"] == np.mean(events)
+
+
+def test_factors_on_records_are_confirmed_from_both_sides(pair) -> None:
+    site = rocking.Site(2.5, records=[pair])
+    found = rocking.assess(STATUE, site, sensitivity=False)
+    confirmed = 0
+    for row, factors in zip(found.rows, found.factors, strict=True):
+        half = 0.5 * STATUE.planes[row["direction"]].base
+        body = rocking.RigidBody(left=half, right=half, height=0.6)
+        for motion, factor in zip(site.motions, factors, strict=True):
+            unit = motion.peak_acceleration / motion.motion.peak_acceleration
+            levels = LEVELS[np.nan_to_num(factor, nan=np.inf) > LEVELS]
+            assert not body.response(motion.motion, scale=np.minimum(levels, 8.0) * unit).overturned.any()
+            if np.isfinite(factor) and factor < 8.0:
+                pair_of = factor * unit * np.array([1.0, 1.0 - 1e-8])
+                assert body.response(motion.motion, scale=pair_of).overturned.tolist() == [True, False]
+                confirmed += 1
+    assert confirmed > 10
+
+
+def test_a_floor_has_the_motion_of_floor_motion_and_factors_are_on_the_ground() -> None:
+    ground = record(5, "ground")
+    modes = {"periods": [0.5, 0.1], "damping": [0.05, 0.02], "participation": [1.2, -0.2]}
+    site = rocking.Site(2.0, records=[ground], **{f"floor_{name}": value for name, value in modes.items()})
+    (motion,) = site.motions
+    floor = rocking.floor_motion(ground, **modes)
+    assert motion.motion == floor
+    assert motion.ground == 2.0
+    scale = 2.0 / ground.peak_acceleration
+    assert motion.peak_acceleration == pytest.approx(scale * floor.peak_acceleration, rel=1e-12)
+    factor = rocking.assess(STATUE, site, sensitivity=False).columns["factor"][0]
+    direct = rocking.Site(records=[floor])
+    on_floor = rocking.assess(STATUE, direct, sensitivity=False).columns["factor"][0]
+    assert factor * scale == pytest.approx(on_floor, rel=0.2)  # the first of other levels, or another range
+
+
+def test_a_stiff_floor_moves_as_the_ground_under_a_pulse() -> None:
+    ground = rocking.Site(3.0, 0.3, shapes=["sine"])
+    stiff = rocking.Site(3.0, 0.3, shapes=["sine"], floor_periods=0.01)
+    lamp = rocking.Object("lamp", width=0.12, height=1.0)
+    expected, found = (rocking.assess(lamp, site, sensitivity=False).columns["factor"] for site in (ground, stiff))
+    np.testing.assert_allclose(found, expected, rtol=2e-3)
+
+
+def test_hazard_is_of_the_ground_on_a_floor() -> None:
+    curve = [0.2, 1.0, 8.0], [1e-2, 1e-3, 1e-5]
+    records = [record(seed) for seed in range(6)]
+    lamp = rocking.Object("lamp", width=0.2, height=1.0)
+    plain, weak = (
+        rocking.assess(lamp, rocking.Site(records=records, hazard=curve, **floor), sensitivity=False)
+        for floor in ({}, {"floor_periods": 0.3, "floor_damping": 0.2, "floor_participation": 2.0})
+    )
+    assert 1e-5 < plain.columns["yearly_rate"][0] < weak.columns["yearly_rate"][0] < 1e-2
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ({"records": [(record(1),)]}, "records"),
+        ({"records": [(record(1), rocking.Record([1.0, 0.0], 0.5, "m/s2"))]}, "records"),
+        ({"records": [record(1)], "hazard": ([1.0], [0.1])}, "hazard"),
+        ({"records": [record(1)], "hazard": 1.0}, "hazard"),
+        ({"records": [record(1)], "floor_periods": -1.0}, "floor_periods"),
+        ({"records": [record(1)], "floor_periods": 0.5, "floor_damping": 2.0}, "floor_damping"),
+    ],
+)
+def test_wrong_records_and_floors_are_refused(given, name) -> None:
+    with pytest.raises(InvalidArgumentError, match=name):
+        rocking.Site(**given).motions  # noqa: B018
+
+
+def test_sizes_and_samples_under_records() -> None:
+    site = rocking.Site(3.0, records=[record(1), record(2, vertical=True)])
+    found = rocking.assess(rocking.Object("pier", width=0.26, height=1.2, tolerance=0.02), site, samples=500)
+    (row,) = found.rows
+    for name, sizes in (("width", (row["smallest_width"], 1.2)), ("height", (0.26, row["largest_height"]))):
+        change = np.array([1.0 + 1e-6, 1.0 - 1e-6])
+        width, height = (sizes[0] * change, sizes[1]) if name == "width" else (sizes[0], sizes[1] / change)
+        body = rocking.RigidBody(left=0.5 * width, right=0.5 * width, height=0.5 * np.asarray(height))
+        hits = [body.response(one.motion, scale=3.0 / one.motion.peak_acceleration).overturned for one in site.motions]
+        assert np.any(hits, axis=0).tolist() == [False, True], name
+    rng = np.random.default_rng(4)
+    b, h, eta = rng.uniform(-1.0, 1.0, (3, 4000))
+    width, height = 0.26 + 0.02 * b, 1.2 + 0.02 * h
+    body = rocking.RigidBody(left=0.5 * width, right=0.5 * width, height=0.5 * height)
+    shifted = np.clip(body.right.restitution + ETA_CHANGE * eta, 0.0, 1.0)
+    hits = [
+        body.response(one.motion, scale=3.0 / one.motion.peak_acceleration, restitution=shifted).overturned
+        for one in site.motions
+    ]
+    share = np.mean(np.any(hits, axis=0))
+    assert 0.02 < share < 0.98
+    assert row["sampled_share"] == pytest.approx(share, abs=0.05)
+
+
+def test_friction_is_exceeded_where_the_motion_says() -> None:
+    ramp = rocking.Record([0.0, 4.0, 0.0], 1.0, "m/s2", vertical=[0.0, -2.0, 0.0])
+    motion = Motion("ramp", ramp, 4.0, 1.0, 0, 4.0)
+    g = rocking.RigidBody(0.1, 0.1, 0.5).gravity
+    # 4 t = mu (g - 2 t)
+    assert first_exceedance(motion, 0.2) == pytest.approx(0.2 * g / (4.0 + 2.0 * 0.2), rel=1e-12)
+    assert math.isnan(first_exceedance(motion, 0.6))
+    site = rocking.Site(4.0, 0.5, shapes=["sine"])
+    rough, smooth = (rocking.Object("one", width=0.3, height=1.0, friction=mu) for mu in (0.31, 0.2))
+    (row,) = rocking.assess(smooth, site, sensitivity=False).rows
+    angle = math.asin(0.2 * g / 4.0)
+    assert row["slides_at"] == pytest.approx(angle / (2.0 * math.pi) * site.motions[0].period, rel=1e-4)
+    found = rocking.assess(rough, site, sensitivity=False)
+    friction = found.friction()
+    history = history_of(rough, "width", site.motions[0], contact=True)
+    assert friction["friction_needed"].item() > 0.31
+    at = friction["exceeded_at"].item()
+    demand = history["friction_demand"].sel(time=at).values
+    assert np.max(demand) > 0.31
+    assert (history["friction_demand"].where(history["time"] < at, drop=True) <= 0.31).all()
+    assert found.columns["slides_first"][0] is False
+
+
+def test_the_history_overturns_where_the_row_does() -> None:
+    found = rocking.assess(STATUE, rocking.Site("0.4 g", "0.6 m/s"), sensitivity=False)
+    assert found.columns["factor"][0] < 1.0
+    assert found.history(0).attrs["outcome"].startswith("OVERTURNED")
+    assert found.worst_motion(0).name == found.columns["governing"][0]
+
+
+def test_an_envelope_has_the_lowest_thresholds_of_one_body() -> None:
+    site = rocking.Site(3.0, 0.3, shapes=["sine", "ricker"])
+    periods, lowest = envelope_of([(STATUE, "depth"), (STATUE, "width")], site.motions, 20.0)
+    half = 0.125
+    body = rocking.RigidBody(left=half, right=half, height=0.6)
+    for name in ("sine", "ricker"):
+        k = 18
+        expected = body.thresholds(name, period=periods[k]).lowest
+        assert lowest[name][1, k] == pytest.approx(float(expected), rel=1e-9)
+        assert (lowest[name][0, k:] > lowest[name][1, k:]).all()
+
+
+def test_meshes_have_directions_and_the_inertia_of_their_shape(tmp_path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    path = tmp_path / "column.stl"
+    trimesh.creation.cylinder(0.2, 1.0, sections=720).export(path)
+    site = rocking.Site(3.0, 0.4, shapes=["sine"])
+    mesh = rocking.Object.from_mesh(path, friction=0.3)
+    found = rocking.assess(mesh, site, sensitivity=False)
+    assert len(found.rows) == 12
+    round_base = rocking.assess(rocking.Object("drum", diameter=0.4, height=1.0), site, sensitivity=False)
+    np.testing.assert_allclose(found.columns["factor"], round_base.columns["factor"][0], rtol=1e-3)
+    assert found.columns["slides_first"].all()
+    with pytest.raises(InvalidArgumentError, match="width"):
+        rocking.Object.from_mesh(path, width=0.3)
+    with pytest.raises(InvalidArgumentError, match="mesh"):
+        rocking.Object.from_mesh(tmp_path / "none.stl")
+
+
+def test_a_stopped_assessment_stops_and_progress_ascends(pair) -> None:
+    shares: list[float] = []
+    rocking.assess(STATUE, rocking.Site(3.0, 0.3), progress=shares.append)
+    assert shares == sorted(shares)
+    assert 0.5 < shares[-1] < 1.0
+    for site in (rocking.Site(3.0, 0.3), rocking.Site(records=[pair])):
+        stop = StopFlag()
+        stop.set()
+        with pytest.raises(StoppedError):
+            rocking.assess(STATUE, site, stop=stop)
