@@ -31,8 +31,8 @@ HIGHEST_FACTOR = 10.0
 LEVELS = np.geomspace(0.1, HIGHEST_FACTOR, 12)
 """Factors on records that are tried [-]; the change of outcome below the first that overturns is bracketed."""
 
-RECORD_RESOLUTION = 1e-9
-"""Width of the bracket of a factor on a record [-]."""
+RECORD_RESOLUTION = 1e-6
+"""Width of the bracket of a factor on a record [-]; with 1e-9 a suite takes 1.7 times as long."""
 
 
 def least(values: Array) -> Array:

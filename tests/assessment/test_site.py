@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from rocking._assessment.motions import envelope_of, history_of
-from rocking._assessment.search import LEVELS
+from rocking._assessment.search import LEVELS, RECORD_RESOLUTION
 from rocking._assessment.sensitivity import ETA_CHANGE
 from rocking._assessment.site import Motion
 from rocking._assessment.sliding import first_exceedance
@@ -62,7 +62,7 @@ def test_factors_on_records_are_confirmed_from_both_sides(pair) -> None:
             levels = LEVELS[np.nan_to_num(factor, nan=np.inf) > LEVELS]
             assert not body.response(motion.motion, scale=np.minimum(levels, 8.0) * unit).overturned.any()
             if np.isfinite(factor) and factor < 8.0:
-                pair_of = factor * unit * np.array([1.0, 1.0 - 1e-8])
+                pair_of = (factor - np.array([0.0, 1.01 * RECORD_RESOLUTION])) * unit
                 assert body.response(motion.motion, scale=pair_of).overturned.tolist() == [True, False]
                 confirmed += 1
     assert confirmed > 10
