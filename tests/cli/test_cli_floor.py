@@ -26,7 +26,7 @@ def test_a_block_on_an_isolation(tmp_path):
     path = tmp_path / "isolated.csv"
     path.write_text(run("floor", NAPA, "--period", "3s", "--damping", "0.2"))
     motion = rocking.isolated_motion(rocking.read_record(NAPA), period=3.0, damping=0.2)
-    response = json.loads(run("record", str(path), *SIZES, "--no-thresholds", "--json"))
+    response = json.loads(run("record", str(path), *SIZES, "--no-thresholds", "--format=json"))
     assert response["peak_acceleration"] == pytest.approx(motion.peak_acceleration)
     assert response["peak_acceleration"] < 0.5 * rocking.read_record(NAPA).peak_acceleration
 
