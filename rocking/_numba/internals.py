@@ -79,7 +79,12 @@ class _SingleModuleLibrary(JITCodeLibrary):
                 function.linkage = "internal"
                 if not function.name.startswith("NRT_"):
                     function.name = f"{self.name}.{function.name}"
-        super()._optimize_final_module()
+        if any(function.name.startswith("NRT_") for function in self._final_module.functions):
+            super()._optimize_final_module()
+            return
+        # without the first passes of numba, which prepare the removal of pairs of counts: a twentieth less time
+        passes, builder = self._codegen._module_pass_manager()
+        passes.run(self._final_module, builder)
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
