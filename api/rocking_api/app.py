@@ -21,6 +21,7 @@ from rocking_api.http.request_log import RequestLog
 from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.assess import AssessBody
 from rocking_api.models.blocks import BlockRows
+from rocking_api.models.identify import Trace
 from rocking_api.models.pulses import BODIES
 from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
@@ -31,6 +32,7 @@ from rocking_api.routers import (
     guide,
     health,
     history,
+    identify,
     metadata,
     metrics,
     overturning,
@@ -50,7 +52,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
-    *(assess, pulses, metadata, suites),
+    *(assess, identify, pulses, metadata, suites),
     *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 
@@ -136,7 +138,7 @@ def _describe_bodies(app: FastAPI) -> None:
         if app.openapi_schema is None:
             schemas = generate()["components"]["schemas"]
             bodies = sorted(BODIES, key=lambda body: body.__name__)
-            models: list[type[BaseModel]] = [Problem, BlockRows, AssessBody, *bodies]
+            models: list[type[BaseModel]] = [Problem, BlockRows, AssessBody, Trace, *bodies]
             for model in models:
                 schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
                 schemas.update(schema.pop("$defs", {}))

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 import xarray as xr
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache
+from rocking._datasets.csv_text import csv_text
 from rocking._datasets.cube import decode_dataset
 from rocking.suites.intensity import measure_of
 from rocking.suites.summary import record_margins, rotation_quantiles
@@ -126,6 +128,28 @@ class SuiteReader:
             ],
             links=_links(name, self._catalogue.names()),
         )
+
+    def text(self, name: str, form: str, curves: Literal["discrete", "lognormal"]) -> str:
+        """The fragility of a suite as CSV or NRML.
+
+        Raises
+        ------
+        UnknownDatasetError, DatasetError
+            As `suite`.
+        InvalidArgumentError
+            As `rocking.suites.nrml.write_nrml`.
+        """
+        # the fits take longer to import than the service to start
+        from rocking.suites.nrml import write_nrml  # noqa: PLC0415
+        from rocking.suites.table import fragility_table  # noqa: PLC0415
+
+        file = "fragility" if form == "csv" else "outcomes"
+        _, found = self._catalogue.dataset(f"{_FOLDER}{name}/{file}")
+        if form == "csv":
+            return csv_text(fragility_table(found))
+        written = io.BytesIO()
+        write_nrml(found, written, format=curves, description=name)
+        return written.getvalue().decode()
 
     def _part(
         self,

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from os import PathLike
-from typing import Literal
+from typing import IO, Literal
 
 import numpy as np
 import xarray as xr
@@ -36,7 +36,7 @@ LIMIT_STATES = ("rocks", "overturns")
 
 def write_nrml(
     fragility: xr.Dataset,
-    path: str | PathLike[str],
+    path: str | PathLike[str] | IO[bytes],
     *,
     format: Literal["discrete", "lognormal"] = "discrete",  # noqa: A002  # the word of NRML
     description: str = "rocking of free-standing blocks",
@@ -47,8 +47,8 @@ def write_nrml(
     ----------
     fragility : xarray.Dataset
         Result of `rocking.fragility`, with the measure pga or pgv; one function for each block, `block-1` and so on.
-    path : path
-        The file, written anew.
+    path : path or binary file
+        The file, written anew, or one that is open for writing.
     format : {"discrete", "lognormal"}
         Fractions at the levels, or curves fitted to them. OpenQuake's curve is constant above the highest level. Below
         the lowest one it is a line from zero at zero, for a fitted curve zero.

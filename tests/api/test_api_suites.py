@@ -1,5 +1,8 @@
 """/v1/suites: the numbers are those of the data sets of the workflow."""
 
+import csv
+import io
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,6 +10,7 @@ from rocking_api import suite_reader
 
 import rocking
 from rocking._datasets.cube import read_dataset, write_dataset
+from rocking.suites.nrml import write_nrml
 from rocking.suites.summary import record_margins
 from tests.api.conftest import assert_problem, client_of
 from tests.suites.motions import noise
@@ -163,3 +167,23 @@ def test_margins_count_from_the_mildest_level(name):
     assert found["overturning_intensity"] == first
     assert found["overturning_scale"] == (first if name == "pga" else 1.0)
     assert found["levels_survived_above"] == above
+
+
+def test_fragility_as_nrml_is_that_of_the_library(client, files, tmp_path):
+    for curves in ("discrete", "lognormal"):
+        write_nrml(files[1], tmp_path / "own.xml", format=curves, description="demonstration")
+        response = client.get(NAME, params={"format": "nrml", "curves": curves})
+        assert response.content == (tmp_path / "own.xml").read_bytes()
+        assert response.headers["content-type"].startswith("application/xml")
+    assert client.get(NAME, headers={"accept": "application/xml"}).status_code == 200
+
+
+def test_fragility_as_csv_has_the_counts_of_the_data_set(client, files):
+    rows = [*csv.DictReader(io.StringIO(client.get(NAME, params={"format": "csv"}).text))]
+    counts = files[0]["exceedances"].transpose("demand", "block", "intensity").values.ravel()
+    assert [int(row["exceedances"]) for row in rows] == counts.tolist()
+
+
+def test_an_unknown_suite_or_format_is_refused(client):
+    assert_problem(client.get(NAME, params={"format": "pdf"}), 422, "format")
+    assert_problem(client.get("/v1/suites/none", params={"format": "nrml"}), 404, "name")

@@ -22,9 +22,14 @@ from rocking._datasets.cube import MODEL_RESULT, VARIABLES
 from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
 
-Form = Literal["json", "csv", "nc"]
+Form = Literal["json", "csv", "nc", "nrml"]
 
-MEDIA_TYPES: dict[Form, str] = {"json": "application/json", "csv": "text/csv", "nc": "application/x-netcdf"}
+MEDIA_TYPES: dict[Form, str] = {
+    "json": "application/json",
+    "csv": "text/csv",
+    "nc": "application/x-netcdf",
+    "nrml": "application/xml",
+}
 
 CONTENT: dict[int | str, dict[str, Any]] = {
     200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}},
@@ -76,9 +81,10 @@ def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
     return text_response(csv_text(columns), name)
 
 
-def text_response(text: str, name: str) -> Response:
-    """Text of `csv_text`."""
-    return Response(text, media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+def text_response(text: str, name: str, form: Form = "csv", headers: Mapping[str, str] | None = None) -> Response:
+    """A text as a file: that of `csv_text`, or XML."""
+    suffix = "xml" if form == "nrml" else form
+    return Response(text, media_type=MEDIA_TYPES[form], headers={**_file(f"{name}.{suffix}"), **(headers or {})})
 
 
 def csv_stream(columns: Mapping[str, Column], name: str) -> Response:

@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import BaseModel, Field
 
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
+from rocking_api.models.params import Params
 from rocking_api.models.responses import VERSION_FIELD, Link
 
 _NAME = Field(description="name of the suite")
 _TITLE = Field(description="title of its fragility")
 _MEASURE = Field(description="measure of intensity, such as pga")
 _UNIT = Field(description="unit of the measure, as CF writes it")
+
+
+class SuiteParams(Params):
+    """The format of the fragility of a suite."""
+
+    format: Literal["json", "csv", "nrml"] | None = Field(
+        None, description="format of the response; absent: by the Accept header, else JSON (nrml: of OpenQuake)"
+    )
+    curves: Literal["discrete", "lognormal"] = Field(
+        "discrete", description="what NRML holds: fractions at the levels, or curves fitted to them"
+    )
 
 
 class SuiteSummary(BaseModel):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Query, Request, Response
 
 from rocking_api.http.caching import REVALIDATE
-from rocking_api.http.encoding import json_response
+from rocking_api.http.encoding import MEDIA_TYPES, json_response, negotiated_form, text_response
 from rocking_api.http.params_route import ParamsRoute
-from rocking_api.models.suites import SuiteCatalogue, SuiteResponse
+from rocking_api.models.suites import SuiteCatalogue, SuiteParams, SuiteResponse
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1/suites", tags=["suites"], route_class=ParamsRoute)
@@ -25,12 +25,25 @@ async def get_suites(service: ServiceDep) -> Response:
     return json_response(SuiteCatalogue(suites=found), {"Cache-Control": REVALIDATE})
 
 
-@router.get("/{name}", summary="Fragility of the blocks", response_model=SuiteResponse)
-async def get_suite(name: SuiteName, service: ServiceDep) -> Response:
+@router.get(
+    "/{name}",
+    summary="Fragility of the blocks",
+    response_model=SuiteResponse,
+    responses={200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nrml"]: {}}}},
+)
+async def get_suite(
+    name: SuiteName, params: Annotated[SuiteParams, Query()], request: Request, service: ServiceDep
+) -> Response:
     """Counts with intervals and fitted curves of each block and limit state, margins of each record, rotations.
 
     If the suite asks for it, also friction demand, and the effect of restitution and sampling. The data sets of the
-    suite are under `links`.
+    suite are under `links`. CSV has a row for each limit state, block and level. NRML is the fragility model of
+    OpenQuake with the limit states rocks and overturns, for suites with the measure PGA or PGV.
     """
-    found = await service.run_io(partial(service.suites.suite, name))
-    return json_response(found, {"Cache-Control": REVALIDATE})
+    params.check()
+    form = negotiated_form(request, params.format, ("json", "csv", "nrml"))
+    if form == "json":
+        found = await service.run_io(partial(service.suites.suite, name))
+        return json_response(found, {"Cache-Control": REVALIDATE})
+    text = await service.run_io(partial(service.suites.text, name, form, params.curves))
+    return text_response(text, name, form, {"Cache-Control": REVALIDATE})

@@ -1,0 +1,74 @@
+"""A measured free rocking: parameters, body and response."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, Field
+
+from rocking._base.errors import in_range
+from rocking_api.models.metadata import METADATA_URL_FIELD
+from rocking_api.models.params import Params, TableFormat
+from rocking_api.models.responses import QUERY, VERSION_FIELD
+
+MAX_SAMPLES = 20_000
+"""Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
+
+Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
+
+
+class IdentifyParams(Params):
+    """How a trace is read and fitted."""
+
+    edges: int = Field(
+        1,
+        description="1 for a body with equal edges, 2 for one with a right and a left edge",
+        json_schema_extra={"enum": [1, 2]},
+    )
+    degrees: bool = Field(False, description="the rotations are in degrees, not in radians")
+    confidence: float = Field(
+        0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
+    )
+    format: TableFormat = None
+
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        if name == "edges":
+            in_range(name, value, 1, 2)
+        elif name == "confidence":
+            in_range(name, value, 0.0, 0.999, closed="right")
+
+
+class Trace(Params):
+    """A trace in a JSON body."""
+
+    time: Samples = Field(description="times, ascending [s]")
+    rotation: Samples = Field(description="rotation; positive values turn on the right edge [rad]")
+
+
+class IdentifyResponse(BaseModel):
+    """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
+
+    query: IdentifyParams = QUERY
+    edge: list[str] = Field(description="both, or right and left")
+    restitution: list[float] = Field(description="eta of the impacts after which it turns on the edge [-]")
+    restitution_lower: list[float] = Field(description="lower end of its interval [-]")
+    restitution_upper: list[float] = Field(description="upper end of its interval [-]")
+    alpha: list[float] = Field(description="slenderness angle [rad]")
+    alpha_lower: list[float] = Field(description="lower end of its interval [rad]")
+    alpha_upper: list[float] = Field(description="upper end of its interval [rad]")
+    frequency_parameter: list[float] = Field(description="p [rad/s]")
+    frequency_parameter_lower: list[float] = Field(description="lower end of its interval [rad/s]")
+    frequency_parameter_upper: list[float] = Field(description="upper end of its interval [rad/s]")
+    impact_time: list[float] = Field(description="times of the impacts of the fit [s]")
+    offset: float = Field(description="rotation at rest [rad]")
+    noise: float = Field(description="standard deviation of the residual [rad]")
+    time: list[float] = Field(description="times of the samples [s]")
+    rotation: list[float] = Field(description="rotation as given [rad]")
+    fitted: list[float | None] = Field(description="rotation of the block [rad]; null where nothing is fitted")
+    version: str = VERSION_FIELD
+    metadata_url: str = METADATA_URL_FIELD
+
+
+EDGE_COLUMNS = [name for name in IdentifyResponse.model_fields if name.startswith(("edge", "rest", "alpha", "freq"))]
+"""Fields with one value for each edge."""

@@ -1,0 +1,109 @@
+"""The block from a measured free rocking."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import APIRouter, Query, Request, Response
+from numpy.typing import NDArray
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._excitation.records.readers.columns import read_samples
+from rocking._excitation.records.readers.lines import TextFile
+from rocking._numba.cancellation import StopFlag
+from rocking_api.http.batch import body_form
+from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES, IdentifyParams, IdentifyResponse, Trace
+from rocking_api.models.responses import finite
+from rocking_api.service import ServiceDep
+
+router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+
+MAX_BODY = 1024 * 1024
+"""Largest trace [bytes]."""
+
+_FORMS: tuple[Form, ...] = ("json", "csv")
+
+
+def _example() -> dict[str, list[float]]:
+    """Six flights of a slender block, alpha = 0.2 rad, p = 2.5 rad/s, eta = 0.9, released at alpha/2, each 0.02 s."""
+    alpha, p, eta, step = 0.2, 2.5, 0.9, 0.02
+    start, gap, sign = 0.0, 0.5, 1.0  # gap: 1 - peak/alpha
+    rotation: list[float] = []
+    ends = []
+    for flight in range(6):
+        half = math.acosh(1.0 / gap) / p
+        top = start if flight == 0 else start + half
+        start = top + half
+        ends.append((top, gap, sign, start))
+        gap, sign = math.sqrt(1.0 - eta**2 * (1.0 - gap**2)), -sign
+    times = [k * step for k in range(int(start / step))]
+    for time in times:
+        top, gap, sign, _ = next(one for one in ends if time < one[-1])
+        rotation.append(round(sign * alpha * (1.0 - gap * math.cosh(p * (time - top))), 5))
+    return {"time": [round(time, 2) for time in times], "rotation": rotation}
+
+
+_TRACE = _example()
+
+_CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*_TRACE.values(), strict=True))
+
+
+@router.post(
+    "/identify",
+    summary="The block from a measured free rocking",
+    response_model=IdentifyResponse,
+    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "description": "times and rotations of a sensor or a film, with noise and an offset",
+            "content": {
+                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/Trace"}, "example": _TRACE},
+                MEDIA_TYPES["csv"]: {"schema": {"type": "string"}, "example": _CSV},
+            },
+        }
+    },
+)
+async def post_identify(params: Annotated[IdentifyParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Restitution, slenderness angle and frequency parameter with intervals, as `rocking.identify_free_rocking`.
+
+    The body is JSON, or CSV with a column of times and one of rotations; the response has the same format, or that of
+    `format` or `Accept`. CSV has a row for each edge.
+    """
+    given = body_form(request, _FORMS)
+    form = negotiated_form(request, params.format, _FORMS, default=given)
+    params.check()
+    body = await service.read_body(request, MAX_BODY)
+    time, rotation = await service.run_parser(lambda stop: _read(body, given, stop), request, large=True)
+    return await service.run_heavy(params, lambda _: _identified(params, time, rotation, form), request)
+
+
+def _read(body: bytes, form: Form, stop: StopFlag) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if form == "json":
+        trace = Trace.model_validate_json(body)
+        return np.array(trace.time), np.array(trace.rotation)
+    _, time, rotation = read_samples(TextFile("trace", body, stop), MAX_SAMPLES)
+    if time is None:
+        raise InvalidArgumentError("body", "one column", "a column of times and one of rotations")
+    return time, rotation
+
+
+def _identified(
+    params: IdentifyParams, time: NDArray[np.float64], rotation: NDArray[np.float64], form: Form
+) -> Response:
+    # scipy.stats takes longer to import than the service to start
+    from rocking._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
+
+    factor = math.pi / 180.0 if params.degrees else 1.0
+    found = identify_free_rocking(time, factor * rotation, edges=params.edges, confidence=params.confidence)
+    edges = {name: found[name].values.tolist() for name in EDGE_COLUMNS}
+    if form == "csv":
+        return csv_response(edges, "identified")
+    columns: dict[str, Any] = {name: found[name].values.tolist() for name in ("time", "rotation", "impact_time")}
+    columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
+    noise, offset = found["noise"].item(), found["offset"].item()
+    return json_response(IdentifyResponse.model_construct(query=params, noise=noise, offset=offset, **edges, **columns))

@@ -1,0 +1,78 @@
+"""POST /v1/identify: the block of a direct call, and bodies that are no traces."""
+
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES
+
+import rocking
+from benchmarks.accuracy.free_rocking import free_rocking
+from tests.api.conftest import assert_problem
+
+URL = "/v1/identify"
+CSV = {"content-type": "text/csv"}
+ALPHA, P, ETA = 0.25, 2.5, 0.9
+
+
+@pytest.fixture(scope="module")
+def trace():
+    rotation = free_rocking(np.array([0.2]), ALPHA, P, ETA, 6.0, 60)[0]
+    noisy = rotation + 1e-3 * np.random.default_rng(3).normal(size=rotation.size)
+    return {"time": (np.arange(noisy.size) / 60).tolist(), "rotation": noisy.tolist()}
+
+
+def as_csv(trace, factor=1.0):
+    rows = zip(trace["time"], trace["rotation"], strict=True)
+    return "time,rotation\n" + "".join(f"{time!r},{factor * rotation!r}\n" for time, rotation in rows)
+
+
+def test_the_block_is_that_of_a_direct_call(client, trace):
+    expected = rocking.identify_free_rocking(trace["time"], trace["rotation"], confidence=0.9)
+    answer = client.post(URL, params={"confidence": 0.9}, json=trace).json()
+    for name in EDGE_COLUMNS:
+        assert answer[name] == expected[name].values.tolist()
+    assert answer["restitution"] == pytest.approx([ETA], abs=0.01)
+    assert answer["impact_time"] == expected["impact_time"].values.tolist()
+    assert answer["rotation"] == trace["rotation"]
+    nan = np.isnan(expected["fitted"].values)
+    assert [value is None for value in answer["fitted"]] == nan.tolist()
+    degrees = client.post(URL + "?degrees=true&confidence=0.9", content=as_csv(trace, 180 / math.pi), headers=CSV)
+    (row,) = csv.DictReader(io.StringIO(degrees.text))
+    assert float(row["alpha"]) == pytest.approx(answer["alpha"][0], rel=1e-6)  # of the fit
+
+
+@pytest.mark.parametrize(
+    ("body", "name"),
+    [
+        ("", "body"),
+        ("[1, 2", "body"),
+        ("{}", "time"),
+        ('{"time": [0, 1], "rotation": [0, 1], "extra": 1}', "extra"),
+        ('{"time": [0, 1], "rotation": [0]}', "rotation"),
+        (f'{{"time": {[20, *range(19)]}, "rotation": {[0.1] * 20}}}', "time"),
+        ('{"time": [0, 1e308, 1.7e308], "rotation": [1e-300, 1e300, 1e-308]}', "time"),
+        (f'{{"time": [{"0," * MAX_SAMPLES}1], "rotation": []}}', "time"),
+        (f'{{"time": [{"null," * 100_000}1], "rotation": []}}', "time"),
+    ],
+)
+def test_json_that_is_no_trace_is_refused_by_name(client, body, name):
+    assert_problem(client.post(URL, content=body), 422, name)
+    assert client.get("/health").status_code == 200
+
+
+@pytest.mark.parametrize(
+    "body", ["", "time\n1\n2\n", "a,b,c\n1,2,3\n", "\x00" * 1000, "0,nan\n1,inf\n", "1,2\n" * 60_000]
+)
+def test_csv_that_is_no_trace_is_refused(client, body):
+    assert_problem(client.post(URL, content=body, headers=CSV), 422)
+    assert client.get("/health").status_code == 200
+
+
+def test_parameters_out_of_range_and_large_bodies_are_refused(client, trace):
+    for query, name in (("edges=3", "edges"), ("confidence=1", "confidence"), ("confidence=nan", "confidence")):
+        assert_problem(client.post(f"{URL}?{query}", json=trace), 422, name)
+    assert_problem(client.post(URL, content=" " * 2_000_000), 413, "body")
+    assert_problem(client.post(URL, json=trace, headers={"content-type": "text/xml"}), 415, "Content-Type")
