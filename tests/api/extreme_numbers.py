@@ -30,6 +30,7 @@ import numpy as np
 import typer.main
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
+from rocking_api.routers.identify import EXAMPLE
 from rocking_api.settings import Settings
 from typer.testing import CliRunner
 
@@ -204,10 +205,7 @@ BODIES: dict[str, dict[str, Any]] = {
         "application/json": [{"width": 0.4, "depth": 0.3, "height": 1.6, "offset_width": 0.01, "tolerance": 0.01}],
         "text/csv": {"width [cm]": [40.0], "height [m]": [1.6], "friction": [0.5], "restitution": [0.9]},
     },
-    "/v1/identify": {
-        "application/json": dict(zip(("time", "rotation"), (values.tolist() for values in TRACE), strict=True)),
-        "text/csv": dict(zip(("time", "rotation"), (values.tolist() for values in TRACE), strict=True)),
-    },
+    "/v1/identify": {"application/json": EXAMPLE},
     "/v1/response": {
         "application/json": {"pulse": "sine", **GROUPS, "alpha_deg": 5.0, "tolerance": 1e-4},
         "text/csv": GROUPS,

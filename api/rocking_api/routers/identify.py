@@ -47,9 +47,10 @@ def _example() -> dict[str, list[float]]:
     return {"time": [round(time, 2) for time in times], "rotation": rotation}
 
 
-_TRACE = _example()
+EXAMPLE = _example()
+"""A trace for the description of the route."""
 
-_CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*_TRACE.values(), strict=True))
+_CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMPLE.values(), strict=True))
 
 
 @router.post(
@@ -62,7 +63,7 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*_TRAC
             "required": True,
             "description": "times and rotations of a sensor or a film, with noise and an offset",
             "content": {
-                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/Trace"}, "example": _TRACE},
+                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/Trace"}, "example": EXAMPLE},
                 MEDIA_TYPES["csv"]: {"schema": {"type": "string"}, "example": _CSV},
             },
         }
