@@ -98,6 +98,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     app.add_middleware(RequestLog, metrics=service.metrics, access_log=settings.access_log)
     app.state.when_ready = when_ready
     add_handlers(app)
+    pages.add_error_pages(app)
     for module in ROUTES:
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
