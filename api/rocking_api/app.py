@@ -35,6 +35,7 @@ from rocking_api.routers import (
     identify,
     metadata,
     metrics,
+    objects_page,
     overturning,
     pages,
     pulses,
@@ -52,7 +53,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
-    *(assess, identify, pulses, metadata, suites),
+    *(assess, identify, pulses, metadata, suites, objects_page),
     *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 

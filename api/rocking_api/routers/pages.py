@@ -27,9 +27,13 @@ TEMPLATES = Environment(
     lstrip_blocks=True,
 )
 
-_POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 # swagger-ui needs styles inside elements and data: images
 _SWAGGER_POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
+# the report of an assessment has its styles inside
+REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
 _REVALIDATE = {"Cache-Control": "no-cache"}  # revalidated by ETag: no page mixes two versions
 
 
@@ -41,11 +45,12 @@ class Page:
     label: str
     title: str
     template: str
-    policy: str = _POLICY
+    policy: str = POLICY
 
 
 PAGES = (
     Page("/", "Explorer", "Does the block overturn?", "explorer.html"),
+    Page("/objects", "Objects", "Which objects overturn?", ""),  # objects_page.py
     Page("/records", "Records", "A block under a record", "records.html"),
     Page("/suites", "Suites", "Suites of records", "suites.html"),
     Page("/datasets", "Data sets", "Data sets", "datasets.html"),
@@ -90,7 +95,7 @@ def _with_page(handler: Callable[..., Any]) -> Callable[[Request, Exception], Aw
         problem = json.loads(bytes(response.body))
         text = html("error.html", problem["title"], problem=problem, address=request.url.path)
         kept = {name: value for name, value in response.headers.items() if not name.startswith("content-")}
-        headers = kept | {"Content-Security-Policy": _POLICY, "Vary": "Accept"}
+        headers = kept | {"Content-Security-Policy": POLICY, "Vary": "Accept"}
         return HTMLResponse(text, response.status_code, headers)
 
     return handle

@@ -32,6 +32,11 @@ export async function send(path, params, file, signal) {
   return fetched(urlOf(path, params), { signal, method: "POST", body: file });
 }
 
+/** The text of a page of the service to a form or a file. Throws as `ask`. */
+export async function page(path, body, signal) {
+  return fetched(path, { signal, method: "POST", body, headers: { Accept: "application/json" } }, (response) => response.text());
+}
+
 /** Wait some ms, or until the signal is aborted; throws its reason then. */
 export function pause(milliseconds, signal) {
   return new Promise((resolve, reject) => {
@@ -44,19 +49,20 @@ export function pause(milliseconds, signal) {
 }
 
 /** A busy service says when to try again (Retry-After). */
-async function fetched(url, options) {
+async function fetched(url, options, read) {
   for (let attempt = 1; ; attempt += 1) {
-    const { ok, found, after } = await exchanged(url, options);
+    const { ok, found, after } = await exchanged(url, options, read);
     if (ok) return found;
     if (!after || attempt === ATTEMPTS) throw new Problem(found);
     await pause(1000 * after, options.signal);
   }
 }
 
-async function exchanged(url, options) {
+async function exchanged(url, options, read = (response) => response.json()) {
   try {
     const response = await fetch(url, options);
-    return { ok: response.ok, found: await response.json(), after: Number(response.headers.get("Retry-After")) };
+    const found = await (response.ok ? read(response) : response.json());
+    return { ok: response.ok, found, after: Number(response.headers.get("Retry-After")) };
   } catch (error) {
     if (options.signal.aborted) throw options.signal.reason;
     throw new Problem({ detail: `the service does not answer (${error.message})` });

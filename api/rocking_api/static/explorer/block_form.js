@@ -13,10 +13,6 @@ const answer = document.getElementById("answer");
 
 /** Wire the form: `submit(parts)` gets the new parts of the state, `edit()` is called after each edit. */
 export function wireForm(submit, edit) {
-  for (const name of QUANTITIES) {
-    const units = form.elements[`${name}_unit`];
-    for (const unit of Object.keys(UNITS[name])) units.append(element("option", unit));
-  }
   form.elements.how.addEventListener("change", showHow);
   form.addEventListener("submit", (event) => {
     event.preventDefault();

@@ -2,6 +2,7 @@
 
 import { send } from "./api.js";
 import { chartsReady } from "./chart.js";
+import { onDrop } from "./drop.js";
 import { drawMotion } from "./motion_charts.js";
 import { clearErrors, element } from "./page.js";
 import { pane } from "./pane.js";
@@ -10,7 +11,7 @@ import { showRecordAnswer } from "./record_answer.js";
 import { drawPulse } from "./record_pulse.js";
 import { changes, drawScales } from "./record_scales.js";
 import { onChange, refresh } from "./state.js";
-import { toSI, UNITS } from "./units.js";
+import { toSI } from "./units.js";
 
 const GRAVITY = 9.80665;
 const SAMPLES = 4000;
@@ -124,9 +125,6 @@ function take(chosen) {
   refresh();
 }
 
-for (const name of ["width", "height"]) {
-  for (const unit of Object.keys(UNITS[name])) form.elements[`${name}_unit`].append(element("option", unit));
-}
 for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2"]) form.elements.unit.append(element("option", unit));
 input.addEventListener("change", () => take(input.files[0]));
 form.addEventListener("submit", (event) => {
@@ -134,19 +132,7 @@ form.addEventListener("submit", (event) => {
   if (file) refresh();
   else document.getElementById("file-problem").textContent = "Choose the file of a record first.";
 });
-addEventListener("dragover", (event) => {
-  event.preventDefault();
-  document.body.classList.add("dropping");
-});
-addEventListener("dragleave", () => document.body.classList.remove("dropping"));
-addEventListener("drop", (event) => {
-  event.preventDefault();
-  document.body.classList.remove("dropping");
-  const [dropped] = event.dataTransfer.files;
-  if (!dropped) return;
-  input.files = event.dataTransfer.files;
-  take(dropped);
-});
+onDrop(take);
 report.addEventListener("click", async () => {
   const { showReport } = await import("./report.js");
   const { recordReport } = await import("./record_report.js");
