@@ -9,6 +9,7 @@ from matplotlib.image import imread
 from playwright.sync_api import Page
 
 BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=momentum"
+MAP = "/?pulse=sine"  # the map of the groups, without a block
 POINT = "/?frequency_ratio=4&slenderness=0.7"
 
 

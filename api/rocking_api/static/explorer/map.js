@@ -6,6 +6,7 @@ import { onTheme, themed } from "./colours.js";
 import { MARGIN, MARGIN_OF_BLOCK, drawFrame } from "./map_frame.js";
 import { drawPicture } from "./map_picture.js";
 import { once, pane } from "./pane.js";
+import { shown } from "./units.js";
 
 const COARSE = { columns: 120, rows: 90 };
 const FINE = { columns: 400, rows: 240 };
@@ -59,7 +60,7 @@ export function showMap(scenario, view, lasting) {
     return;
   }
   const shape = shapeOf(scenario);
-  wanted = { key: JSON.stringify([shape, view, scenario.size]), scenario, view };
+  wanted = { key: JSON.stringify([shape, view, scenario.size, shown]), scenario, view };
   if (drawn?.key === wanted.key) {
     drawn.scenario = scenario; // another point of the same map
     drawMarks();
@@ -151,7 +152,8 @@ function drawMarks() {
   const context = over.getContext("2d");
   context.clearRect(0, 0, over.width, over.height);
   if (hovered) drawCross(context, frame, scales, hovered, ratio);
-  const { point } = drawn.scenario;
+  const { point, change } = drawn.scenario;
+  if (change) drawDiamond(context, frame, scales, { ...point, slenderness: change }, ratio);
   if (point) drawRing(context, frame, scales, point, ratio);
 }
 
@@ -173,6 +175,18 @@ function drawRing(context, frame, scales, point, ratio) {
   context.beginPath();
   context.arc(x, y, 8 * ratio, 0, 2 * Math.PI);
   for (const [colour, width] of [["#ffffff", 6], ["#111111", 2.4]]) strokeIn(context, colour, width * ratio);
+}
+
+/** The nearest change of the outcome at the period of the point. */
+function drawDiamond(context, frame, scales, point, ratio) {
+  const [x, y] = [scales.x.place(point.frequency_ratio), scales.y.place(point.slenderness)];
+  if (x < frame.left || x > frame.left + frame.width || y < frame.top || y > frame.top + frame.height) return;
+  const half = 7 * ratio;
+  context.beginPath();
+  context.moveTo(x - half, y);
+  for (const [dx, dy] of [[0, -half], [half, 0], [0, half]]) context.lineTo(x + dx, y + dy);
+  context.closePath();
+  for (const [colour, width] of [["#ffffff", 5], ["#111111", 2]]) strokeIn(context, colour, width * ratio);
 }
 
 /** White under black is visible on every colour of the map. */

@@ -4,7 +4,8 @@ import { hover, pointAt } from "./map.js";
 import { once, pane } from "./pane.js";
 import { validityNote } from "./scenario.js";
 import { middleOf, pointBeside, zoomed } from "./view.js";
-import { responseLabel, number } from "./labels.js";
+import { acceleration, responseLabel, number } from "./labels.js";
+import { inShown, shown } from "./units.js";
 
 const STEP = 0.01;
 const LARGE_STEP = 0.1;
@@ -66,8 +67,8 @@ export function wireMap(look, choose, frame) {
 }
 
 /** Show the response at a point, or else at the chosen one; null: the scenario is unknown. */
-export function showReadout(point, scenario) {
-  if (!scenario) return numbers.wait();
+export function showReadout(point, scenario, lasting = false) {
+  if (!scenario) return numbers.wait({ lasting });
   current = { point: point ?? scenario.point, scenario };
   if (!current.point) return numbers.nothing("Hover over the map to read values.");
   const { pulse, restitution, alpha_deg, size } = scenario;
@@ -79,7 +80,7 @@ function pointLabel({ frequency_ratio, slenderness }, size) {
   const groups = `ω ${number(frequency_ratio)}, 1/a ${number(slenderness)}`;
   if (!size) return groups;
   const period = (2 * Math.PI) / (size.p * frequency_ratio);
-  return `${groups} (${number(size.uplift_in_g / slenderness)} g, ${number(period)} s)`;
+  return `${acceleration(size.uplift / slenderness)}, ${number(inShown("period", period))} ${shown.period} (${groups})`;
 }
 
 function rounded({ frequency_ratio, slenderness }) {

@@ -5,7 +5,7 @@ export function setStatus(place, what, again) {
   const wrong = what instanceof Error;
   place.classList.toggle("wrong", wrong);
   if (!wrong) place.textContent = what;
-  else if (showFieldError(what, place.closest("form") ?? document.getElementById("controls"))) {
+  else if (showFieldError(what, document.querySelector("form"))) {
     place.textContent = "No answer: see the field marked in red.";
   } else {
     const button = element("button", "Try again", { type: "button" });

@@ -21,7 +21,8 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
   let started = -Infinity; // [ms]
   const timers = [];
 
-  function mark(stale) {
+  function mark(stale, idle = false) {
+    box.inert = idle;
     box.classList.toggle("stale", stale);
     box.setAttribute("aria-busy", String(stale));
     box.dataset.shown = shown ?? "";
@@ -108,7 +109,7 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
     wait({ lasting = false, words = "" } = {}) {
       stop();
       wanted = null;
-      mark(true);
+      mark(true, lasting);
       setStatus(status, words);
       if (!lasting) timers.push(setTimeout(blank, CLEAR_AFTER));
     },

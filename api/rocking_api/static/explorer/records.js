@@ -13,7 +13,6 @@ import { changes, drawScales } from "./record_scales.js";
 import { onChange, refresh } from "./state.js";
 import { toSI } from "./units.js";
 
-const GRAVITY = 9.80665;
 const SAMPLES = 4000;
 
 const form = document.getElementById("record");
@@ -98,7 +97,7 @@ function sizeOf(found) {
     R: found.half_diagonal,
     p: found.frequency_parameter,
     alpha: (found.alpha_deg * Math.PI) / 180,
-    uplift_in_g: found.uplift_acceleration / GRAVITY,
+    uplift: found.uplift_acceleration,
   };
 }
 
