@@ -37,6 +37,12 @@ export async function page(path, body, signal) {
   return fetched(path, { signal, method: "POST", body, headers: { Accept: "application/json" } }, (response) => response.text());
 }
 
+/** A file of the service under another name. Throws as `ask`. */
+export async function file(url, name, signal) {
+  const content = await fetched(url, { signal }, (response) => response.blob());
+  return new File([content], name, { lastModified: 0 });
+}
+
 /** Wait some ms, or until the signal is aborted; throws its reason then. */
 export function pause(milliseconds, signal) {
   return new Promise((resolve, reject) => {

@@ -71,3 +71,10 @@ export function clearErrors() {
     field.removeAttribute("aria-describedby");
   }
 }
+
+/** Have the browser save a blob. */
+export function save(blob, name) {
+  const link = element("a", "", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,9 +1,10 @@
 // The page of a record: file and block from the form, and from there to every view.
 
-import { send } from "./api.js";
+import { file as fileOf, send } from "./api.js";
 import { chartsReady } from "./chart.js";
 import { onDrop } from "./drop.js";
 import { drawMotion } from "./motion_charts.js";
+import { number } from "./labels.js";
 import { clearErrors, element } from "./page.js";
 import { pane } from "./pane.js";
 import { unload } from "./player.js";
@@ -17,6 +18,7 @@ const SAMPLES = 4000;
 
 const form = document.getElementById("record");
 const input = document.getElementById("file");
+const factor = document.getElementById("factor");
 const report = document.getElementById("open-report");
 
 let file = null;
@@ -44,10 +46,12 @@ function view(id, status, doing, draw) {
   return pane({ box, status: document.getElementById(status), doing, draw, clear: () => draw(null) });
 }
 
-/** Show what the form holds. */
-async function show() {
+/** Show what the form holds; without `all` only the response and the motion, while the slider of the factor moves. */
+async function show(_, all = true) {
   clearErrors();
   if (!file) return;
+  const power = Math.log10(Number(form.elements.scale.value.replace(",", ".")));
+  if (Number.isFinite(power)) factor.value = power;
   for (const section of document.querySelectorAll("section.empty")) section.classList.remove("empty");
   const params = paramsOf();
   const key = (more) => JSON.stringify([params, more, file.name, file.size, file.lastModified]);
@@ -60,6 +64,7 @@ async function show() {
   }
   const { scale, ...unscaled } = params;
   await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }));
+  if (!all) return;
   await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }));
   await pulse.show(key("pulse"), upload("pulse", params));
 }
@@ -118,9 +123,16 @@ function openDetails() {
   if (/unit|step|component/.test(problem)) document.getElementById("more").open = true;
 }
 
+/** Until a file is chosen, a part of a record is shown. */
+async function example() {
+  const found = await fileOf("/static/example-record.csv", "South Napa 2014, CE.68150, east, part.csv", new AbortController().signal);
+  if (!file) take(found);
+}
+
 function take(chosen) {
   if (!chosen) return;
   file = chosen;
+  document.getElementById("dropped").textContent = `${chosen.name}; drop another one anywhere on this page`;
   refresh();
 }
 
@@ -129,7 +141,6 @@ input.addEventListener("change", () => take(input.files[0]));
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (file) refresh();
-  else document.getElementById("file-problem").textContent = "Choose the file of a record first.";
 });
 onDrop(take);
 report.addEventListener("click", async () => {
@@ -137,4 +148,11 @@ report.addEventListener("click", async () => {
   const { recordReport } = await import("./record_report.js");
   showReport(recordReport(answer, margins));
 });
+form.addEventListener("change", ({ target }) => target !== input && target !== factor && refresh());
+factor.addEventListener("input", () => {
+  form.elements.scale.value = number(10 ** factor.value);
+  show(null, false);
+});
+factor.addEventListener("change", refresh);
 onChange(show);
+example();
