@@ -127,3 +127,26 @@ def test_assumptions_are_stated_and_the_motion_goes_to_rest_in_view(open_page):
     assert float(page.locator("#stage").get_attribute("data-angle")) == 0.0
     box = page.locator("#stage").bounding_box()
     assert box["y"] + box["height"] <= 960
+
+
+def test_a_triangular_pulse_is_given_by_its_samples(open_page):
+    page = open_page(BLOCK)
+    expect(page.locator(".verdict")).to_be_visible()
+    page.locator("#pulse").select_option(label="Own samples")
+    expect(page.locator("#samples")).to_have_value("0 1 0")
+    page.locator("#samples").fill("0\n2\n0")
+    page.locator("#period").fill("0.4")
+    page.locator("#period").press("Enter")
+    expect(page.locator("#single-title")).to_have_text("Under one pulse: Own samples, 0.4 s, 0.4 g")
+    settle(page)
+    expect(page.locator("#spectrum-chart canvas")).to_be_visible()
+    assert query(page)["pulse"] == "0 2 0"
+    block = rocking.Block(0.4, 1.6)
+    triangle = rocking.SampledPulse([0.0, 1.0, 0.0])
+    found = block.response(triangle, peak_acceleration=0.4 * STANDARD_GRAVITY, period=0.4)
+    verdict = "It overturns." if found.overturned else "It survives (comes to rest)."
+    expect(page.locator(".verdict")).to_have_text(verdict)
+    text = page.locator("#answer").inner_text()
+    said = float(re.search(r"at most ([\d.]+)°", text)[1])
+    assert said == pytest.approx(np.degrees(float(found.rotation)), rel=0.006)
+    assert page.locator(".downloads a[href]").count() == 0  # their addresses could not hold the samples

@@ -1,5 +1,10 @@
 // Requests to the service, with a cache of responses. The caller owns the signal that cancels a request.
 
+/** Whether the pulse of a state is given by samples, separated by blanks, and not by its name. */
+export function isSampled(pulse) {
+  return /^[-+]?[.\d]/.test(pulse);
+}
+
 const KEPT = 60;
 const ATTEMPTS = 4;
 const cache = new Map();
@@ -23,8 +28,15 @@ export function urlOf(path, params) {
 /** The response. Throws Problem, or the reason with which the signal was aborted. */
 export async function ask(path, params, signal) {
   const url = urlOf(path, params);
-  if (!cache.has(url)) keep(url, await fetched(url, { signal }));
+  if (!cache.has(url)) keep(url, await (isSampled(params.pulse ?? "") ? sampled(path, params, signal) : fetched(url, { signal })));
   return cache.get(url);
+}
+
+/** The response under a pulse that is given by samples, which are separated by blanks. */
+function sampled(path, { pulse, ...params }, signal) {
+  const given = Object.entries(params).filter(([, value]) => value !== "" && value !== null && value !== undefined);
+  const body = JSON.stringify({ ...Object.fromEntries(given), pulse: { acceleration: pulse.split(" ").map(Number) } });
+  return fetched(path, { signal, method: "POST", body, headers: { "Content-Type": "application/json" } });
 }
 
 /** The response to a file; it is not cached. Throws as `ask`. */

@@ -1,7 +1,7 @@
 // The response of a block to the single pulse, in words.
 
 import { assumptions, element, facts } from "./page.js";
-import { acceleration, length, number, PULSES, threshold, thresholds } from "./labels.js";
+import { acceleration, length, number, pulseName, threshold, thresholds } from "./labels.js";
 import { inShown, shown, written } from "./units.js";
 
 const answer = document.getElementById("answer");
@@ -13,7 +13,7 @@ export function showAnswer(found) {
   answer.hidden = found === null;
   if (found === null) return;
   const { pulse, period, peak_acceleration: peak } = found.query;
-  title.textContent = `Under one pulse: ${PULSES[pulse] ?? pulse}, ${number(period)} s, ${acceleration(peak)}`;
+  title.textContent = `Under one pulse: ${pulseName(pulse)}, ${number(period)} s, ${acceleration(peak)}`;
   answer.append(
     element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
     element("p", sentence(found)),
@@ -48,7 +48,7 @@ function factsOf(found) {
   const pairs = [["Uplifts at", acceleration(found.uplift_acceleration)]];
   const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
   pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : acceleration(largest, threshold)]);
-  if (largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
+  if (found.url && largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
   const margin = applies && marginOf(found);
   if (margin) pairs.push(margin);
   const all = applies ? (found.thresholds ?? []) : [];
@@ -56,7 +56,7 @@ function factsOf(found) {
   const unit = written(shown.acceleration);
   const changes = all.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} ${unit}`);
   if (changes.length > 1) pairs.push(["At this period it", changes.join(", ")]);
-  pairs.push(["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)]);
+  if (found.url) pairs.push(["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)]);
   return pairs;
 }
 

@@ -1,5 +1,7 @@
 // The sentence and the settings: quantities, pulse, restitution, slenderness angle, units. They are the state.
 
+import { isSampled } from "./api.js";
+import { samplesOf, TRIANGLE } from "./own_pulse.js";
 import { element } from "./page.js";
 import { problems, showErrors } from "./form_errors.js";
 import { number, PULSES } from "./labels.js";
@@ -8,8 +10,11 @@ import { inUnit, MISSING, shown, split, SYSTEMS, toSI, UNITS, written } from "./
 
 const QUANTITIES = Object.keys(UNITS);
 
+const OWN = "own";
+
 const form = document.getElementById("block");
 const { pulse } = form.elements;
+const samples = document.getElementById("samples");
 const how = document.getElementById("how");
 const eta = document.getElementById("eta");
 const alpha = document.getElementById("alpha");
@@ -19,6 +24,7 @@ const outputs = { eta: document.getElementById("eta-value"), alpha: document.get
 /** Wire the form: `set(parts, keep)` changes the state, `edit()` says that it cannot be read; `look()` gives state and scenario. */
 export function wireForm(look, set, edit) {
   for (const [name, words] of Object.entries(PULSES)) pulse.append(element("option", words, { value: name }));
+  pulse.append(element("option", "Own samples", { value: OWN }));
   for (const name of Object.keys(SYSTEMS)) units.append(element("option", name));
   for (const name of QUANTITIES) {
     const field = form.elements[name];
@@ -29,7 +35,8 @@ export function wireForm(look, set, edit) {
     event.preventDefault();
     if (showErrors(form, QUANTITIES)) set(block(), true);
   });
-  pulse.addEventListener("change", () => set({ pulse: pulse.value }, true));
+  pulse.addEventListener("change", () => set({ pulse: pulse.value === OWN ? samplesOf(samples.value || TRIANGLE) : pulse.value }, true));
+  samples.addEventListener("change", () => set({ pulse: samplesOf(samples.value) || TRIANGLE }, true));
   how.addEventListener("change", () => set({ restitution: how.value === "momentum" ? "momentum" : eta.value }, true));
   units.addEventListener("change", () => set({ ...block(SYSTEMS[units.value]), ...(isBlock(look().state) ? {} : EMPTY) }, true));
   for (const [name, keep] of [["input", false], ["change", true]]) {
@@ -59,7 +66,10 @@ function leaning() {
 
 /** Fill the form with a state, and with what its scenario (null: not known yet) derives from it. */
 export function fillForm(state, scenario) {
-  pulse.value = state.pulse;
+  const own = isSampled(state.pulse);
+  pulse.value = own ? OWN : state.pulse;
+  samples.parentElement.hidden = !own;
+  if (own) samples.value = state.pulse;
   for (const name of QUANTITIES) {
     if (state[name] === "") continue;
     const { value, unit } = split(state[name]);

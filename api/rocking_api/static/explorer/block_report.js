@@ -1,7 +1,7 @@
 // The calculation report of a block under a pulse.
 
 import { canvasOf } from "./chart.js";
-import { acceleration, length, number, PULSES, threshold, thresholds } from "./labels.js";
+import { acceleration, length, number, pulseName, threshold, thresholds } from "./labels.js";
 import { geometryOf, modelSections, warningSection } from "./report_sections.js";
 
 /** The report of a response of /v1/blocks/response. */
@@ -23,7 +23,7 @@ export function blockReport(found) {
       {
         heading: "Ground motion",
         pairs: [
-          ["Shape", PULSES[query.pulse.replace("-", "")] ?? query.pulse],
+          ["Shape", pulseName(query.pulse)],
           ["Peak acceleration", acceleration(query.peak_acceleration)],
           ["Period T of the pulse", `${number(query.period, 5)} s`],
         ],
@@ -32,7 +32,7 @@ export function blockReport(found) {
       { heading: "Margins", lines: marginsOf(found) },
       warningSection(found.warnings),
       ...modelSections(found),
-      { heading: "To repeat it", lines: [location.href, `${location.origin}${found.url}`] },
+      { heading: "To repeat it", lines: [location.href, ...(found.url ? [`${location.origin}${found.url}`] : [])] },
     ],
     pictures: [
       [canvasOf(document.getElementById("rotation")), "Rotation [°] against time [s]"],

@@ -1,5 +1,6 @@
 // Downloads: data from the service, pictures of the page, and the link to the page.
 
+import { isSampled } from "./api.js";
 import { canvasOf } from "./chart.js";
 import { themed } from "./colours.js";
 import { drawLegend } from "./legend.js";
@@ -7,10 +8,11 @@ import { save, setStatus } from "./page.js";
 
 const FOOT = 34;
 
-/** Set the links of one part of the page, `urls` by format; a link without one is removed. */
+/** Set the links of one part of the page, `urls` by format; a link without one, or under samples, is removed. */
 export function setLinks(part, urls) {
   for (const link of document.querySelectorAll(`[data-links=${part}] a`)) {
-    if (urls[link.dataset.form]) link.href = urls[link.dataset.form];
+    const url = urls[link.dataset.form];
+    if (url && !isSampled(new URL(url, location).searchParams.get("pulse") ?? "")) link.href = url;
     else link.removeAttribute("href");
   }
 }

@@ -21,6 +21,11 @@ export const PULSES = {
   mavroeidis_papageorgiou: "Mavroeidis and Papageorgiou",
 };
 
+/** The name of a pulse in words. */
+export function pulseName(pulse) {
+  return PULSES[pulse.replace(/^-/, "")] ?? (/^[a-z_]/.test(pulse) ? pulse : "Own samples");
+}
+
 /** A number to some significant digits, without trailing zeros. */
 export function number(value, digits = 3) {
   if (Math.abs(value) < 1e-14) return "0";

@@ -1,6 +1,6 @@
 // The page: from the state (the address) to the scenario, and from there to every view.
 
-import { urlOf } from "./api.js";
+import { isSampled, urlOf } from "./api.js";
 import { showAnswer } from "./block_answer.js";
 import { fillForm, wireForm } from "./block_form.js";
 import { setLinks, wireDownloads } from "./downloads.js";
@@ -8,6 +8,7 @@ import { curvesUrl, mapParams, showMap } from "./map.js";
 import { wireGestures } from "./map_gestures.js";
 import { showReadout, wireMap } from "./map_pointer.js";
 import { showMotion } from "./motion.js";
+import { blockUnderSamples } from "./own_pulse.js";
 import { clearErrors } from "./page.js";
 import { once, pane } from "./pane.js";
 import { showPreview } from "./pulse_preview.js";
@@ -16,7 +17,7 @@ import { showSite } from "./site.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state } from "./state.js";
 import { whole, windowOf } from "./view.js";
-import { number, PULSES } from "./labels.js";
+import { number, pulseName } from "./labels.js";
 
 const EDITED = "A number of the sentence cannot be read.";
 const GROUPS = "The map shows a block without a size, by the groups of the paper. Change a number of the sentence to ask about one in metres.";
@@ -49,7 +50,7 @@ async function resolve() {
   if (isBlock(wanted)) {
     showScenario(null);
     const params = blockParams(wanted);
-    const answer = await block.show(JSON.stringify(params), once("/v1/blocks/response", params));
+    const answer = await block.show(JSON.stringify(params), responseOf(params));
     if (mine !== turn) return;
     scenario = answer ? scenarioOfBlock(answer) : scenarioWithoutResponse(wanted);
   } else {
@@ -57,6 +58,13 @@ async function resolve() {
     scenario = scenarioOf(wanted);
   }
   showScenario(scenario);
+}
+
+function responseOf(params) {
+  if (!isSampled(params.pulse)) return once("/v1/blocks/response", params);
+  return async function* load(signal) {
+    yield await blockUnderSamples(params, signal);
+  };
 }
 
 /** Show a scenario in every view; null: it is unknown, and the views are cleared after a while unless `lasting`. */
@@ -100,7 +108,7 @@ document.getElementById("open-report").addEventListener("click", async () => {
 
 function caption() {
   const { pulse, restitution, alpha_deg, point } = scenario;
-  const parts = [PULSES[pulse] ?? pulse, `η = ${number(restitution, 4)}`];
+  const parts = [pulseName(pulse), `η = ${number(restitution, 4)}`];
   parts.push(Number(alpha_deg) ? `α = ${number(alpha_deg, 4)}°` : "slender limit");
   if (point) parts.push(`ω = ${number(point.frequency_ratio, 5)}`, `1/a = ${number(point.slenderness, 5)}`);
   return parts.join(", ");

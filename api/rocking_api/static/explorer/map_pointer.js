@@ -1,5 +1,6 @@
 // Pointer and keyboard on the map: readout, choice of a point, zoom.
 
+import { isSampled } from "./api.js";
 import { hover, pointAt } from "./map.js";
 import { once, pane } from "./pane.js";
 import { validityNote } from "./scenario.js";
@@ -72,6 +73,7 @@ export function showReadout(point, scenario, lasting = false) {
   current = { point: point ?? scenario.point, scenario };
   if (!current.point) return numbers.nothing("Hover over the map to read values.");
   const { pulse, restitution, alpha_deg, size } = scenario;
+  if (isSampled(pulse)) return numbers.nothing(pointLabel(current.point, size));
   const params = { pulse, restitution, alpha_deg, ...rounded(current.point) };
   return numbers.show(JSON.stringify([params, size, point === null]), once("/v1/response", params));
 }

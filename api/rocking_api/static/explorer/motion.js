@@ -32,7 +32,7 @@ export async function showMotion(scenario, lasting) {
   current = scenario;
   const params = motionParams(scenario);
   const found = await motion.show(JSON.stringify([params, scenario.size]), (signal) => untilRest(params, signal));
-  const url = (format) => urlOf("/v1/history", { ...found.query, format }); // of what is shown, which lasts until rest
+  const url = (format) => urlOf("/v1/history", { ...found.query, pulse: params.pulse, format }); // of what is shown, which lasts until rest
   if (found) setLinks("motion", { csv: url("csv"), nc: url("nc") });
   return found;
 }
