@@ -67,14 +67,14 @@ function responseOf(params) {
   };
 }
 
-/** Show a scenario in every view; null: it is unknown, and the views are cleared after a while unless `lasting`. */
-function showScenario(found, lasting = false) {
+/** Show a scenario in every view; null: it is unknown, `idle` until the reader acts. */
+function showScenario(found, idle = false) {
   if (found || !view) view = windowOf(state(), found?.point);
-  if (!lasting) fillForm(state(), found);
-  showMap(found, view, lasting);
-  showReadout(null, found, lasting);
-  showMotion(found, lasting);
-  showSpectrum(found, view, lasting);
+  if (!idle) fillForm(state(), found);
+  showMap(found, view, idle);
+  showReadout(null, found, idle);
+  showMotion(found, idle);
+  showSpectrum(found, view, idle);
   link(found);
 }
 
@@ -82,7 +82,7 @@ function showScenario(found, lasting = false) {
 function edit() {
   turn += 1;
   scenario = null;
-  block.wait({ lasting: true, words: EDITED });
+  block.wait({ idle: true, words: EDITED });
   showSite(null);
   showScenario(null, true);
 }

@@ -53,10 +53,10 @@ const boundaries = pane({
 });
 
 /** Show the map of a scenario in a window, coarse first, and its boundary curves; null: the scenario is unknown. */
-export function showMap(scenario, view, lasting) {
+export function showMap(scenario, view, idle) {
   if (!scenario) {
-    grid.wait({ lasting });
-    boundaries.wait({ lasting });
+    grid.wait({ idle });
+    boundaries.wait({ idle });
     return;
   }
   const shape = shapeOf(scenario);

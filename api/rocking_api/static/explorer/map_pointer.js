@@ -68,8 +68,8 @@ export function wireMap(look, choose, frame) {
 }
 
 /** Show the response at a point, or else at the chosen one; null: the scenario is unknown. */
-export function showReadout(point, scenario, lasting = false) {
-  if (!scenario) return numbers.wait({ lasting });
+export function showReadout(point, scenario, idle = false) {
+  if (!scenario) return numbers.wait({ idle });
   current = { point: point ?? scenario.point, scenario };
   if (!current.point) return numbers.nothing("Hover over the map to read values.");
   const { pulse, restitution, alpha_deg, size } = scenario;

@@ -24,9 +24,9 @@ const motion = pane({
 });
 
 /** Show the motion at the point of a scenario; nothing without a point; null: the scenario is unknown. */
-export async function showMotion(scenario, lasting) {
+export async function showMotion(scenario, idle) {
   setLinks("motion", {});
-  if (!scenario) return motion.wait({ lasting });
+  if (!scenario) return motion.wait({ idle });
   section.classList.toggle("empty", !scenario.point);
   if (!scenario.point) return motion.nothing();
   current = scenario;

@@ -43,8 +43,8 @@ const envelope = pane({
 export async function showSite(state) {
   const section = document.getElementById("site");
   if (!state) {
-    assessment.wait({ lasting: true });
-    envelope.wait({ lasting: true });
+    assessment.wait({ idle: true });
+    envelope.wait({ idle: true });
     return;
   }
   section.hidden = state.width === "";
