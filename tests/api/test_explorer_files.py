@@ -1,5 +1,6 @@
 """Files of the explorer: vendored bytes, imports, ids, revalidation."""
 
+import gzip
 import hashlib
 import re
 from pathlib import Path
@@ -25,6 +26,11 @@ def test_the_vendored_library_is_what_was_published():
     assert "MIT" in (STATIC / "uplot" / "LICENSE").read_text()
     for name, digest in digests.items():
         assert hashlib.sha256((STATIC / "uplot" / name).read_bytes()).hexdigest() == digest
+
+
+def test_scripts_and_styles_are_small():
+    files = [*(STATIC / "explorer").iterdir(), *(STATIC / "uplot").glob("*.*s*")]
+    assert sum(len(gzip.compress(path.read_bytes())) for path in files) <= 150_000
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)

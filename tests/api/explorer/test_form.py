@@ -71,7 +71,7 @@ def test_the_address_restores_the_block(open_page):
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
     assert page.locator("#width").input_value() == "0.4"
     settle(page)
-    page.locator("#map-marks").press("ArrowUp")  # the same block under a weaker motion
+    page.locator("#map-marks").press("ArrowDown")  # the same block under a weaker motion
     page.wait_for_url(lambda url: "acceleration=0.4+g" not in url)
     assert query(page)["width"] == "0.4 m"
     assert float(query(page)["acceleration"].split()[0]) < 0.4

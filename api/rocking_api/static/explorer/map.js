@@ -91,11 +91,11 @@ export function pointAt(x, y) {
   return inside ? { frequency_ratio: scales.x.value(x), slenderness: scales.y.value(y) } : null;
 }
 
-/** Distances on the canvas [px] as shares of the sides of the frame, to the right and up; null without a map. */
+/** Distances on the canvas [px] as shares of the sides of the frame, to the right and down; null without a map. */
 export function sharesOf(dx, dy) {
   if (!drawn) return null;
   const { frame } = layout(1);
-  return { across: dx / frame.width, up: dy / frame.height };
+  return { across: dx / frame.width, down: dy / frame.height };
 }
 
 /** Mark a point under the pointer, or none. */
@@ -124,7 +124,7 @@ function layout(ratio) {
   const { view } = drawn;
   const scales = {
     x: scale(view.frequency_ratio_min, view.frequency_ratio_max, frame.left, frame.left + frame.width, true),
-    y: scale(view.slenderness_min, view.slenderness_max, frame.top + frame.height, frame.top),
+    y: scale(view.slenderness_min, view.slenderness_max, frame.top, frame.top + frame.height), // the amplitude 1/s upwards
   };
   return { frame, scales };
 }
@@ -170,8 +170,8 @@ function drawCross(context, frame, scales, point, ratio) {
 
 function drawRing(context, frame, scales, point, ratio) {
   const x = scales.x.place(point.frequency_ratio);
-  const y = Math.max(scales.y.place(point.slenderness), frame.top); // above the window: at its upper edge
-  if (x < frame.left || x > frame.left + frame.width || y > frame.top + frame.height) return;
+  const y = Math.min(scales.y.place(point.slenderness), frame.top + frame.height); // weaker than the window: at its lower edge
+  if (x < frame.left || x > frame.left + frame.width || y < frame.top) return;
   context.beginPath();
   context.arc(x, y, 8 * ratio, 0, 2 * Math.PI);
   for (const [colour, width] of [["#ffffff", 6], ["#111111", 2.4]]) strokeIn(context, colour, width * ratio);

@@ -11,7 +11,7 @@ import { inShown, shown } from "./units.js";
 const STEP = 0.01;
 const LARGE_STEP = 0.1;
 const ZOOM = 0.5;
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }; // in frequency ratio and slenderness: up is stronger
 
 const over = document.getElementById("map-marks");
 const readout = document.getElementById("map-readout");
