@@ -37,6 +37,7 @@ def test_errors_are_accessible(open_page):
 
 def test_the_page_of_a_record_is_accessible(open_page):
     page = open_page("/records", reduced_motion="reduce")
+    expect(page.locator("#pulse-caution")).to_contain_text("does not replace it")  # of the example, the last one
     assert axe.violations(page) == []
     page.locator("#more summary").click()
     choose(page, "short.csv", short_record())

@@ -29,8 +29,8 @@ def choose(page, name, content):
     page.locator("#file").set_input_files({"name": name, "mimeType": "text/csv", "buffer": content})
     page.wait_for_function(
         """name => document.getElementById("file-problem").textContent ||
-        (document.getElementById("answer").dataset.shown.includes(name)
-         && document.getElementById("answer").ariaBusy === "false")""",
+        ["#answer", "#scales .picture", "#pulse .picture"].map((box) => document.querySelector(box)).every(
+            (box) => box.dataset.shown.includes(name) && box.ariaBusy === "false")""",
         arg=name,
     )
 
