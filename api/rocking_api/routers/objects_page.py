@@ -23,7 +23,8 @@ from rocking._dimensional.table_reader import SHEETS, rows_of_sheet, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
-from rocking_api.routers.assess import MAX_BODY, MAX_OBJECTS
+from rocking_api.models.assess import MAX_OBJECTS
+from rocking_api.routers.assess import MAX_BODY
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
 from rocking_api.service import Service, ServiceDep
 
@@ -51,7 +52,7 @@ async def get_objects_page(sample: str | None = None) -> Response:
 async def post_objects_page(request: Request, service: ServiceDep) -> Response:
     """The page with the assessment of the table in its form."""
     given = await _form(request, service)
-    table, _, found = await _assessed(given, request, service)
+    table, found = await _assessed(given, request, service)
     return await service.run_io(lambda: _page(given, table=table, found=found))
 
 
@@ -59,17 +60,17 @@ async def post_objects_page(request: Request, service: ServiceDep) -> Response:
 async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
     given = await _form(request, service)
-    table, site, found = await _assessed(given, request, service)
+    table, found = await _assessed(given, request, service)
     command = f"rocking assess TABLE --pga {given['pga']}{given['pga_unit']} --pgv {given['pgv']}{given['pgv_unit']}"
-    project = Project(given["title"], "", datetime.now(UTC).date().isoformat(), command)
-    text = await service.run_io(lambda: report_html(found, site, project, table.bad_rows))
+    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), command)
+    text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
 
 @router.post("/assessment.csv")
 async def post_csv(request: Request, service: ServiceDep) -> Response:
     """The assessment as CSV."""
-    table, _, found = await _assessed(await _form(request, service), request, service)
+    table, found = await _assessed(await _form(request, service), request, service)
     return text_response(await service.run_io(lambda: found.to_csv(bad_rows=table.bad_rows)), "assessment")
 
 
@@ -110,7 +111,7 @@ async def _form(request: Request, service: Service) -> dict[str, str]:
     return fields | {"table": "\n".join(lines)}
 
 
-async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Site, Assessment]:
+async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
     pga, pgv = (f"{given[name].replace(',', '.')} {given[f'{name}_unit']}" for name in ("pga", "pgv"))
     site = Site(pga, pgv)
     table = await service.run_parser(lambda _: objects_of_csv(given["table"]), request, large=True)
@@ -125,7 +126,7 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
         return assess(table.objects, site, sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
 
     await service.kernels.wait()
-    return table, site, await service.executor.run(run, request)
+    return table, await service.executor.run(run, request)
 
 
 def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
