@@ -49,9 +49,7 @@ Offset = Annotated[
         "distance of the centre of mass from the middle of the width, less than half of it; positive to the right",
     ),
 ]
-MassHeight = Annotated[
-    float | None, quantity("mass_height", "height of the centre of mass; absent: half the height")
-]
+MassHeight = Annotated[float | None, quantity("mass_height", "height of the centre of mass; absent: half the height")]
 
 
 def check_block_value(name: str, value: Any) -> None:

@@ -11,7 +11,15 @@ from rocking._base.errors import in_range, one_of
 from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
-from rocking_api.models.blocks import RANGES, BodySummary, MassHeight, MomentumOrNumber, Offset, check_block_value, quantity
+from rocking_api.models.blocks import (
+    RANGES,
+    BodySummary,
+    MassHeight,
+    MomentumOrNumber,
+    Offset,
+    check_block_value,
+    quantity,
+)
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params
 from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, Motion
