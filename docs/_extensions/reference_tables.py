@@ -69,7 +69,9 @@ class Routes(Generated):
                 content = operation["responses"]["200"].get("content", {})
                 if content:
                     text += ["Response: " + ", ".join(f"`{kind}`" for kind in content) + ".", ""]
-                text += self.fields(content.get("application/json", {}).get("schema", {}), models, used)
+                schema = content.get("application/json", {}).get("schema", {})
+                for one in schema.get("anyOf", [schema]):
+                    text += self.fields(one, models, used)
         text += ["## Parts of responses", ""]
         for name in used:  # grows while models refer to others
             table = self.fields(models[name], models, used)

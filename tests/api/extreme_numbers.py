@@ -61,7 +61,8 @@ INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
 
 NUMBERS: dict[str, Any] = {
     "slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85, "alpha": 0.3, "tolerance": 1e-6, "threads": 1,
-    "highest_amplitude": 10.0, "nodes": 16, "duration": 5.0, "samples": 20, "scale": 1.2, "period": 0.6,
+    "highest_amplitude": 10.0, "highest": 10.0,
+    "nodes": 16, "duration": 5.0, "samples": 20, "scale": 1.2, "period": 0.6,
     "width": 0.5, "height": 2.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
     "frequency_parameter": 2.0, "pulse_frequency": 10.0, "cycles": 2.0, "phase": 0.5,
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
@@ -124,18 +125,18 @@ UNUSED = ("evaluate", "interpolate", "used", "level", "slice_at")
 
 OPTIONS: dict[str, tuple[float, str]] = {
     "slenderness": (0.4, ""), "frequency_ratio": (5.0, ""), "alpha": (0.3, " rad"), "restitution": (0.85, ""),
-    "width": (0.5, " m"), "height": (2.0, " m"),
+    "width": (0.5, " m"), "height": (2.0, " m"), "offset": (0.05, " m"), "mass_height": (0.8, " m"),
     "peak_acceleration": (4.0, " m/s^2"), "period": (0.5, " s"),
     "period_min": (0.5, " s"), "period_max": (0.6, " s"), "duration": (5.0, " s"),
     "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
     "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
-    "seed": (1, ""), "friction": (0.5, ""),
+    "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
 TEXTS = {
-    "pulse", "blocks", "json", "csv", "units", "contact", "output", "file", "unit", "component", "vertical",
+    "pulse", "format", "all", "contact", "output", "file", "unit", "component", "vertical",
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
@@ -144,11 +145,12 @@ TEXTS = {
 
 COMMON = {
     *("edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"),
-    *("seed", "friction"),
+    *("seed", "friction", "damping", "participation"),
 }
 VARIANTS = (
     {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
     {"width", "height", "peak_acceleration", "period", "period_min", "period_max", "duration", "pga"},
+    {"width", "height", "offset", "mass_height", "peak_acceleration", "period", "duration"},
     {"width", "height", "peak_acceleration", "period", "period_min", "period_max"},
     {"pga", "pgv"},
 )
@@ -177,7 +179,8 @@ SUITE: dict[str, Any] = {
 
 QUERY: dict[str, Any] = {
     "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
-    "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
+    "samples": 20, "points": 20, "mass_height": 0.8,
+    "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
     "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
 }  # fmt: skip
 """Ordinary values of the parameters of routes that have neither an example nor a default, or an expensive one."""

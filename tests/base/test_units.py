@@ -213,3 +213,36 @@ def test_a_bare_acceleration_that_looks_like_g_gives_a_warning(peak, warned):
     if warned:
         assert texts[0].startswith(f"peak_acceleration = {float(peak):.4g} m/s2 is below the uplift acceleration 2.452")
         assert texts[0].endswith(f"write '{float(peak):.4g} g'")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("0.3m", "m", 0.3),
+        ("30 cm", "m", 0.3),
+        ("12 inch", "m", 0.3048),
+        ("0.4g", "m/s2", 0.4 * 9.80665),
+        ("0.4 g", "m/s2", 0.4 * 9.80665),
+        ("4 m/s2", "m/s2", 4.0),
+        ("4 m/s^2", "m/s2", 4.0),
+        ("400 cm/s**2", "m/s2", 4.0),
+        ("400 gal", "m/s2", 4.0),
+        ("400Gal", "m/s2", 4.0),
+        ("500 ms", "s", 0.5),
+        ("20 deg", "rad", math.radians(20)),
+        ("0.2 rad", "rad", 0.2),
+    ],
+)
+def test_units(text, unit, value):
+    assert si_value("x", text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [("0.3", "m"), ("0.3 s", "m"), ("0.3 furlongs per", "m"), ("", "m"), ("m", "s"), ("nan m", "m"), ("0.3", "rad"),
+     ("1 kg", "m/s2"), ("__import__('os')", "m"), ("1e999 m", "m")],
+)  # fmt: skip
+def test_invalid_quantities_are_refused(text, unit):
+    with pytest.raises(InvalidArgumentError) as caught:
+        si_value("x", text, unit)
+    assert caught.value.parameter == "x"

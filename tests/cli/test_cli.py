@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rocking
-from rocking._base.errors import InvalidArgumentError, si_value
+from rocking._base.errors import si_value
 from rocking._base.units import UNITS as KNOWN_UNITS
 from rocking._boundary.tracing import overturning_boundary
 from rocking._cli.app import app
@@ -561,39 +561,6 @@ def test_errors_name_the_option_and_the_allowed_values(arguments, option, allowe
     output = refused(*arguments)
     assert option in output
     assert allowed in output
-
-
-@pytest.mark.parametrize(
-    ("text", "unit", "value"),
-    [
-        ("0.3m", "m", 0.3),
-        ("30 cm", "m", 0.3),
-        ("12 inch", "m", 0.3048),
-        ("0.4g", "m/s2", 0.4 * 9.80665),
-        ("0.4 g", "m/s2", 0.4 * 9.80665),
-        ("4 m/s2", "m/s2", 4.0),
-        ("4 m/s^2", "m/s2", 4.0),
-        ("400 cm/s**2", "m/s2", 4.0),
-        ("400 gal", "m/s2", 4.0),
-        ("400Gal", "m/s2", 4.0),
-        ("500 ms", "s", 0.5),
-        ("20 deg", "rad", math.radians(20)),
-        ("0.2 rad", "rad", 0.2),
-    ],
-)
-def test_units(text, unit, value):
-    assert si_value("x", text, unit) == pytest.approx(value, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("text", "unit"),
-    [("0.3", "m"), ("0.3 s", "m"), ("0.3 furlongs per", "m"), ("", "m"), ("m", "s"), ("nan m", "m"), ("0.3", "rad"),
-     ("1 kg", "m/s2"), ("__import__('os')", "m"), ("1e999 m", "m")],
-)  # fmt: skip
-def test_invalid_quantities_are_refused(text, unit):
-    with pytest.raises(InvalidArgumentError) as caught:
-        si_value("x", text, unit)
-    assert caught.value.parameter == "x"
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])

@@ -71,7 +71,9 @@ def test_recipe_of_conda_states_what_the_project_states() -> None:
     python = f"python {PROJECT['requires-python']}"
     assert recipe["requirements"]["run"] == [python, *conda(PROJECT["dependencies"])]
     extras = PROJECT["optional-dependencies"]
-    assert recipe["requirements"]["run_constraints"] == conda([*extras["plot"], *extras["service"]])
+    own = [line for line in extras["service"] if not line.startswith("rocking[")]
+    constraints = conda([*extras["plot"], *extras["report"], *extras["sheets"], *own])
+    assert recipe["requirements"]["run_constraints"] == constraints
     commands = [f"{name} = {target}" for name, target in PROJECT["scripts"].items()]
     assert recipe["build"]["python"]["entry_points"] == commands
     assert recipe["requirements"]["host"][2:] == ["setuptools >=77"]

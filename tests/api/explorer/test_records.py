@@ -155,7 +155,8 @@ def test_the_report_of_a_block_under_a_pulse_repeats_its_numbers(open_page):
     expect(page.locator("#rotation canvas")).to_be_visible()
     page.locator("#open-report").click()
     report = page.locator("#report")
-    for words in ("Peak rotation", "It overturns from", "width=0.4+m", "/v1/blocks/response?", "theta''", f"rocking {rocking.__version__}"):
+    stated = "Peak rotation", "It overturns from", "width=0.4+m", "/v1/blocks/response?", "theta''"
+    for words in (*stated, f"rocking {rocking.__version__}"):
         expect(report).to_contain_text(words)
     assert report.locator("canvas").count() == 2
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
