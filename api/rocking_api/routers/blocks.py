@@ -93,7 +93,7 @@ async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request
     params.check()
     body = await service.read_body(request, MAX_BODY)
     query, table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)
-    return await service.run_heavy(query, lambda stop: _blocks(service, query, table, form, stop), request)
+    return await service.run_heavy(query, lambda stop: _blocks(service, query, request, table, form, stop), request)
 
 
 def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksParams, BlockTable]:
@@ -144,12 +144,14 @@ def _check_count(count: int) -> None:
         raise TooLargeError("blocks", count, f"at most {MAX_BLOCKS}")
 
 
-def _blocks(service: Service, params: BlocksParams, table: BlockTable, form: str, stop: StopFlag) -> Response:
+def _blocks(
+    service: Service, params: BlocksParams, request: Request, table: BlockTable, form: str, stop: StopFlag
+) -> Response:
     columns: dict[str, Any] = {**respond_table(table, stop)}
     service.metrics.points("solver", len(table.problems))
     if form == "csv":
         return csv_response(columns, "blocks")
-    return json_response(BlocksResponse.model_construct(query=params, **columns))
+    return json_response(BlocksResponse.model_construct(query=params, **columns), request)
 
 
 def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse:
@@ -161,7 +163,6 @@ def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockRespon
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
     return BlockResponse(
         query=params,
-        url="/v1/blocks/response?" + urlencode(params.model_dump()),
         response=found,
         overturned=found.overturned,
         peak_rotation_deg=None if peak is None else math.degrees(peak),
@@ -193,7 +194,9 @@ def _point(service: Service, params: BlockParams, problem: BlockProblem, stop: S
     points = {name: getattr(dimensionless, name) for name in ("slenderness", "frequency_ratio", "restitution")}
     (point,) = point_results(*evaluate(service.cubes, dimensionless, **points, stop=stop))
     service.metrics.points(point.source, 1)
-    return point_response(dimensionless, point)
+    answer = point_response(dimensionless, point)
+    answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
+    return answer
 
 
 def _assessed(found: Assessment) -> dict[str, Any]:
