@@ -21,6 +21,9 @@ QUERY = Field(description="parameters of the request, defaults included; empty w
 _UNIT = re.compile(r"(\w*) \[([^]]+)\]")
 
 
+_PULSE = {"type": "string", "title": "Pulse", "description": "name of the pulse, or of its samples"}
+
+
 class Echo:
     """The schema of an echoed query: its parameters, and what else a body has, such as the digest of samples."""
 
@@ -29,6 +32,8 @@ class Echo:
     ) -> dict[str, Any]:
         found = dict(handler.resolve_ref_schema(handler(schema)))
         found.pop("additionalProperties", None)
+        if "pulse" in found["properties"]:
+            found["properties"] = found["properties"] | {"pulse": _PULSE}
         return found
 
 

@@ -264,14 +264,16 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
     """The response for one block."""
     outcome = Outcome(point.outcome)
     overturned = outcome >= Outcome.OVERTURNED_DIRECTLY
-    note = None
+    note, warnings = None, []
     if overturned:
         note = "the block overturns: there is no peak"
     elif math.isinf(point.error_bound):
         note = "the outcome changes within the rounding of the question: there is no bound"
+        warnings = [note]
     derived: dict[str, Any] = {name: finite(value) for name, value in point.derived.items()}
     return PointResponse(
         query=params,
+        warnings=warnings,
         peak_rotation=finite(point.peak_rotation),
         overturned=overturned,
         outcome=outcome.name,

@@ -106,7 +106,7 @@ def _assess(
         AssessResponse.model_validate(
             {
                 "query": params,
-                "warnings": [f"{unread} rows were not read, see `bad_rows`"] if unread else [],
+                "warnings": [f"rows that were not read: {unread}, see `bad_rows`"] if unread else [],
                 "rows": found.rows,
                 "motions": found.motions,
                 "highest_factor": found.highest_factor,
