@@ -74,6 +74,9 @@ sphinx_gallery_conf = {
 warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive")  # plt.show() in the examples
 
 html_theme = "furo"
+html_theme_options = {
+    "announcement": '<a href="/">Explorer and other pages of the service</a>'
+}  # which serves the guide
 html_title = f"rocking {release}"
 html_baseurl = f"{GUIDE_URL}/{'.'.join(release.split('.')[:2])}/" if GUIDE_URL else ""  # of this version, for ever
 html_static_path = ["_static"]

@@ -35,6 +35,7 @@ from rocking_api.routers import (
     identify,
     metadata,
     metrics,
+    objects_page,
     overturning,
     pages,
     pulses,
@@ -52,7 +53,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
-    *(assess, identify, pulses, metadata, suites),
+    *(assess, identify, pulses, metadata, suites, objects_page),
     *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 
@@ -98,6 +99,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     app.add_middleware(RequestLog, metrics=service.metrics, access_log=settings.access_log)
     app.state.when_ready = when_ready
     add_handlers(app)
+    pages.add_error_pages(app)
     for module in ROUTES:
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))

@@ -268,9 +268,8 @@ class Bodies:
     def scaled(self, base: Array | float = 1.0, height: Array | float = 1.0, change: Array | float = 0.0) -> BodyArray:
         """The bodies with base and height multiplied by factors (bodies,), and `change` added to the restitution."""
         b, h, centre = self.base * base, self.height * height, self.mass_height * height
-        middle, offset = 0.5 * b, self.offset * base
         gyration = np.sqrt(self.inertia * (self.base_share * b * b + h * h) / 12.0)
-        body = RigidBody(left=middle + offset, right=middle - offset, height=centre, gyration=gyration, top_height=h)
+        body = RigidBody.from_size(b, h, offset=self.offset * base, mass_height=centre, gyration=gyration)
         return BodyArray(body, self.restitution, np.broadcast_to(change, b.shape))
 
 

@@ -21,6 +21,7 @@ from rocking._cli.identify import identify
 from rocking._cli.options import (
     FrequencyRatioMax,
     FrequencyRatioMin,
+    MassOptions,
     OutputOptions,
     ProblemOptions,
     SpectrumOptions,
@@ -88,6 +89,7 @@ def main(
 @with_options
 def response(
     block: ProblemOptions,
+    mass: MassOptions,
     output: OutputOptions,
     file: Annotated[
         str | None,
@@ -105,9 +107,13 @@ def response(
 
     with arguments.option_errors({"blocks": "FILE"}):
         if file is None:
-            printing.response(arguments.read_params(block), printing.output_format(output, block))
+            form = printing.output_format(output, block)
+            if body := arguments.read_body(block, mass):
+                printing.body_response(*body, form)
+            else:
+                printing.response(arguments.read_params(block), form)
             return
-        table = arguments.read_blocks(file, block)
+        table = arguments.read_blocks(file, block, mass)
         printing.responses(table, printing.output_format(output, block, table.read.units))
     bad = [f"{file}, {printing.printable(str(one))}" for one in table.read.bad_rows]
     if bad:
@@ -119,6 +125,7 @@ def response(
 @with_options
 def history(
     block: ProblemOptions,
+    mass: MassOptions,
     output: OutputOptions,
     duration: Annotated[
         str | None,
@@ -133,9 +140,12 @@ def history(
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
+        form = printing.output_format(output, block)
+        if body := arguments.read_body(block, mass):
+            printing.body_history(*body, duration, samples, contact, form)
+            return
         params = arguments.read_params(block)
-        length = arguments.read_duration(duration, params)
-        printing.history(params, length, samples, contact, printing.output_format(output, block))
+        printing.history(params, arguments.read_duration(duration, params), samples, contact, form)
 
 
 @app.command()

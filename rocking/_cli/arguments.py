@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
 from rocking._base.units import split_quantity, unit_name
-from rocking._cli.options import ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
+from rocking._cli.options import MassOptions, ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
 from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
 from rocking._model.checks import check_window
 from rocking._model.parameters import FREQUENCY_RATIO
@@ -20,6 +20,7 @@ from rocking._model.parameters import FREQUENCY_RATIO
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block
     from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.rigid_body import RigidBody
     from rocking._dimensional.table import BlockTable
 
 SI_UNITS = {
@@ -185,7 +186,32 @@ def read_block(options: SizeOptions) -> Block:
     return Block(_positive(options, "width"), _positive(options, "height"))
 
 
-def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
+def read_body(options: ProblemOptions, mass: MassOptions) -> tuple[RigidBody, dict[str, Any]] | None:
+    """A body whose centre of mass is not that of the block, and its motion, as arguments; None for a block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        As `read_params`.
+    """
+    from rocking._dimensional.block import Block
+    from rocking._dimensional.rigid_body import body_of_size
+
+    if mass == MassOptions():
+        return None
+    _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
+    body = body_of_size(_positive(options, "width"), _positive(options, "height"), mass.offset or 0.0, mass.mass_height)
+    if isinstance(body, Block):
+        return None
+    return body, {
+        "motion": read_pulse(options.pulse),
+        "peak_acceleration": _positive(options, "peak_acceleration"),
+        "period": _positive(options, "period"),
+        "restitution": _restitution(options),
+    }
+
+
+def read_blocks(path: str, options: ProblemOptions, mass: MassOptions) -> BlockTable:
     """The blocks of a table in a file; `-` is standard input.
 
     Raises
@@ -195,14 +221,14 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
     """
     from rocking._dimensional.table import read_blocks as read_table
 
-    for name in (*_SIZES, "slenderness", "frequency_ratio", "alpha"):
-        if getattr(options, name) is not None:
-            raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the table")
-    given = options.restitution or "momentum"
+    given = vars(options) | vars(mass)
+    for name in (*_SIZES, *vars(mass), "slenderness", "frequency_ratio", "alpha"):
+        if given[name] is not None:
+            raise InvalidArgumentError(name, given[name], "no blocks but those of the table")
     strength = {
         name: _positive(options, name) for name in ("peak_acceleration", "period") if getattr(options, name) is not None
     }
-    return read_table(path, read_pulse(options.pulse), given if given == "momentum" else _eta(given), **strength)
+    return read_table(path, read_pulse(options.pulse), _restitution(options), **strength)
 
 
 def given_units(options: object, columns: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -248,10 +274,8 @@ def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
 def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | str, period: float) -> Params:
     from rocking._dimensional.problem import BlockProblem
 
-    given = options.restitution or "momentum"
-    eta = "momentum" if given == "momentum" else _eta(given)
     pulse = read_pulse(options.pulse)
-    problem = BlockProblem(block, pulse, peak_acceleration, period, eta)
+    problem = BlockProblem(block, pulse, peak_acceleration, period, _restitution(options))
     groups: Mapping[str, float] = problem.groups
     return Params(pulse, **groups, problem=problem)
 
@@ -283,6 +307,11 @@ def _given(options: SizeOptions, name: str) -> str:
 
 def _positive(options: SizeOptions, name: str) -> float:
     return positive(name, _given(options, name), SI_UNITS[name])
+
+
+def _restitution(options: ShapeOptions) -> float | str:
+    given = options.restitution or "momentum"
+    return given if given == "momentum" else _eta(given)
 
 
 def _eta(text: str | None) -> float:

@@ -1,6 +1,6 @@
 """Options that several commands share, declared once, and the decorator that gives them to a command.
 
-The fields of `SizeOptions` and of the classes derived from it are the options. A command declares one argument of
+The fields of the classes `GROUPS` and of those derived from them are the options. A command declares one argument of
 that type; `with_options` replaces it in the signature that typer reads by the fields.
 """
 
@@ -43,6 +43,19 @@ class SizeOptions:
 
     width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.", "m")] = None
     height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.", "m")] = None
+
+
+@dataclass(frozen=True)
+class MassOptions:
+    """The place of the centre of mass, where it is not that of the block."""
+
+    offset: Annotated[
+        str | None,
+        _with_units("Distance of the centre of mass from the middle of the width, positive to the right.", "m"),
+    ] = None
+    mass_height: Annotated[
+        str | None, _with_units("Height of the centre of mass; half the height by default.", "m")
+    ] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,6 +163,9 @@ class PictureOptions:
     ] = None
 
 
+GROUPS = (SizeOptions, MassOptions, OutputOptions, PictureOptions)
+"""Types of arguments whose fields are options."""
+
 FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.", metavar="[-]")]
 FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.", metavar="[-]")]
 
@@ -161,7 +177,7 @@ def with_options(command: Callable[..., None]) -> Callable[..., None]:
     groups: dict[str, type[Any]] = {}
     for parameter in inspect.signature(command).parameters.values():
         hint = hints[parameter.name]
-        if not (isinstance(hint, type) and issubclass(hint, SizeOptions | OutputOptions | PictureOptions)):
+        if not (isinstance(hint, type) and issubclass(hint, GROUPS)):
             parameters.append(parameter.replace(annotation=hint, kind=parameter.KEYWORD_ONLY))
             continue
         groups[parameter.name] = hint

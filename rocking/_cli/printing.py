@@ -23,8 +23,12 @@ from rocking._model.outcome import Outcome
 from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from rocking._dimensional.assessment import Assessment
+    from rocking._dimensional.body_response import BodyResponse
     from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.rigid_body import RigidBody
     from rocking._dimensional.table import BlockTable
     from rocking._history.contact import ContactExtremes
 
@@ -75,6 +79,32 @@ def response(params: Params, form: Form) -> None:
     with progress("solving the block"):
         result, sentence = _response(params)
     print_answer(result, [sentence], form)
+
+
+def body_response(body: RigidBody, motion: Mapping[str, Any], form: Form) -> None:
+    """Print outcome, peaks about both edges and changes of the outcome of a body under a pulse."""
+    with progress("solving the body"):
+        found = body.response(**motion)
+        result = body_columns(found) | {
+            "peak_acceleration": motion["peak_acceleration"],
+            "period": motion["period"],
+            "thresholds": [
+                {"peak_acceleration": one.value, "overturns_above": one.overturns_above} for one in found.thresholds
+            ],
+        }
+    print_answer(result, [result["meaning"]], form)
+
+
+def body_columns(found: BodyResponse, *, thresholds: bool = True) -> dict[str, Any]:
+    """What is printed of a body of a given size, by name."""
+    given = {name: float(value) for name, value in found.problem.body.parameters.items()}
+    return found.summary(thresholds=thresholds) | {
+        "width": given["left"] + given["right"],
+        "height": given["top_height"],
+        "mass_height": given["height"],
+        "left": given["left"],
+        "right": given["right"],
+    }
 
 
 def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -> None:
@@ -174,6 +204,7 @@ def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessme
 
 
 _FIRST_LINES = (
+    *("edge", "rotation_left_deg", "rotation_right_deg"),
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
     *("nearest_acceleration", "nearest_period", "period", "pulse_duration", "overturning_scale"),
     *("peak_rotation", "impacts", "restitution", "friction_demand"),
@@ -184,7 +215,7 @@ _FIRST_LINES = (
 _IN_GROUPS = ("peak_rotation", "impacts", "exceeded_alpha", "error_bound", "friction_demand")
 """The same of a block in groups."""
 
-_NO_LINES = ("margin", "warnings", "overturns_above")
+_NO_LINES = ("meaning", "margin", "warnings", "overturns_above")
 """What the text output says before the values, or in one line with another value."""
 
 _UNITS = {
@@ -194,8 +225,10 @@ _UNITS = {
     "annual_rate": "1/year",
     "gravity": "m/s2",
     **dict.fromkeys(("peak_rotation_deg", "rotation_deg", "alpha_deg"), "deg"),
+    **dict.fromkeys(("rotation_left_deg", "rotation_right_deg", "alpha_left_deg", "alpha_right_deg"), "deg"),
     **dict.fromkeys(("period", "pulse_duration", "nearest_period", "period", "time", "impact_time_s"), "s"),
-    **dict.fromkeys(("time_step", "significant_duration", "mean_period"), "s"),
+    **dict.fromkeys(("mass_height", "left", "right"), "m"),
+    **dict.fromkeys(("uplift_time", "time_step", "significant_duration", "mean_period"), "s"),
     **dict.fromkeys(("top_displacement", "width", "height", "half_diagonal", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
     **dict.fromkeys(("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "acceleration"), "m/s2"),
@@ -269,20 +302,52 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
         from rocking._dimensional.curves import in_si_units
 
         moved = in_si_units(motion, params.problem)
-        si = {
-            "time": moved["time"].values.tolist(),
-            "rotation_deg": np.degrees(moved["rotation"].values).tolist(),
-            "angular_velocity_deg": np.degrees(moved["angular_velocity"].values).tolist(),
-            "top_displacement": moved["top_displacement"].values.tolist(),
-            "acceleration": moved["ground_acceleration"].values.tolist(),
-        }
+        si = _si_columns(moved)
         shown = si | {name: columns[name] for name in columns if name in COLUMNS}
         columns = columns | si
         about |= {"impact_time_s": moved["impact_time"].values.tolist()}
-    if form.kind == "csv":
+    _print_curve(about, columns, shown, form)
+
+
+def body_history(
+    body: RigidBody,
+    given: Mapping[str, Any],
+    duration: str | None,
+    samples: int,
+    contact: bool,
+    form: Form,
+) -> None:
+    """Print the motion of a body under a pulse, as `history`; with the edge in contact: 1 right, -1 left, 0 both."""
+    from rocking._history.contact import COLUMNS
+
+    with progress("solving the body"):
+        motion = body.history(**given, duration=duration, samples=samples, contact=contact)
+    columns = _si_columns(motion) | {"edge": motion["edge"].values.tolist()}
+    columns |= {name: [number(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
+    names = ("outcome", "impacts", "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio", "warnings")
+    about = {name: motion.attrs[name] for name in names if name in motion.attrs}
+    about = {name: number(value) if isinstance(value, float) else value or None for name, value in about.items()}
+    about |= {"impact_time_s": motion["impact_time"].values.tolist()}
+    _print_curve(about, columns, columns, form)
+
+
+def _si_columns(motion: xr.Dataset) -> dict[str, list[Any]]:
+    """The samples of a motion in SI units and degrees."""
+    return {
+        "time": motion["time"].values.tolist(),
+        "rotation_deg": np.degrees(motion["rotation"].values).tolist(),
+        "angular_velocity_deg": np.degrees(motion["angular_velocity"].values).tolist(),
+        "top_displacement": motion["top_displacement"].values.tolist(),
+        "acceleration": motion["ground_acceleration"].values.tolist(),
+    }
+
+
+def _print_curve(about: Mapping[str, Any], columns: Mapping[str, Any], shown: Mapping[str, Any], form: Form) -> None:
+    """Print values and columns; `shown` are the columns of a table without `all`."""
+    if form.kind == "json":
+        print_json({**about, **columns})
+    elif form.kind == "csv":
         print_csv(columns, form)
-    elif form.kind == "json":
-        print_json(about | columns)
     else:
         print_text(form.shown(about), form)
         print_table(form.shown(columns if form.all else shown), form.labels())
@@ -312,13 +377,7 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
         about |= {"peak_acceleration": problem.peak_acceleration}
         names = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
         shown = {name: columns[name][::-1] for name in names}  # from the shortest period
-    if form.kind == "json":
-        print_json(about | columns)
-    elif form.kind == "csv":
-        print_csv(columns, form)
-    else:
-        print_text(form.shown(about), form)
-        print_table(form.shown(columns if form.all else shown), form.labels())
+    _print_curve(about, columns, shown, form)
 
 
 def boundary(params: Params, window: tuple[float, float], form: Form) -> None:

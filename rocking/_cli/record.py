@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._cli.options import OutputOptions, RecordOptions, with_options
+from rocking._cli.options import MassOptions, OutputOptions, RecordOptions, with_options
 
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block
+    from rocking._dimensional.rigid_body import RigidBody
+    from rocking._dimensional.thresholds import BodyThresholds
     from rocking._excitation.records.record import Record
 
 File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
@@ -27,20 +29,32 @@ Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how b
 def record(
     file: File,
     block: RecordOptions,
+    mass: MassOptions,
     output: OutputOptions,
     thresholds: Thresholds = True,
     fit: Fit = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
+    from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
+    from rocking._dimensional.block import Block
+    from rocking._dimensional.rigid_body import body_of_size
 
     with option_errors(), file_errors():
         form = printing.output_format(output, block)
-        problem = read_problem(file, block)
+        motion, shape, restitution = read_problem(file, block)
+        body = body_of_size(shape.width, shape.height, mass.offset or 0.0, mass.mass_height)
         with progress("solving the block under the record"):
-            about, sentences = _solved(*problem, block.scale, thresholds, fit)
+            about = _measures(motion) | {"scale": block.scale}
+            if isinstance(body, Block):
+                found, sentences = _solved(motion, body, restitution, block.scale, thresholds, fit)
+            elif fit:
+                raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
+            else:
+                found, sentences = _solved_body(motion, body, restitution, block.scale, thresholds)
+            about |= found
     printing.print_answer(about, sentences, form)
 
 
@@ -102,21 +116,11 @@ def _number_of(text: str) -> float:
         raise InvalidArgumentError("restitution", text, "a number, or momentum") from None
 
 
-def _solved(
-    motion: Record,
-    block: Block,
-    restitution: float | Literal["momentum"],
-    scale: float,
-    thresholds: bool,
-    fit: bool,
-) -> tuple[dict[str, Any], list[str]]:
-    """What is printed, by name, and the outcome and the margin in words."""
+def _measures(motion: Record) -> dict[str, Any]:
+    """What is printed of a record, by name."""
     from rocking._cli.printing import number
 
-    found = block.response(motion, scale=scale, restitution=restitution, thresholds=thresholds)
-    response, assessment = found.dimensionless, found.assessment
-    refined, changes = assessment.resampled, assessment.thresholds
-    about: dict[str, Any] = {
+    return {
         "record": motion.name,
         "source": motion.source,
         "samples": motion.samples,
@@ -129,7 +133,46 @@ def _solved(
         "significant_duration": motion.significant_duration,
         "mean_period": number(motion.mean_period),
         "final_velocity": motion.final_velocity,
-        "scale": scale,
+    }
+
+
+def _changes(found: BodyThresholds | None) -> dict[str, Any]:
+    """The factors at which the outcome changes; nothing if they were not searched."""
+    if found is None:
+        return {}
+    return {
+        "overturning_scale": found[0].value if found else None,
+        "threshold_scale": found.value.tolist(),
+        "overturns_above": found.overturns_above.tolist(),
+    }
+
+
+def _solved_body(
+    motion: Record, body: RigidBody, restitution: float | Literal["momentum"], scale: float, thresholds: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """As `_solved`, of a body whose centre of mass is not that of the block."""
+    from rocking._cli.printing import body_columns
+
+    found = body.response(motion, scale=scale, restitution=restitution)
+    about = body_columns(found, thresholds=thresholds) | _changes(found.thresholds if thresholds else None)
+    return about, [text for text in (about["meaning"], about["margin"]) if text]
+
+
+def _solved(
+    motion: Record,
+    block: Block,
+    restitution: float | Literal["momentum"],
+    scale: float,
+    thresholds: bool,
+    fit: bool,
+) -> tuple[dict[str, Any], list[str]]:
+    """What is printed of a block, by name, and the outcome and the margin in words."""
+    from rocking._cli.printing import number
+
+    found = block.response(motion, scale=scale, restitution=restitution, thresholds=thresholds)
+    response, assessment = found.dimensionless, found.assessment
+    refined = assessment.resampled
+    about: dict[str, Any] = {
         "width": block.width,
         "height": block.height,
         "frequency_parameter": block.frequency_parameter,
@@ -148,12 +191,7 @@ def _solved(
         "peak_rotation_resampled": None if refined is None else number(float(refined.peak_rotation)),
         "overturned_resampled": None if refined is None else bool(refined.overturned),
     }
-    if changes is not None:
-        about |= {
-            "overturning_scale": assessment.overturning_scale,
-            "threshold_scale": changes.value.tolist(),
-            "overturns_above": changes.overturns_above.tolist(),
-        }
+    about |= _changes(assessment.thresholds)
     if fit:
         from rocking.suites.pulse_fit import fit_pulse
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
@@ -17,7 +17,7 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.response import DISPLACEMENT, ROTATION, count_of_impacts, described_peak
-from rocking._dimensional.threshold import warnings_of_changes
+from rocking._dimensional.threshold import Threshold, warnings_of_changes
 from rocking._dimensional.thresholds import BodyThresholds, thresholds_of
 from rocking._excitation.records.record import Record
 from rocking._history.contact import ContactExtremes, contact_extremes
@@ -88,6 +88,8 @@ class BodyResponse(EqualByValue):
         Bodies and ground motion.
     arguments : mapping of str to array
         The arguments before broadcasting, for the coordinates of `to_xarray`.
+    stop : StopFlag or None
+        Cancels also what is found later: thresholds, contact forces and warnings.
     """
 
     rotation: Array
@@ -102,6 +104,7 @@ class BodyResponse(EqualByValue):
     uplift_time: Array
     problem: BodyProblem = field(compare=False)
     arguments: Mapping[str, Array] = field(default_factory=dict)
+    stop: StopFlag | None = field(default=None, compare=False)
 
     @property
     def overturned(self) -> NDArray[np.bool_]:
@@ -116,7 +119,7 @@ class BodyResponse(EqualByValue):
     @cached_property
     def thresholds(self) -> BodyThresholds:
         """Peak accelerations [m/s2], or factors of the record, at which the outcome changes, for each body."""
-        return thresholds_of(self.problem)
+        return thresholds_of(self.problem, stop=self.stop)
 
     @cached_property
     def contact(self) -> ContactExtremes:
@@ -128,7 +131,7 @@ class BodyResponse(EqualByValue):
             If there are several bodies or motions.
         """
         self._need_one("contact")
-        found = contact_extremes(self.problem.body_motion())
+        found = contact_extremes(self.problem.body_motion(stop=self.stop))
         return found if np.isfinite(found.smallest_normal_reaction) else found.without_forces()
 
     @property
@@ -141,6 +144,9 @@ class BodyResponse(EqualByValue):
     def warnings(self) -> list[str]:
         """Where the response of one body is in doubt; the same errors as `contact`."""
         self._need_one("warnings")
+        return self._warnings(self.thresholds)
+
+    def _warnings(self, changes: Iterable[Threshold]) -> list[str]:
         problem, texts = self.problem, list(self.contact.warnings)
         edges = {"right": problem.body.right, "left": problem.body.left}
         if problem.restitution is None and self.outcome != Outcome.NO_UPLIFT:
@@ -156,7 +162,48 @@ class BodyResponse(EqualByValue):
         if isinstance(problem.motion, Record):
             given, name, unit = given / problem.motion.peak_acceleration, "scale", ""
             texts += problem.motion.remarks
-        return [*texts, *warnings_of_changes(given, self.thresholds, name, unit)]
+        return [*texts, *warnings_of_changes(given, changes, name, unit)]
+
+    def summary(self, *, thresholds: bool = True) -> dict[str, Any]:
+        """The response of one body as numbers, flags and texts, None in place of nan and infinity.
+
+        Parameters
+        ----------
+        thresholds : bool
+            Whether to search the strengths at which the outcome changes, for the margin and the warnings.
+
+        Raises
+        ------
+        InvalidArgumentError
+            As for `contact`.
+        """
+        contact, body = self.contact, self.problem.body
+        values = {
+            "meaning": contact.sentence,
+            "margin": self.margin if thresholds else None,
+            "outcome": Outcome(int(self.outcome)).name,
+            "overturned": bool(self.overturned),
+            "rocking_model_applies": contact.rocking_applies,
+            "edge": {1: "right", -1: "left"}.get(int(self.edge)),
+            "peak_rotation_deg": math.degrees(self.rotation),
+            "rotation_left_deg": math.degrees(self.rotation_left),
+            "rotation_right_deg": math.degrees(self.rotation_right),
+            "top_displacement": float(self.displacement),
+            "peak_rotation": float(self.peak_rotation),
+            "exceeded_alpha": bool(self.exceeded_alpha),
+            "impacts": int(self.impacts),
+            "uplift_time": float(self.uplift_time),
+            "uplift_acceleration": float(body.uplift_acceleration),
+            "alpha_left_deg": math.degrees(body.left.alpha),
+            "alpha_right_deg": math.degrees(body.right.alpha),
+            "friction_demand": contact.largest_friction_demand,
+            "lifts_off": contact.lifts_off,
+            "warnings": self._warnings(self.thresholds if thresholds else ()),
+        }
+        return {
+            name: None if isinstance(value, float) and not math.isfinite(value) else value
+            for name, value in values.items()
+        }
 
     def to_xarray(self) -> xr.Dataset:
         """The response as a labelled data set, with units and meanings; arguments that vary are coordinates."""
@@ -250,4 +297,5 @@ def respond_bodies(
         uplift_time=(records["uplift_time"] / p).reshape(shape),
         problem=problem,
         arguments={name: value for name, value in (body.parameters | dict(arguments)).items() if value.size},
+        stop=stop,
     )

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, positive
 from rocking._base.units import Scalar, Values
+from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rigid_edge
 from rocking._model.labelled import broadcast_by_name, is_labelled
@@ -206,6 +207,65 @@ class RigidBody(RespondingBody):
         return partial(RigidBody, **plain), self._labels
 
     @classmethod
+    def from_size(
+        cls,
+        width: Values,
+        height: Values,
+        *,
+        offset: Values = 0.0,
+        mass_height: Values | None = None,
+        gyration: Values | None = None,
+        gravity: Values = STANDARD_GRAVITY,
+    ) -> Self:
+        """A body from its outer dimensions and the place of its centre of mass; arrays broadcast.
+
+        Parameters
+        ----------
+        width, height : array_like
+            Of the body [m], > 0; its top is at this height.
+        offset : array_like
+            Distance of the centre of mass from the middle of the width [m], less than half of it; positive to the
+            right, so that it is closer to the right edge.
+        mass_height : array_like, optional
+            Height of the centre of mass above the base [m], > 0; half the height without it.
+        gyration : array_like, optional
+            Radius of gyration about the centre of mass [m], > 0; that of the uniform rectangle of this width and
+            height without it.
+        gravity : array_like
+            g [m/s2], > 0.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is not as described.
+
+        Examples
+        --------
+        >>> RigidBody.from_size("40 cm", "160 cm", offset="5 cm")
+        <rocking.RigidBody: body on edges 0.25 m left and 0.15 m right of its mass at 0.8 m>
+        """
+        lengths: dict[str, Any] = {"width": width, "height": height, "offset": offset, "mass_height": mass_height}
+        given = {name: value for name, value in lengths.items() if value is not None}
+        given |= broadcast_by_name({name: value for name, value in given.items() if is_labelled(value)})
+        for name, value in given.items():
+            low = -math.inf if name == "offset" else 0.0
+            checked = in_range(name, value, low, math.inf, closed="neither", unit="m")
+            given[name] = value if is_labelled(value) else checked
+        w, h, e = given["width"], given["height"], given["offset"]
+        half = 0.5 * w
+        if not np.all(np.abs(e) < half):
+            allowed = f"less than half the width to either side, {float(np.min(half)):.6g} m"
+            raise InvalidArgumentError("offset", offset, allowed)
+        return cls(
+            left=half + e,
+            right=half - e,
+            height=given.get("mass_height", 0.5 * h),
+            gyration=np.hypot(w, h) / math.sqrt(12.0) if gyration is None else gyration,
+            gravity=gravity,
+            top_height=h,
+        )
+
+    @classmethod
     def from_polygon(cls, vertices: ArrayLike, *, gravity: Scalar = STANDARD_GRAVITY) -> Self:
         """A body of uniform density from its outline, standing on its lowest edge; its top is its highest vertex.
 
@@ -275,3 +335,16 @@ class RigidBody(RespondingBody):
         if not closed:
             warnings.warn(f"{Path(path).name} is not closed: its centre of mass is uncertain", UserWarning, 2)
         return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)
+
+
+def body_of_size(
+    width: Scalar,
+    height: Scalar,
+    offset: Scalar = 0.0,
+    mass_height: Scalar | None = None,
+    gravity: Scalar = STANDARD_GRAVITY,
+) -> Block | RigidBody:
+    """The block of this size, or the body if its centre of mass is elsewhere; arguments as of `RigidBody.from_size`."""
+    if mass_height is None and not number("offset", offset, -math.inf, math.inf, unit="m"):
+        return Block(width, height, gravity)
+    return RigidBody.from_size(width, height, offset=offset, mass_height=mass_height, gravity=gravity)

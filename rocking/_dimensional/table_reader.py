@@ -216,7 +216,7 @@ def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
     """
     raw = read_bytes(source, schema.argument)
     if Path(source).suffix.lower() in SHEETS:
-        return read_rows(_sheet(raw, schema.argument), schema)
+        return read_rows(rows_of_sheet(raw, schema.argument), schema)
     return read_csv(text_of(raw), schema)
 
 
@@ -266,8 +266,8 @@ def _start(text: str, delimiter: str, schema: Schema[Any]) -> list[list[str]]:
     return rows
 
 
-def _sheet(raw: bytes, argument: str) -> list[list[str]]:
-    """The first sheet of a file as text; numbers have decimal points."""
+def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
+    """The first sheet of a file as text; numbers have decimal points. The errors of `read_file`."""
     import pandas as pd  # noqa: PLC0415  (takes long to load, and only sheets need it)
 
     try:

@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -32,6 +33,9 @@ from scipy.stats import t as student
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
 from rocking._base.units import Scalar
+
+if TYPE_CHECKING:
+    from rocking._numba.cancellation import StopFlag  # numba takes longer to load than the fit
 
 Array = NDArray[np.float64]
 
@@ -64,7 +68,12 @@ HELD_SHARE = 0.95
 
 
 def identify_free_rocking(
-    time: ArrayLike, rotation: ArrayLike, *, edges: int = 1, confidence: Scalar = 0.95
+    time: ArrayLike,
+    rotation: ArrayLike,
+    *,
+    edges: int = 1,
+    confidence: Scalar = 0.95,
+    stop: StopFlag | None = None,
 ) -> xr.Dataset:
     """Restitution, slenderness angle and frequency parameter from the trace of a body that rocks freely.
 
@@ -80,6 +89,8 @@ def identify_free_rocking(
         1 for a body with equal edges; 2 fits the three numbers of each edge.
     confidence : float
         Of the intervals [-], (0, 1): those of least squares with independent errors of equal variance.
+    stop : StopFlag, optional
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
     Returns
     -------
@@ -94,6 +105,8 @@ def identify_free_rocking(
     InvalidArgumentError
         If an argument is not as described, the rotation seems to be in degrees, or the trace has fewer than three
         impacts; for two edges, fewer than six.
+    StoppedError
+        If `stop` was set.
 
     Notes
     -----
@@ -117,7 +130,7 @@ def identify_free_rocking(
     while True:  # a few flights first: a wrong period would shift the later ones by whole flights
         count = min(count, len(flights))
         used = (t > first) & (t <= t[flights[count - 1][-1]])
-        misfit = partial(_misfit, t[used], theta[used], sign, sides, count)
+        misfit = partial(_misfit, t[used], theta[used], sign, sides, count, stop)
         fit = min((_fitted(misfit, start) for start in starts), key=lambda one: float(one.cost))
         if count == len(flights):
             break
@@ -199,7 +212,9 @@ def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Arr
     return found
 
 
-def _misfit(t: Array, theta: Array, sign: float, sides: int, flights: int, x: Array) -> Array:
+def _misfit(t: Array, theta: Array, sign: float, sides: int, flights: int, stop: StopFlag | None, x: Array) -> Array:
+    if stop is not None:
+        stop.check()
     return _trace(t, x, sign, sides, flights)[0] - theta
 
 

@@ -55,6 +55,8 @@ NUMBERS = {
     "duration": (0.1, 200.0),
     "width": (1e-2, 10.0),
     "height": (1e-2, 10.0),
+    "offset": (1e-3, 0.1),
+    "mass_height": (1e-2, 10.0),
     "peak_acceleration": (1e-2, 100.0),
     "period": (1e-2, 10.0),
     "gravity": (1.0, 30.0),
@@ -71,7 +73,7 @@ ROUTES = {
     "/v1/response": (GROUPS, ["alpha_deg", "method", "tolerance"]),
     "/v1/blocks/response": (
         ["pulse", "width", "height", "peak_acceleration", "period"],
-        ["restitution", "gravity", "method", "tolerance"],
+        ["restitution", "gravity", "method", "tolerance", "offset", "mass_height"],
     ),
     "/v1/thresholds": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest_amplitude"]),
     "/v1/spectrum": (

@@ -7,6 +7,7 @@ import math
 import pytest
 from rocking_api.routers import blocks
 
+import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.block import Block
 from rocking._history.time_history import time_history
@@ -42,6 +43,22 @@ def test_the_response_equals_the_solver_in_si_units(client):
     assert response["restitution"] == block.momentum_restitution
     assert response["response"]["query"]["alpha_deg"] == pytest.approx(14.036, abs=1e-3)
     assert not response["overturned"]
+
+
+def test_a_body_whose_mass_is_not_in_the_middle(client):
+    expected = rocking.RigidBody.from_size(0.4, 1.6, offset=0.03, mass_height=0.7, gravity=9.8).response(
+        "sine", peak_acceleration=4.0, period=0.5, restitution=0.9
+    )
+    changes = {"offset": 0.03, "mass_height": 0.7, "gravity": 9.8, "restitution": 0.9}
+    response = get_response(client, **changes).json()
+    assert {name: response[name] for name in expected.summary()} == expected.summary()
+    assert [one["peak_acceleration"] for one in response["thresholds"]] == expected.thresholds.value.tolist()
+    assert client.get(response["url"]).json()["edge"] == response["edge"]
+    middle = get_response(client, offset=0.0).json()
+    assert get_response(client).json() == middle | {"url": middle["url"].removesuffix("&offset=0.0")}
+    assert_problem(get_response(client, offset=0.03, method="cube"), 422, "method")
+    problem = assert_problem(get_response(client, offset=0.2), 422, "offset")
+    assert "less than half the width to either side, 0.2 m" in problem["detail"]
 
 
 def test_golden_thresholds_of_the_rigid_block(client):

@@ -10,6 +10,7 @@ import xarray as xr
 
 import rocking
 from rocking._dimensional.thresholds import scale_thresholds
+from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import UNITS
 from tests.api.conftest import assert_problem, client_of
 from tests.excitation.record_files import at2, rows
@@ -47,6 +48,23 @@ def test_the_response_is_that_of_the_library(client, motion):
     assert found["friction_demand"] > found["friction_at_uplift"] == 0.25
     assert [one["scale"] for one in found["thresholds"]] == expected.thresholds.value.tolist()
     assert found["pulse"] is None
+
+
+def test_a_statue_under_a_record_with_its_vertical_component(client):
+    body = b"time [s],ns [g],up [g]\n" + b"".join(
+        b"%.2f,%.4f,%.4f\n" % (0.02 * k, 0.4 * math.sin(0.2 * k), 0.2 * math.cos(0.5 * k)) for k in range(100)
+    )
+    motion = parse_record(body, "record", component="ns", vertical="up")
+    expected = rocking.RigidBody.from_size(0.5, 2.0, offset=-0.03).response(motion, scale=1.1)
+    given = {"scale": 1.1, "component": "ns", "vertical": "up", "offset": -0.03}
+    found = post(client, body, **given).json()
+    assert {name: found[name] for name in expected.summary()} == expected.summary()
+    assert [one["scale"] for one in found["thresholds"]] == expected.thresholds.value.tolist()
+    assert found["edge"] == {1: "right", -1: "left"}[int(expected.edge)]
+    faster = post(client, body, **given, thresholds=False).json()
+    assert faster["thresholds"] is faster["margin"] is None
+    assert_problem(post(client, body, **given, fit=True), 422, "fit")
+    assert_problem(post(client, body, **given | {"offset": 0.25}), 422, "offset")
 
 
 def test_a_block_that_overturns_has_no_peak(client):

@@ -1,15 +1,21 @@
 """Files of the explorer: vendored bytes, imports, ids, revalidation."""
 
+import gzip
 import hashlib
 import re
 from pathlib import Path
 
 import pytest
 import rocking_api
+from rocking_api.execution.executor import BusyError
+from rocking_api.routers.objects_page import DEFAULTS
+from rocking_api.routers.pages import PAGES, html
 
 STATIC = Path(rocking_api.__file__).parent / "static"
-PAGES = [STATIC / f"{name}.html" for name in ("index", "records", "suites", "datasets", "state")]
+TEXTS = {one.path: html(one.template, one.title, one.path) for one in PAGES if one.template and one.path != "/docs"}
+TEXTS["/objects"] = html("objects.html", "", "/objects", given=DEFAULTS | {"table": ""}, found=None)
 SHARED = {"page.js"}  # looks for a form that only one page has
+RENDERED = {"ranking", "filter", "verdict", "more", "count"}  # parts of a result, which the service renders later
 SCRIPTS = sorted((STATIC / "explorer").glob("*.js"))
 
 
@@ -20,6 +26,11 @@ def test_the_vendored_library_is_what_was_published():
     assert "MIT" in (STATIC / "uplot" / "LICENSE").read_text()
     for name, digest in digests.items():
         assert hashlib.sha256((STATIC / "uplot" / name).read_bytes()).hexdigest() == digest
+
+
+def test_scripts_and_styles_are_small():
+    files = [*(STATIC / "explorer").iterdir(), *(STATIC / "uplot").glob("*.*s*")]
+    assert sum(len(gzip.compress(path.read_bytes())) for path in files) <= 150_000
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
@@ -45,7 +56,7 @@ def test_scripts_have_a_first_comment_and_valid_imports(path):
 def test_every_script_is_part_of_the_page():
     texts = "".join(path.read_text() for path in SCRIPTS)
     imported = set(re.findall(r"(?:from |import\()\"\./([\w.]+)\"", texts))
-    entries = set(re.findall(r"/static/explorer/([\w.]+\.js)", "".join(path.read_text() for path in PAGES)))
+    entries = set(re.findall(r"/static/explorer/([\w.]+\.js)", "".join(TEXTS.values())))
     assert {path.name for path in SCRIPTS} == imported | entries
 
 
@@ -59,9 +70,9 @@ def scripts_of(page):
     return found
 
 
-@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", TEXTS)
 def test_ids_are_there_and_unique(path):
-    page = path.read_text()
+    page = TEXTS[path]
     ids = re.findall(r'\bid="([^"]+)"', page)
     assert len(ids) == len(set(ids))
     texts = [(STATIC / "explorer" / name).read_text() for name in scripts_of(page) if name not in SHARED]
@@ -71,7 +82,41 @@ def test_ids_are_there_and_unique(path):
         for names in re.findall(r'\b(?:for|data-field|aria-labelledby|aria-describedby)="([^"]+)"', page)
         for name in names.split()
     }
-    assert params | named <= set(ids)
+    assert params | named <= set(ids) | (RENDERED if path == "/objects" else set())
+
+
+@pytest.mark.parametrize("path", [one.path for one in PAGES if one.template])
+def test_every_page_leads_to_every_other(client, path):
+    text = client.get(path).text
+    (nav,) = re.findall(r"<nav.*?</nav>", text, re.DOTALL)
+    assert re.findall(r'href="([^"]+)"', nav) == [one.path for one in PAGES]
+    assert re.findall(r'href="([^"]+)" aria-current="page"', nav) == [path]
+    (title,) = re.findall(r"<title>(.*)</title>", text)
+    assert title == f"{next(one.title for one in PAGES if one.path == path)} \u2013 rocking"
+
+
+def test_errors_are_pages_for_browsers_only(client):
+    asked = {"accept": "text/html,application/xhtml+xml"}
+    missing = client.get("/nowhere", headers=asked)
+    assert (missing.status_code, missing.headers["vary"]) == (404, "Accept")
+    assert '<nav aria-label="Pages">' in missing.text
+    assert "unsafe" not in missing.headers["content-security-policy"]
+    assert client.get("/nowhere").headers["content-type"] == "application/problem+json"
+    wrong = client.get("/v1/spectrum?pulse=<script>", headers=asked)
+    assert wrong.status_code == 422
+    assert "<script>" not in wrong.text
+    assert "&lt;script&gt;" in wrong.text
+
+
+def test_a_busy_service_is_a_page_that_says_what_to_do(client, monkeypatch):
+    def busy(*_):
+        raise BusyError
+
+    monkeypatch.setattr(client.app.state.service.summaries, "summary", busy)
+    found = client.get("/v1/datasets/spectra/sine/eta-0.85", headers={"accept": "text/html"})
+    assert (found.status_code, found.headers["retry-after"]) == (503, "2")
+    assert 'href="/v1/datasets/spectra/sine/eta-0.85"' in found.text
+    assert "Try again" in found.text
 
 
 def test_no_style_or_script_inside_the_page(client):
@@ -81,9 +126,9 @@ def test_no_style_or_script_inside_the_page(client):
 
 
 def test_files_are_revalidated(client):
-    for path in ("/", "/static/explorer/main.js", "/static/uplot/uPlot.iife.min.js"):
+    assert client.get("/").headers["cache-control"] == "no-cache"
+    for path in ("/static/explorer/main.js", "/static/uplot/uPlot.iife.min.js"):
         first = client.get(path)
         assert first.headers["cache-control"] == "no-cache"
-        assert first.headers["x-content-type-options" if path == "/" else "etag"]
     again = client.get(path, headers={"if-none-match": first.headers["etag"]})
     assert (again.status_code, again.content) == (304, b"")

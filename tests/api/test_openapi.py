@@ -61,8 +61,9 @@ def test_every_answer_states_its_model_or_where_it_is_stated(client, description
     for path, _, operation in operations(description):
         schema = operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
         if path.startswith("/v1/") and path not in lists and schema:
-            fields = description["components"]["schemas"][schema["$ref"].rpartition("/")[2]]["properties"]
-            found.setdefault(tuple(sorted({"metadata", "metadata_url"} & set(fields))), set()).add(path)
+            for model in schema.get("anyOf", [schema]):
+                named = description["components"]["schemas"][model["$ref"].rpartition("/")[2]]["properties"]
+                found.setdefault(tuple(sorted({"metadata", "metadata_url"} & set(named))), set()).add(path)
     assert set(found) == {("metadata",), ("metadata_url",)}
     assert found[("metadata",)] == {
         path for path in description["paths"] if path.startswith(("/v1/blocks", "/v1/records"))

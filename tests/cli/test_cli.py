@@ -165,6 +165,54 @@ def test_history_of_a_block_in_si_units():
     assert "angular_velocity_deg" in run("history", *WHOLE, "--samples", "20")
 
 
+def test_a_body_whose_mass_is_not_in_the_middle():
+    body = rocking.RigidBody.from_size(0.4, 1.6, offset=0.03, mass_height=0.7)
+    motion = {"peak_acceleration": 4.0, "period": 0.5}
+    expected = body.response("sine", **motion)
+    options = [*UNITS, "--offset", "3cm", "--mass-height", "0.7 m"]
+    result = json.loads(run("response", *options, "--format=json"))
+    assert {name: result[name] for name in expected.summary()} == expected.summary()
+    assert [one["peak_acceleration"] for one in result["thresholds"]] == expected.thresholds.value.tolist()
+    assert (result["left"], result["right"]) == (0.23, 0.17)
+    lines = run("response", *options).splitlines()
+    assert lines[0] == expected.contact.sentence
+    assert "edge" in " ".join(lines)
+    history = json.loads(run("history", *options, "--samples=50", "--contact", "--duration=2s", "--format=json"))
+    moved = body.history("sine", **motion, samples=50, duration=2.0, contact=True)
+    assert history["rotation_deg"] == np.degrees(moved["rotation"].values).tolist()
+    assert history["edge"] == moved["edge"].values.tolist()
+    assert history["friction_demand"] == moved["friction_demand"].values.tolist()
+    header = run("history", *options, "--samples=5", "--format=csv").splitlines()[0]
+    assert header.startswith("time [ms],rotation_deg [deg]")
+
+
+def test_an_offset_of_zero_is_the_block_and_a_mirrored_one_exchanges_the_edges():
+    assert run("response", *UNITS, "--offset=0cm") == run("response", *UNITS)
+    left, right = (
+        json.loads(run("response", "--pulse", pulse, *UNITS[2:], "--offset", offset, "--format=json"))
+        for pulse, offset in (("sine", "-3cm"), ("-sine", "3cm"))
+    )
+    assert {left["edge"], right["edge"]} == {"left", "right"}
+    assert left["rotation_left_deg"] == pytest.approx(right["rotation_right_deg"], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["response", *UNITS, "--offset=21cm"], "--offset: '21cm' is not allowed; allowed: less than half the width"),
+        (["response", *UNITS, "--offset=3"], "--offset: '3': missing unit"),
+        (["response", *GROUPS, "--offset=3cm"], "--slenderness: 0.4 is not allowed"),
+        (["history", *UNITS, "--mass-height=0m"], "--mass-height"),
+        (
+            ["response", "blocks.csv", "--pulse=sine", "--offset=3cm"],
+            "--offset: '3cm' is not allowed; allowed: no blocks",
+        ),
+    ],
+)
+def test_a_mass_that_is_not_above_the_base_is_refused(arguments, words):
+    assert words in refused(*arguments)
+
+
 def test_spectrum_of_a_block_in_si_units():
     options = [*WHOLE[:8], "--period-min", "0.3s", "--period-max", "1.2s", "--points", "3"]
     result = json.loads(run("spectrum", *options, "--format=json"))

@@ -56,6 +56,20 @@ def test_record_in_three_formats():
     assert run("record", NAPA, *SIZES, "--scale", "1.1").startswith("rocks and comes to rest\n")
 
 
+def test_a_body_whose_mass_is_not_in_the_middle():
+    expected = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03).response(rocking.read_record(NAPA), scale=1.1)
+    result = json.loads(run("record", NAPA, *SIZES, "--scale=1.1", "--offset=3cm", "--format=json"))
+    assert {name: result[name] for name in expected.summary()} == expected.summary()
+    assert result["threshold_scale"] == expected.thresholds.value.tolist()
+    assert result["overturning_scale"] == expected.thresholds[0].value
+    faster = json.loads(run("record", NAPA, *SIZES, "--offset=3cm", "--no-thresholds", "--format=json"))
+    assert faster["margin"] is None
+    assert "threshold_scale" not in faster
+    middle = [run("record", NAPA, *SIZES, "--no-thresholds", *offset) for offset in ([], ["--offset=0cm"])]
+    assert middle[0] == middle[1]
+    assert "--fit: True is not allowed" in refused("record", NAPA, *SIZES, "--offset=3cm", "--fit")
+
+
 def test_thresholds_and_pulse():
     result = json.loads(run("record", NAPA, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--format=json"))
     scales = np.array(result["threshold_scale"])

@@ -1,6 +1,7 @@
 """Bodies with two edges: against the block, symmetries, Newton's law, outlines and meshes, searches from both sides."""
 
 import csv
+import json
 import math
 import pickle
 
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional import body_response
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._model.body import polygon_properties
 from rocking._solver.bodies import outcome_margin_of
@@ -48,6 +50,76 @@ def test_equal_edges_are_the_block_under_a_record():
         assert found.outcome[k] == one.outcome
         assert found.rotation[k] == pytest.approx(one.rotation, rel=1e-13, nan_ok=True)
     np.testing.assert_allclose(body.thresholds(motion).value, block.response(motion).thresholds.value, rtol=1e-12)
+
+
+@pytest.mark.parametrize("motion", ["sine", TRIANGLE])
+def test_a_body_of_a_size_without_offset_is_the_block_and_a_mirrored_one_exchanges_the_edges(motion):
+    middle, block = rocking.RigidBody.from_size(0.3, 1.0), rocking.Block(0.3, 1.0)
+    one, other = (body.response(motion, **MOTION) for body in (block, middle))
+    assert other.outcome == one.outcome
+    assert float(other.displacement) == pytest.approx(one.displacement, rel=1e-13, nan_ok=True)
+    mirrored = f"-{motion}" if isinstance(motion, str) else motion.mirrored()
+    right, left = (rocking.RigidBody.from_size(0.3, 1.0, offset=e, mass_height=0.4) for e in (0.03, -0.03))
+    stronger = MOTION | {"peak_acceleration": 5.0}
+    given, swapped = right.response(motion, **stronger), left.response(mirrored, **stronger)
+    assert given.edge == -swapped.edge
+    assert given.rotation_right > 0.0
+    assert given.outcome == swapped.outcome
+    found, expected = [swapped.rotation_left, swapped.rotation_right], [given.rotation_right, given.rotation_left]
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_a_body_of_a_size_has_its_edges_mass_and_top_there_for_arrays_and_labels_too():
+    offset = xr.DataArray([-0.05, 0.05], dims="offset")
+    body = rocking.RigidBody.from_size("40 cm", 1.6, offset=offset, mass_height=0.7)
+    given = {
+        name: float(value) for name, value in rocking.RigidBody.from_size(0.4, 1.6, offset=0.05).parameters.items()
+    }
+    assert given == pytest.approx(
+        {
+            "left": 0.25,
+            "right": 0.15,
+            "height": 0.8,
+            "gyration": math.hypot(0.4, 1.6) / math.sqrt(12.0),
+            "top_height": 1.6,
+        }
+        | {"gravity": STANDARD_GRAVITY, "inclination": 0.0}
+    )
+    found = body.response("sine", **MOTION)
+    assert found["outcome"].dims == ("offset",)
+    one = rocking.RigidBody(0.25, 0.15, 0.7, math.hypot(0.4, 1.6) / math.sqrt(12.0), top_height=1.6)
+    assert found["rotation"].values[1] == pytest.approx(float(one.response("sine", **MOTION).rotation), rel=1e-12)
+    assert body == rocking.RigidBody.from_size(0.4, 1.6, offset=[-0.05, 0.05], mass_height=0.7)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (
+            {"offset": "20 cm"},
+            "`offset` = '20 cm' is not allowed; allowed: less than half the width to either side, 0.2 m",
+        ),
+        ({"offset": [0.0, -0.3]}, "less than half the width"),
+        ({"mass_height": 0.0}, "`mass_height` = 0.0"),
+        ({"gyration": -1.0}, "`gyration`"),
+    ],
+)
+def test_a_mass_that_is_not_above_the_base_is_refused(given, words):
+    with pytest.raises(InvalidArgumentError) as error:
+        rocking.RigidBody.from_size(0.4, 1.6, **given)
+    assert words in str(error.value)
+
+
+def test_the_summary_of_a_response_is_plain_and_searches_no_thresholds_where_none_are_asked_for(monkeypatch):
+    found = rocking.RigidBody.from_size(0.4, 1.6, offset=0.03).response("sine", peak_acceleration=8.0, period=0.5)
+    said = found.summary()
+    assert json.loads(json.dumps(said, allow_nan=False)) == said
+    assert (said["overturned"], said["peak_rotation_deg"]) == (True, None)
+    assert said["edge"] in ("left", "right")
+    assert said["margin"] == found.margin
+    monkeypatch.setattr(body_response, "thresholds_of", None)
+    again = rocking.RigidBody.from_size(0.4, 1.6, offset=0.03).response("sine", peak_acceleration=8.0, period=0.5)
+    assert again.summary(thresholds=False)["margin"] is None
 
 
 @settings(deadline=None, max_examples=60)

@@ -8,8 +8,9 @@ from scipy.integrate import solve_ivp
 
 import rocking
 from benchmarks.accuracy.free_rocking import NAMES, errors, free_rocking
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._evidence.free_rocking import identify_free_rocking
+from rocking._numba.cancellation import StopFlag
 
 ALPHA, P, ETA = 0.25, 2.5, 0.9
 
@@ -110,3 +111,19 @@ def test_a_vibration_that_is_no_rocking_is_refused():
     with pytest.raises(InvalidArgumentError, match=r"free rocking|degrees"):
         identify_free_rocking(time, 0.1 * np.sin(5.0 * time) + 0.1 * np.sin(13.0 * time))
     assert rocking.identify_free_rocking is identify_free_rocking
+
+
+def test_a_fit_ends_between_two_evaluations_after_its_flag_was_set():
+    class SetLate(StopFlag):
+        checks = 0
+
+        def check(self):
+            self.checks += 1
+            if self.checks == 10:
+                self.set()
+            super().check()
+
+    flag = SetLate()
+    with pytest.raises(StoppedError):
+        identify_free_rocking(*trace(), stop=flag)
+    assert flag.checks == 10

@@ -77,6 +77,21 @@ def overturning_files(pulse, etas):
     return [f"results/overturning/{pulse}/eta-{named(eta)}.nc" for eta in etas]
 
 
+def window_of(eta, etas):
+    """The restitutions, of those by name, from which the interval above one is interpolated."""
+    place = [*etas].index(eta)
+    return [*etas.values()][slice(*windows_of(len(etas), place, place + 1))]
+
+
+def parts_of(etas, tenths, code):
+    """Paths of the parts with the cubes of some restitutions, made by some code, with the pulse as a wildcard."""
+    return [
+        part_of(f"spectra/{{pulse}}-{tenth}", code | {"restitution": some})
+        for tenth, some in tenths.items()
+        if {*some} & {*etas}
+    ]
+
+
 def provenance(rule_name, scripts, settings, products):
     """Digests of the code and the settings behind a rule's products, which are listed in the manifest.
 

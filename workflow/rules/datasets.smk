@@ -18,12 +18,6 @@ wildcard_constraints:
     samples="[0-9a-f]{16}",
 
 
-def window_of(eta):
-    """The restitutions from which the interval above one is interpolated."""
-    place = [*ETAS].index(eta)
-    return [*ETAS.values()][slice(*windows_of(len(ETAS), place, place + 1))]
-
-
 PART_MB, CUBE_MB = (300 + BYTES * nodes / 1e6 for nodes in (nodes_of_part(config), nodes_of_cube(config)))
 OVERTURNING_SETTINGS = {**config["boundary"], "alpha_deg": config["grid"]["alpha_deg"]}
 OVERTURNING_PROVENANCE = provenance(
@@ -32,7 +26,7 @@ OVERTURNING_PROVENANCE = provenance(
     OVERTURNING_SETTINGS,
     [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
 )
-WINDOWS = {eta: window_of(eta) for eta in ETAS}
+WINDOWS = {eta: window_of(eta, ETAS) for eta in ETAS}
 SPECTRUM_PROVENANCE = {
     eta: provenance(
         "spectra",
@@ -48,15 +42,6 @@ CUBE_CODE = {
     "boundaries": OVERTURNING_PROVENANCE,
     "grid": config["grid"],
 }
-
-
-def parts_of(etas):
-    """Paths of the parts with the cubes of some restitutions, with the pulse as a wildcard."""
-    return [
-        part_of(f"spectra/{{pulse}}-{tenth}", CUBE_CODE | {"restitution": some})
-        for tenth, some in TENTHS.items()
-        if {*some} & {*etas}
-    ]
 
 
 for pulse, _ in ENTRIES:
@@ -136,7 +121,7 @@ rule spectrum_part:
 
 rule spectra:
     input:
-        parts=lambda wildcards: parts_of(WINDOWS[wildcards.eta]),
+        parts=lambda wildcards: parts_of(WINDOWS[wildcards.eta], TENTHS, CUBE_CODE),
         samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
         cube=spectrum_files("{pulse}", ["{eta}"])[0],

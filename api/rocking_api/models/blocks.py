@@ -18,6 +18,8 @@ from rocking_api.models.responses import BY_SOLVER, PointResponse
 RANGES = {
     "width": (1e-4, 1e4, "m"),
     "height": (1e-4, 1e4, "m"),
+    "offset": (-1e4, 1e4, "m"),
+    "mass_height": (1e-4, 1e4, "m"),
     "peak_acceleration": (1e-6, 1e6, "m/s2"),
     "period": (1e-4, 1e4, "s"),
     "gravity": (1e-3, 1e3, "m/s2"),
@@ -41,6 +43,15 @@ def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
 
 MomentumOrNumber = Annotated[Literal["momentum"] | float, WrapValidator(_momentum_or_number)]
 
+Offset = Annotated[
+    float,
+    quantity(
+        "offset",
+        "distance of the centre of mass from the middle of the width, less than half of it; positive to the right",
+    ),
+]
+MassHeight = Annotated[float | None, quantity("mass_height", "height of the centre of mass; absent: half the height")]
+
 
 def check_block_value(name: str, value: Any) -> None:
     """Refuse a value in SI units that is out of range, whatever the others are.
@@ -50,7 +61,7 @@ def check_block_value(name: str, value: Any) -> None:
     InvalidArgumentError
         If it is.
     """
-    if name in RANGES:
+    if name in RANGES and value is not None:
         low, high, unit = RANGES[name]
         in_range(name, value, low, high, unit=unit)
     elif value != "momentum":
@@ -63,6 +74,8 @@ class BlockParams(Params):
     pulse: PulseName
     width: float = quantity("width", "width 2b of the base", examples=[0.4])
     height: float = quantity("height", "height 2h", examples=[1.6])
+    offset: Offset = 0.0
+    mass_height: MassHeight = None
     peak_acceleration: float = quantity("peak_acceleration", "a_g", examples=[4.0])
     period: float = quantity(
         "period", "T_p = 2 pi/omega_g; a half sine or rectangular pulse lasts half of it", examples=[0.5]
@@ -179,6 +192,47 @@ class Margins(BaseModel):
     )
     sizes: list[SizeThreshold] = Field(description="all sizes of this shape at which the outcome changes, ascending")
     sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal searched [m]")
+
+
+class BodySummary(Answer):
+    """What happens to a body whose centre of mass is not that of the block, under any motion."""
+
+    meaning: str = Field(description="the outcome in words; where the rocking model does not apply, that and why")
+    margin: str | None = Field(description="from which strength of the motion it overturns, in words; null: not asked")
+    outcome: str = Field(description="final outcome by name")
+    overturned: bool = Field(description="by the rocking model: of a body that neither slides nor lifts off")
+    rocking_model_applies: bool = Field(
+        description="false: pure rocking needs a coefficient of friction beyond 1, or the body lifts off"
+    )
+    edge: Literal["right", "left"] | None = Field(
+        description="edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"
+    )
+    peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
+    rotation_left_deg: float | None = Field(description="largest rotation about the left edge [deg]; likewise")
+    rotation_right_deg: float | None = Field(description="largest rotation about the right edge [deg]; likewise")
+    top_displacement: float | None = Field(description="largest horizontal displacement of the top [m]; likewise")
+    peak_rotation: float | None = Field(description="max |theta|/alpha, alpha of the edge [-]; likewise")
+    exceeded_alpha: bool = Field(description="whether the rotation passes alpha; the ground can bring a body back")
+    impacts: int = Field(description="number of impacts until the outcome is certain [-]")
+    uplift_time: float | None = Field(description="time of the first uplift [s]; null: no uplift")
+    uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
+    alpha_left_deg: float = Field(description="slenderness angle of the left edge [deg]")
+    alpha_right_deg: float = Field(description="slenderness angle of the right edge [deg]")
+    friction_demand: float | None = Field(
+        description="coefficient of friction that pure rocking needs, impacts excluded [-]; null: it lifts off"
+    )
+    lifts_off: bool = Field(description="whether pure rocking would need a tensile reaction of the ground")
+    source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
+
+
+class BodyResponse(BodySummary):
+    """What happens to a body under a pulse."""
+
+    query: BlockParams = QUERY
+    thresholds: list[Threshold] = Field(
+        description="all amplitudes at which the outcome changes, this period, ascending"
+    )
 
 
 class BlockResponse(Answer):

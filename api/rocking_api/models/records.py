@@ -12,7 +12,15 @@ from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import RANGES, MomentumOrNumber, check_block_value, quantity
+from rocking_api.models.blocks import (
+    RANGES,
+    BodySummary,
+    MassHeight,
+    MomentumOrNumber,
+    Offset,
+    check_block_value,
+    quantity,
+)
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params
 from rocking_api.models.responses import BY_SOLVER, Motion
@@ -91,8 +99,10 @@ class RecordParams(RecordFileParams):
 
 
 class RecordResponseParams(RecordParams):
-    """The same, and whether to search thresholds and to fit a pulse."""
+    """The same, the place of the centre of mass, and whether to search thresholds and to fit a pulse."""
 
+    offset: Offset = 0.0
+    mass_height: MassHeight = None
     thresholds: bool = Field(
         True, description="find all scales at which the outcome changes, which takes most of the time"
     )
@@ -250,6 +260,16 @@ class RecordResponse(Answer):
     pulse: FittedPulse | None = Field(None, description="null unless requested")
     metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
+
+
+class RecordBodyResponse(BodySummary):
+    """What happens to a body whose centre of mass is not that of the block."""
+
+    query: RecordResponseParams = QUERY
+    record: RecordDescription = _RECORD
+    thresholds: list[ScaleThreshold] | None = Field(
+        description="all scales at which the outcome changes, ascending; null: not asked for"
+    )
 
 
 class RecordHistoryResponse(Motion):

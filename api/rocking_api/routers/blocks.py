@@ -13,7 +13,9 @@ from rocking._dimensional.assessment import Assessment, assess
 from rocking._dimensional.block import Block
 from rocking._dimensional.margins import Margins as FoundMargins
 from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.rigid_body import RigidBody, body_of_size
 from rocking._dimensional.table import BlockTable, read_table, respond_table
+from rocking._dimensional.thresholds import BodyThresholds
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import evaluate, point_results
 from rocking_api.http.batch import body_form
@@ -27,6 +29,7 @@ from rocking_api.models.blocks import (
     BlockRows,
     BlocksParams,
     BlocksResponse,
+    BodyResponse,
     Margins,
     PeriodThreshold,
     SizeThreshold,
@@ -59,8 +62,13 @@ BY_SOLVER = "no data set covers this block within the tolerance; the solver was 
 
 
 @router.get("/response", summary="A block in SI units")
-async def get_block(params: Annotated[BlockParams, Query()], request: Request, service: ServiceDep) -> BlockResponse:
-    """Outcome, rotation in degrees, displacement in metres, distance to another outcome, friction, by (2.2)."""
+async def get_block(
+    params: Annotated[BlockParams, Query()], request: Request, service: ServiceDep
+) -> BlockResponse | BodyResponse:
+    """Outcome, rotation in degrees, displacement in metres, distance to another outcome, friction, by (2.2).
+
+    With `offset` or `mass_height` of a body with two different edges, by the solver.
+    """
     return await service.run_heavy(params, lambda stop: _block(service, params, stop), request)
 
 
@@ -154,8 +162,10 @@ def _blocks(
     return json_response(BlocksResponse.model_construct(query=params, **columns), request)
 
 
-def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse:
-    block = Block(params.width, params.height, params.gravity)
+def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse | BodyResponse:
+    block = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
+    if isinstance(block, RigidBody):
+        return _body(service, params, block, stop)
     problem = BlockProblem(block, params.pulse, params.peak_acceleration, params.period, params.restitution)
     found = _point(service, params, problem, stop)
     seconds = SEARCH_SHARE * service.settings.max_seconds
@@ -177,6 +187,19 @@ def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockRespon
         data_version=found.data_version,
         **_assessed(assessment),
     )
+
+
+def _body(service: Service, params: BlockParams, body: RigidBody, stop: StopFlag) -> BodyResponse:
+    if params.method == "cube":
+        raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")
+    motion = params.model_dump(include={"peak_acceleration", "period", "restitution"})
+    found = body.response(params.pulse, **motion, stop=stop)
+    service.metrics.points("solver", 1)
+    return BodyResponse(query=params, thresholds=_thresholds(found.thresholds), **found.summary())
+
+
+def _thresholds(found: BodyThresholds) -> list[Threshold]:
+    return [Threshold(peak_acceleration=one.value, overturns_above=one.overturns_above) for one in found]
 
 
 def _point(service: Service, params: BlockParams, problem: BlockProblem, stop: StopFlag) -> PointResponse:
@@ -206,9 +229,7 @@ def _assessed(found: Assessment) -> dict[str, Any]:
         "rocking_model_applies": found.rocking_model_applies,
         "meaning": found.sentence,
         "margin": found.margin,
-        "thresholds": None
-        if thresholds is None
-        else [Threshold(peak_acceleration=one.value, overturns_above=one.overturns_above) for one in thresholds],
+        "thresholds": None if thresholds is None else _thresholds(thresholds),
         "largest_safe_acceleration": found.largest_safe_acceleration,
         "largest_safe_friction_demand": found.largest_safe_friction_demand,
         "margins": None if found.margins is None else _margins(found.margins),

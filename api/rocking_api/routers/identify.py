@@ -80,7 +80,9 @@ async def post_identify(params: Annotated[IdentifyParams, Query()], request: Req
     params.check()
     body = await service.read_body(request, MAX_BODY)
     time, rotation = await service.run_parser(lambda stop: _read(body, given, stop), request, large=True)
-    return await service.run_heavy(params, lambda _: _identified(params, request, time, rotation, form), request)
+    return await service.run_heavy(
+        params, lambda stop: _identified(params, request, time, rotation, form, stop), request
+    )
 
 
 def _read(body: bytes, form: Form, stop: StopFlag) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -94,13 +96,18 @@ def _read(body: bytes, form: Form, stop: StopFlag) -> tuple[NDArray[np.float64],
 
 
 def _identified(
-    params: IdentifyParams, request: Request, time: NDArray[np.float64], rotation: NDArray[np.float64], form: Form
+    params: IdentifyParams,
+    request: Request,
+    time: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    form: Form,
+    stop: StopFlag,
 ) -> Response:
     # scipy.stats takes longer to import than the service to start
     from rocking._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
 
     factor = math.pi / 180.0 if params.degrees else 1.0
-    found = identify_free_rocking(time, factor * rotation, edges=params.edges, confidence=params.confidence)
+    found = identify_free_rocking(time, factor * rotation, edges=params.edges, confidence=params.confidence, stop=stop)
     edges = {name: found[name].values.tolist() for name in EDGE_COLUMNS}
     if form == "csv":
         return csv_response(edges, "identified")

@@ -1,69 +1,104 @@
-"""The pages `/`, `/records`, `/suites`, `/datasets`, `/state` and `/docs`, which load nothing from other hosts."""
+"""The pages for a browser, from the folder `templates`; they load nothing from other hosts."""
 
 from __future__ import annotations
 
+import json
 import os
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from fastapi import APIRouter, Response
-from fastapi.responses import FileResponse
+from fastapi import APIRouter, FastAPI, Request, Response
+from fastapi.responses import HTMLResponse
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
 from rocking_api.http.files import without_range
-from rocking_api.http.params_route import ParamsRoute
 
 STATIC = Path(__file__).parents[1] / "static"
 
-_EXPLORER_POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+TEMPLATES = Environment(
+    loader=FileSystemLoader(STATIC.with_name("templates")),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+
+POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 # swagger-ui needs styles inside elements and data: images
 _SWAGGER_POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
+# the report of an assessment has its styles inside
+REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
 _REVALIDATE = {"Cache-Control": "no-cache"}  # revalidated by ETag: no page mixes two versions
 
-router = APIRouter(include_in_schema=False, route_class=ParamsRoute)
+
+@dataclass(frozen=True)
+class Page:
+    """A page: its address, its word in the navigation, its title, its template and its policy."""
+
+    path: str
+    label: str
+    title: str
+    template: str
+    policy: str = POLICY
 
 
-@router.get("/")
-async def get_explorer() -> FileResponse:
-    """The explorer: a block in metres, the map of the control space, time histories."""
-    return _page("index.html", _EXPLORER_POLICY)
+PAGES = (
+    Page("/", "Explorer", "Does the block overturn?", "explorer.html"),
+    Page("/objects", "Objects", "Which objects overturn?", ""),  # objects_page.py
+    Page("/records", "Records", "A block under a record", "records.html"),
+    Page("/suites", "Suites", "Suites of records", "suites.html"),
+    Page("/datasets", "Data sets", "Data sets", "datasets.html"),
+    Page("/guide/", "Guide", "Guide", ""),  # the files that `make docs` built
+    Page("/docs", "API", "Routes of the API", "docs.html", _SWAGGER_POLICY),
+    Page("/state", "Status", "Service status", "state.html"),
+)
+"""In the order of the navigation."""
+
+router = APIRouter(include_in_schema=False)
 
 
-@router.get("/records")
-async def get_records() -> FileResponse:
-    """A block under the record of a file."""
-    return _page("records.html", _EXPLORER_POLICY)
+def html(template: str, title: str, path: str = "", **values: Any) -> str:
+    """A page as text; `path` is its address, where the navigation has it."""
+    return TEMPLATES.get_template(template).render(title=title, path=path, pages=PAGES, **values)
 
 
-@router.get("/suites")
-async def get_suites_page() -> FileResponse:
-    """Blocks under a suite of records, as a report to print."""
-    return _page("suites.html", _EXPLORER_POLICY)
+def _add(page: Page) -> None:
+    async def get_page() -> HTMLResponse:
+        headers = {"Content-Security-Policy": page.policy, **_REVALIDATE}
+        return HTMLResponse(html(page.template, page.title, page.path), headers=headers)
+
+    router.add_api_route(page.path, get_page, methods=["GET"], summary=page.title)
 
 
-@router.get("/datasets")
-async def get_datasets_page() -> FileResponse:
-    """The catalogue of the data sets."""
-    return _page("datasets.html", _EXPLORER_POLICY)
+for _page in PAGES:
+    if _page.template:
+        _add(_page)
 
 
-@router.get("/state")
-async def get_state_page() -> FileResponse:
-    """The state of the service."""
-    return _page("state.html", _EXPLORER_POLICY)
+def add_error_pages(app: FastAPI) -> None:
+    """Give errors as pages to clients that ask for HTML, by the handlers that are registered so far."""
+    for kind, handler in list(app.exception_handlers.items()):
+        app.add_exception_handler(kind, _with_page(handler))
 
 
-@router.get("/docs")
-async def get_documentation() -> FileResponse:
-    """The OpenAPI description as a page."""
-    return _page("docs.html", _SWAGGER_POLICY)
+def _with_page(handler: Callable[..., Any]) -> Callable[[Request, Exception], Awaitable[Response]]:
+    async def handle(request: Request, error: Exception) -> Response:
+        response: Response = await handler(request, error)
+        if "text/html" not in request.headers.get("accept", "") or response.status_code < 400:
+            return response
+        problem = json.loads(bytes(response.body))
+        text = html("error.html", problem["title"], problem=problem, address=request.url.path)
+        kept = {name: value for name, value in response.headers.items() if not name.startswith("content-")}
+        headers = kept | {"Content-Security-Policy": POLICY, "Vary": "Accept"}
+        return HTMLResponse(text, response.status_code, headers)
 
-
-class _Page(FileResponse):
-    """A page, without ranges."""
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        await super().__call__(without_range(scope), receive, send)
+    return handle
 
 
 class PageFiles(StaticFiles):
@@ -78,8 +113,3 @@ class PageFiles(StaticFiles):
         response = super().file_response(full_path, stat_result, scope, status_code)
         response.headers.update(_REVALIDATE)
         return response
-
-
-def _page(name: str, policy: str) -> FileResponse:
-    headers = {"Content-Security-Policy": policy, **_REVALIDATE}
-    return _Page(STATIC / name, media_type="text/html", headers=headers)

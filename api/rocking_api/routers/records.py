@@ -13,6 +13,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import BlockProblem, record_groups, restitution_of, search_range
 from rocking._dimensional.response import respond
+from rocking._dimensional.rigid_body import RigidBody, body_of_size
 from rocking._dimensional.thresholds import BodyThresholds, scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
@@ -28,6 +29,7 @@ from rocking_api.http.memory_budget import reservation_of
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.records import (
     FittedPulse,
+    RecordBodyResponse,
     RecordDescription,
     RecordFileParams,
     RecordHistoryParams,
@@ -69,8 +71,11 @@ _BODY: dict[str, Any] = {
 @router.post("/response", summary="A block in SI units under a record", openapi_extra=_BODY)
 async def post_response(
     params: Annotated[RecordResponseParams, Query()], request: Request, service: ServiceDep
-) -> RecordResponse:
-    """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2)."""
+) -> RecordResponse | RecordBodyResponse:
+    """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2).
+
+    With `offset` or `mass_height` of a body with two different edges.
+    """
     record = await _read(params, request, service)
     return await service.run_heavy(params, lambda stop: _response(service, params, record, stop), request)
 
@@ -144,8 +149,12 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
     return record
 
 
-def _response(service: Service, params: RecordResponseParams, record: Record, stop: StopFlag) -> RecordResponse:
-    block = Block(params.width, params.height, params.gravity)
+def _response(
+    service: Service, params: RecordResponseParams, record: Record, stop: StopFlag
+) -> RecordResponse | RecordBodyResponse:
+    block = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
+    if isinstance(block, RigidBody):
+        return _body(params, block, record, stop)
     problem = BlockProblem(block, record, scale=params.scale, restitution=params.restitution)
     found = respond(problem, thresholds=params.thresholds, stop=stop)
     assessment = found.assess(seconds=SEARCH_SHARE * service.settings.max_seconds, stop=stop)
@@ -181,6 +190,18 @@ def _response(service: Service, params: RecordResponseParams, record: Record, st
         smallest_normal_reaction=finite(contact.smallest_normal_reaction),
         pulse=_fitted(fit_pulse(record, blocks=block, stop=stop)) if params.fit else None,
         warnings=assessment.warnings,
+    )
+
+
+def _body(params: RecordResponseParams, body: RigidBody, record: Record, stop: StopFlag) -> RecordBodyResponse:
+    if params.fit:
+        raise InvalidArgumentError("fit", params.fit, "a block whose centre of mass is in its middle")
+    found = body.response(record, scale=params.scale, restitution=params.restitution, stop=stop)
+    return RecordBodyResponse(
+        query=params,
+        record=_description(record),
+        thresholds=_thresholds(found.thresholds, record) if params.thresholds else None,
+        **found.summary(thresholds=params.thresholds),
     )
 
 

@@ -9,6 +9,7 @@ from matplotlib.image import imread
 from playwright.sync_api import Page
 
 BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=momentum"
+MAP = "/?pulse=sine"  # the map of the groups, without a block
 POINT = "/?frequency_ratio=4&slenderness=0.7"
 
 
@@ -38,5 +39,5 @@ def place_of(page: Page, frequency_ratio, slenderness):
     box = page.locator("#map").bounding_box()
     left, right, top, bottom = 58, 58, 14, 44
     x = np.log(frequency_ratio / 0.5) / np.log(12.0 / 0.5)
-    y = (1.05 - slenderness) / (1.05 - 0.01)
+    y = (slenderness - 0.01) / (1.05 - 0.01)
     return {"x": left + x * (box["width"] - left - right), "y": top + y * (box["height"] - top - bottom)}

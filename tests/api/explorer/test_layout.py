@@ -38,7 +38,7 @@ def test_nothing_overlaps_on_the_explorer(open_page, path):
     assert overlaps_by_width(page) == {}
 
 
-@pytest.mark.parametrize("path", ["/records", "/suites", "/datasets", "/state"])
+@pytest.mark.parametrize("path", ["/objects", "/records", "/suites", "/datasets", "/state"])
 def test_nothing_overlaps_on_the_other_pages(open_page, path):
     page = open_page(path, viewport={"width": 320, "height": 900})
     if path == "/records":
@@ -47,6 +47,10 @@ def test_nothing_overlaps_on_the_other_pages(open_page, path):
         expect(page.locator("#scales-caption")).to_contain_text("Hatched")
     elif path == "/suites":
         expect(page.locator("#status")).to_contain_text("4 records")
+    elif path == "/objects":
+        page.locator("#table").fill("object;width [cm];height [cm]\nvase;22;55\njug;wide;40")
+        page.locator("#ask").click()
+        expect(page.locator("#ranking")).to_be_visible()
     else:
         expect(page.locator("#status")).not_to_contain_text("…")
     assert overlaps_by_width(page) == {}

@@ -1,9 +1,12 @@
 """The pages of the data sets and of the state of the service."""
 
+import hashlib
 import io
+import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from playwright.sync_api import expect
 
 from tests.api.conftest import NAMES
@@ -12,17 +15,41 @@ from tests.api.conftest import NAMES
 def test_data_sets_are_listed_and_filtered(open_page):
     page = open_page("/datasets")
     status = page.locator("#status")
-    expect(status).to_have_text(f"{len(NAMES)} of {len(NAMES)} data sets")
-    page.locator("#filter").fill("cosine")
-    expect(status).to_have_text(f"1 of {len(NAMES)} data sets")
-    row = page.locator("#rows tr:visible")
+    expect(status).to_contain_text(f"{len(NAMES)} of {len(NAMES)} data sets")
+    titles = page.locator("#groups h3").all_inner_texts()
+    assert titles == ["Rocking spectra", "Boundaries of overturning", "Suites of records"]
+    page.locator("#filter").fill("suites")
+    expect(status).to_contain_text(f"3 of {len(NAMES)} data sets")
+    assert page.locator("#groups h3:visible").all_inner_texts() == titles[2:]
+    page.locator("#filter").fill("")
+    page.locator("#pulse").select_option(label="One full cosine")
+    page.locator("#eta").select_option("0.9")
+    expect(status).to_contain_text(f"1 of {len(NAMES)} data sets")
+    row = page.locator("#groups tbody tr:visible")
     expect(row).to_contain_text("spectra/cosine/eta-0.90")
     expect(row).to_contain_text("ω 0.5 to 12")
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name="SHA256SUMS").click()
+    (line,) = waiting.value.path().read_text().splitlines()
+    content = page.request.get("/v1/datasets/spectra/cosine/eta-0.90.nc").body()
+    assert line == f"{hashlib.sha256(content).hexdigest()}  spectra/cosine/eta-0.90.nc"
     with page.expect_download() as waiting:
         row.get_by_role("link", name="part").click()
     table = np.loadtxt(io.StringIO(waiting.value.path().read_text()), delimiter=",", skiprows=1, usecols=(1, 2))
     assert table[:, 0].min() > 0.479
     assert table[:, 0].max() < 0.521
+
+
+def test_a_spectrum_goes_into_xarray_by_the_copied_line(open_page, address):
+    page = open_page("/datasets")
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.locator("tr", has_text="spectra/cosine/eta-0.90").get_by_role("button", name="xarray").click()
+    expect(page.locator("#status")).to_have_text("Copied the line for spectra/cosine/eta-0.90.")
+    line = page.evaluate("navigator.clipboard.readText()")
+    assert line == f'xarray.open_dataset("{address}/v1/datasets/spectra/cosine/eta-0.90.zarr", engine="zarr")'
+    url = re.search(r'"(.*?)"', line)[1]
+    with xr.open_dataset(url, engine="zarr") as cube:
+        assert cube.peak_rotation.sizes["slenderness"] == 91
 
 
 def test_the_state_is_told(open_page):

@@ -1,122 +1,90 @@
-// The form for a block in metres, and its response in words.
+// The sentence and the settings: quantities, pulse, restitution, slenderness angle, units. They are the state.
 
-import { assumptions, element, facts } from "./page.js";
-import { showErrors } from "./form_errors.js";
-import { MISSING, split, UNITS } from "./units.js";
-import { inG, length, number, threshold, thresholds } from "./labels.js";
+import { isSampled } from "./api.js";
+import { samplesOf, TRIANGLE } from "./own_pulse.js";
+import { element } from "./page.js";
+import { problems, showErrors } from "./form_errors.js";
+import { number, PULSES } from "./labels.js";
+import { isBlock } from "./state.js";
+import { inUnit, MISSING, shown, split, SYSTEMS, toSI, UNITS, written } from "./units.js";
 
-const GRAVITY = 9.80665;
 const QUANTITIES = Object.keys(UNITS);
 
-const form = document.getElementById("block");
-const answer = document.getElementById("answer");
+const OWN = "own";
 
-/** Wire the form: `submit(parts)` gets the new parts of the state, `edit()` is called after each edit. */
-export function wireForm(submit, edit) {
+const form = document.getElementById("block");
+const { pulse } = form.elements;
+const samples = document.getElementById("samples");
+const how = document.getElementById("how");
+const eta = document.getElementById("eta");
+const alpha = document.getElementById("alpha");
+const units = document.getElementById("units");
+const outputs = { eta: document.getElementById("eta-value"), alpha: document.getElementById("alpha-value") };
+
+/** Wire the form: `set(parts, keep)` changes the state, `edit()` says that it cannot be read; `look()` gives state and scenario. */
+export function wireForm(look, set, edit) {
+  for (const [name, words] of Object.entries(PULSES)) pulse.append(element("option", words, { value: name }));
+  pulse.append(element("option", "Own samples", { value: OWN }));
+  for (const name of Object.keys(SYSTEMS)) units.append(element("option", name));
   for (const name of QUANTITIES) {
-    const units = form.elements[`${name}_unit`];
-    for (const unit of Object.keys(UNITS[name])) units.append(element("option", unit));
+    const field = form.elements[name];
+    field.addEventListener("input", () => (problems(form, QUANTITIES).length ? edit() : set(block(), false)));
+    field.addEventListener("change", () => showErrors(form, QUANTITIES) && set(block(), true));
   }
-  form.elements.how.addEventListener("change", showHow);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    if (showErrors(form, form.elements.how.value === "momentum" ? QUANTITIES : [...QUANTITIES, "eta"])) submit(formParts());
+    if (showErrors(form, QUANTITIES)) set(block(), true);
   });
-  form.addEventListener("input", edit);
-  showHow();
-}
-
-/** The block of the form, as parts of a state. */
-export function formParts() {
-  const parts = { pulse: form.elements.pulse.value };
-  for (const name of QUANTITIES) {
-    parts[name] = `${form.elements[name].value.trim() || MISSING} ${form.elements[`${name}_unit`].value}`;
+  pulse.addEventListener("change", () => set({ pulse: pulse.value === OWN ? samplesOf(samples.value || TRIANGLE) : pulse.value }, true));
+  samples.addEventListener("change", () => set({ pulse: samplesOf(samples.value) || TRIANGLE }, true));
+  how.addEventListener("change", () => set({ restitution: how.value === "momentum" ? "momentum" : eta.value }, true));
+  units.addEventListener("change", () => set({ ...block(SYSTEMS[units.value]), ...(isBlock(look().state) ? {} : EMPTY) }, true));
+  for (const [name, keep] of [["input", false], ["change", true]]) {
+    eta.addEventListener(name, () => set({ restitution: eta.value }, keep));
+    alpha.addEventListener(name, () => set(isBlock(look().state) ? leaning() : { alpha_deg: alpha.value }, keep));
   }
-  parts.restitution = form.elements.how.value === "momentum" ? "momentum" : form.elements.eta.value.trim() || MISSING;
-  return parts;
 }
 
-/** Fill the form with the block of a state. */
-export function fillForm(state) {
-  form.elements.pulse.value = state.pulse;
-  if (state.width === "") return;
+const EMPTY = { width: "", height: "", acceleration: "", period: "" };
+
+/** The block of the form as parts of a state, in the units that are shown, or converted to others. */
+function block(others = shown) {
+  const found = { frequency_ratio: "", slenderness: "", alpha_deg: "0" };
   for (const name of QUANTITIES) {
+    const text = `${form.elements[name].value.trim() || MISSING} ${shown[name]}`;
+    found[name] = others[name] === shown[name] ? text : inUnit(name, toSI(name, text), others[name]);
+  }
+  Object.assign(shown, others);
+  return found;
+}
+
+/** The width with which a block of this height has the angle of the slider. */
+function leaning() {
+  const height = toSI("height", `${form.elements.height.value} ${shown.height}`);
+  return { width: inUnit("width", height * Math.tan((Math.max(alpha.value, 1) * Math.PI) / 180)) };
+}
+
+/** Fill the form with a state, and with what its scenario (null: not known yet) derives from it. */
+export function fillForm(state, scenario) {
+  const own = isSampled(state.pulse);
+  pulse.value = own ? OWN : state.pulse;
+  samples.parentElement.hidden = !own;
+  if (own) samples.value = state.pulse;
+  for (const name of QUANTITIES) {
+    if (state[name] === "") continue;
     const { value, unit } = split(state[name]);
-    form.elements[name].value = value === MISSING ? "" : value;
-    if (unit in UNITS[name]) form.elements[`${name}_unit`].value = unit;
+    const field = form.elements[name];
+    if (unit in UNITS[name]) shown[name] = unit;
+    if (field.value.trim() !== value) field.value = value === MISSING ? "" : value; // not while it is typed
   }
-  form.elements.how.value = state.restitution === "momentum" ? "momentum" : "number";
-  if (state.restitution !== "momentum") form.elements.eta.value = state.restitution === MISSING ? "" : state.restitution;
-  showHow();
-}
-
-/** Show the response of a block; null clears it. */
-export function showAnswer(found) {
-  answer.replaceChildren();
-  answer.hidden = found === null;
-  if (found === null) return;
-  answer.append(
-    element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
-    element("p", sentence(found)),
-    facts(factsOf(found)),
-  );
-  if (found.warnings.length) {
-    const lines = found.warnings.map((warning) => element("li", warning));
-    answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
-  }
-  answer.append(assumptions(found.metadata));
-}
-
-function safe(found) {
-  return found.rocking_model_applies && !found.overturned;
-}
-
-function verdict(found) {
-  if (!found.rocking_model_applies) return "The rocking model does not apply.";
-  if (found.overturned) return "It overturns.";
-  return found.response.outcome === "NO_UPLIFT" ? "It does not uplift." : "It survives (comes to rest).";
-}
-
-function sentence(found) {
-  if (!safe(found) || found.response.outcome === "NO_UPLIFT") return `It ${found.meaning}.`;
-  return (
-    `It rocks by at most ${number(found.peak_rotation_deg)}°; its top moves ${length(found.top_displacement)} ` +
-    "to the side. Then it comes to rest."
-  );
-}
-
-function factsOf(found) {
-  const pairs = [["Uplifts at", inG(found.uplift_acceleration)]];
-  const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
-  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : inG(largest, threshold)]);
-  if (largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
-  const margin = applies && marginOf(found);
-  if (margin) pairs.push(margin);
-  const all = applies ? (found.thresholds ?? []) : [];
-  const texts = thresholds(all.map((one) => [one.peak_acceleration / GRAVITY, one.overturns_above]));
-  const changes = all.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} g`);
-  if (changes.length > 1) pairs.push(["At this period it", changes.join(", ")]);
-  pairs.push(["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)]);
-  return pairs;
-}
-
-/** Why there is no largest safe acceleration. */
-function reasonForNone({ thresholds }) {
-  if (thresholds === null) return "not found in time";
-  return thresholds.length ? "not known: the rocking model does not apply" : "no limit found";
-}
-
-/** The nearest change of outcome, relative to the peak acceleration. */
-function marginOf(found) {
-  const given = found.query.peak_acceleration;
-  const apart = (threshold) => Math.abs(threshold.peak_acceleration / given - 1);
-  const [nearest] = [...(found.thresholds ?? [])].sort((one, other) => apart(one) - apart(other));
-  if (!nearest) return null;
-  const way = nearest.peak_acceleration > given ? "more" : "less";
-  const share = `${threshold(100 * apart(nearest), !found.overturned, 2)} %`;
-  return ["Margin of acceleration", `${found.overturned ? "survives" : "overturns"} with ${share} ${way}`];
-}
-
-function showHow() {
-  form.elements.eta.disabled = form.elements.how.value === "momentum";
+  for (const name of QUANTITIES) document.getElementById(`${name}-unit`).textContent = written(shown[name]);
+  const system = Object.entries(SYSTEMS).find(([, own]) => QUANTITIES.every((name) => own[name] === shown[name]));
+  units.value = system?.[0] ?? "";
+  const { restitution, alpha_deg } = scenario ?? { restitution: state.restitution, alpha_deg: null };
+  how.value = state.restitution === "momentum" ? "momentum" : "number";
+  const known = Number.isFinite(Number(restitution));
+  outputs.eta.textContent = known ? number(restitution) : "…";
+  if (known) eta.value = restitution;
+  outputs.alpha.textContent = alpha_deg === null ? "…" : Number(alpha_deg) === 0 ? "slender limit" : `${number(alpha_deg)}°`;
+  if (alpha_deg !== null) alpha.value = alpha_deg;
 }

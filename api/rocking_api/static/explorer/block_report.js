@@ -1,7 +1,7 @@
 // The calculation report of a block under a pulse.
 
 import { canvasOf } from "./chart.js";
-import { inG, length, number, PULSES, threshold, thresholds } from "./labels.js";
+import { acceleration, length, number, pulseName, threshold, thresholds } from "./labels.js";
 import { geometryOf, modelSections, warningSection } from "./report_sections.js";
 
 /** The report of a response of /v1/blocks/response. */
@@ -15,7 +15,7 @@ export function blockReport(found) {
         heading: "Block",
         pairs: [
           ...geometryOf(found),
-          ["Uplifts at", inG(found.uplift_acceleration)],
+          ["Uplifts at", acceleration(found.uplift_acceleration)],
           ["Coefficient of restitution", `${number(found.restitution, 4)}${query.restitution === "momentum" ? ", from geometry (2.4)" : ", given"}`],
           ["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 3)],
         ],
@@ -23,8 +23,8 @@ export function blockReport(found) {
       {
         heading: "Ground motion",
         pairs: [
-          ["Shape", PULSES[query.pulse.replace("-", "")] ?? query.pulse],
-          ["Peak acceleration", inG(query.peak_acceleration)],
+          ["Shape", pulseName(query.pulse)],
+          ["Peak acceleration", acceleration(query.peak_acceleration)],
           ["Period T of the pulse", `${number(query.period, 5)} s`],
         ],
       },
@@ -32,7 +32,7 @@ export function blockReport(found) {
       { heading: "Margins", lines: marginsOf(found) },
       warningSection(found.warnings),
       ...modelSections(found),
-      { heading: "To repeat it", lines: [location.href, `${location.origin}${found.url}`] },
+      { heading: "To repeat it", lines: [location.href, ...(found.url ? [`${location.origin}${found.url}`] : [])] },
     ],
     pictures: [
       [canvasOf(document.getElementById("rotation")), "Rotation [°] against time [s]"],
@@ -53,7 +53,7 @@ function resultOf(found) {
 
 function marginsOf({ query, overturned, thresholds: found, margins, largest_safe_acceleration: safe }) {
   const lines = [];
-  if (safe !== null) lines.push(`At this period the block does not overturn below ${inG(safe, threshold)}.`);
+  if (safe !== null) lines.push(`At this period the block does not overturn below ${acceleration(safe, threshold)}.`);
   const all = found ?? [];
   const texts = thresholds(all.map((one) => [one.peak_acceleration, one.overturns_above]), 4);
   all.forEach((one, at) => lines.push(`It ${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} m/s² at this period.`));

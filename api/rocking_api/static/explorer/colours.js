@@ -1,12 +1,12 @@
 // Colours: the peak on viridis (even in lightness, safe for colour-blind eyes), outcomes as neutral hatches.
 
-// viridis at 17 even steps (CC0), between which we interpolate
+// viridis at 17 even steps (CC0), between which we interpolate; reversed, as `rocking plot map` has it
 const STEPS = [
   "440154", "481a6c", "472f7d", "414487", "39568c", "31688e", "2a788e", "23888e", "1f988b",
   "22a884", "35b779", "54c568", "7ad151", "a5db36", "d2e21b", "ece51b", "fde725",
-].map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+].map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16))).reverse();
 
-/** Peak beyond alpha, block survives: past the yellow end of the scale. */
+/** Peak beyond alpha, block survives: past the end of the scale. */
 export const BROUGHT_BACK = [236, 112, 74];
 
 /** [red, green, blue] of a peak rotation theta/alpha. */

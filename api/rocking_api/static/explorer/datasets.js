@@ -1,37 +1,70 @@
-// The page of the data sets: the catalogue as a table with links.
+// The page of the data sets: the catalogue by kind, with filters and links.
 
 import { ask } from "./api.js";
-import { number } from "./labels.js";
-import { element, setStatus } from "./page.js";
+import { number, PULSES } from "./labels.js";
+import { element, save, setStatus } from "./page.js";
 
 const SYMBOLS = { slenderness: "1/a", frequency_ratio: "ω", alpha: "α" };
 const DEGREES = 180 / Math.PI;
 
-const rows = document.getElementById("rows");
+const GROUPS = { spectra: "Rocking spectra", overturning: "Boundaries of overturning", figures: "Plotted data of figures", suites: "Suites of records" };
+
+const groups = document.getElementById("groups");
 const status = document.getElementById("status");
 const filter = document.getElementById("filter");
+const choices = { pulse: document.getElementById("pulse"), restitution: document.getElementById("eta") };
+
+let datasets = []; // of the catalogue, each with its row
 
 async function show() {
   try {
-    const { datasets } = await ask("/v1/datasets", {}, new AbortController().signal);
-    rows.replaceChildren(...datasets.map(row));
+    const found = await ask("/v1/datasets", {}, new AbortController().signal);
+    datasets = found.datasets.map((one) => ({ ...one, row: row(one), kind: one.name.split("/")[0] }));
+    for (const [name, select] of Object.entries(choices)) {
+      const values = [...new Set(datasets.map((one) => one[name]).filter((value) => value !== null))].sort();
+      select.append(...values.map((value) => element("option", name === "pulse" ? PULSES[value] ?? value : number(value), { value })));
+    }
+    const kinds = [...new Set([...Object.keys(GROUPS), ...datasets.map(({ kind }) => kind)])];
+    groups.replaceChildren(...kinds.map(group).filter(Boolean));
     select();
   } catch (problem) {
     setStatus(status, problem, show);
   }
 }
 
+/** The table of one kind, sorted by pulse and restitution. */
+function group(kind) {
+  const own = datasets.filter((one) => one.kind === kind);
+  if (!own.length) return null;
+  const heads = ["Title", "η", "Extent", "Get it"].map((text) => element("th", text, { scope: "col" }));
+  const table = element("table", [element("thead", [element("tr", heads)]), element("tbody", own.map((one) => one.row))]);
+  const title = GROUPS[kind] ?? kind;
+  return element("section", [element("h3", title), element("div", [table], { class: "table", tabindex: "0", role: "group", "aria-label": title })]);
+}
+
 function row(one) {
+  const copy = element("button", "xarray", { type: "button", "aria-label": `copy the line that opens ${one.name} in xarray` });
+  copy.addEventListener("click", () => copyLine(one));
   const links = [
-    element("a", "nc", { href: one.netcdf, "aria-label": `${one.name} as netCDF` }),
-    element("a", "about", { href: one.metadata, "aria-label": `description of ${one.name}` }),
+    element("a", `netCDF, ${size(one.size)}`, { href: one.netcdf, "aria-label": `netCDF, ${size(one.size)}: ${one.name}` }),
+    copy,
+    element("a", "about", { href: one.metadata, "aria-label": `about ${one.name}` }),
   ];
   const subset = one.links.find(({ rel }) => rel === "subset");
   if (subset) links.push(element("a", "part", { href: `${subset.href}?${centre(one.extent)}`, "aria-label": `part of ${one.name} as CSV` }));
-  const spaced = links.flatMap((link, at) => (at ? [" ", link] : [link]));
   const title = element("th", [element("span", one.title), element("code", one.name)], { scope: "row" });
-  const cells = [one.restitution === null ? "" : number(one.restitution), extent(one), size(one.size), spaced];
+  const cells = [one.restitution === null ? "" : number(one.restitution), extent(one), element("span", links, { class: "downloads" })];
   return element("tr", [title, ...cells.map((cell) => element("td", cell))]);
+}
+
+async function copyLine({ name, zarr }) {
+  const line = `xarray.open_dataset("${location.origin}${zarr}", engine="zarr")`;
+  try {
+    await navigator.clipboard.writeText(line);
+    setStatus(status, `Copied the line for ${name}.`);
+  } catch {
+    setStatus(status, line);
+  }
 }
 
 /** The ranges of a small part in the middle of a cube, as CSV, which the reader can then change in the address. */
@@ -55,12 +88,26 @@ function size(bytes) {
   return bytes < 1e6 ? `${number(bytes / 1e3)} kB` : `${number(bytes / 1e6)} MB`;
 }
 
-function select() {
-  const wanted = filter.value.trim().toLowerCase();
-  for (const one of rows.children) one.hidden = !one.cells[0].textContent.toLowerCase().includes(wanted);
-  const count = [...rows.children].filter((one) => !one.hidden).length;
-  setStatus(status, `${count} of ${rows.children.length} data sets`);
+/** The data sets that the filters leave. */
+function chosen() {
+  const words = filter.value.trim().toLowerCase();
+  const fits = (one, name) => !choices[name].value || String(one[name]) === choices[name].value;
+  return datasets.filter((one) => one.row.cells[0].textContent.toLowerCase().includes(words) && fits(one, "pulse") && fits(one, "restitution"));
 }
 
+function select() {
+  const left = chosen();
+  for (const one of datasets) one.row.hidden = !left.includes(one);
+  for (const section of groups.children) section.hidden = !section.querySelector("tbody tr:not([hidden])");
+  const bytes = left.reduce((sum, one) => sum + one.size, 0);
+  setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${size(bytes)}` : "There is no data set yet: make reproduce makes them.");
+}
+
+document.getElementById("sums").addEventListener("click", () => {
+  const lines = chosen().map(({ sha256, netcdf }) => `${sha256}  ${netcdf.replace("/v1/datasets/", "")}\n`);
+  save(new Blob(lines), "SHA256SUMS");
+  setStatus(status, "The browser saves SHA256SUMS.");
+});
 filter.addEventListener("input", select);
+for (const one of Object.values(choices)) one.addEventListener("change", select);
 show();

@@ -1,16 +1,18 @@
 // Downloads: data from the service, pictures of the page, and the link to the page.
 
+import { isSampled } from "./api.js";
 import { canvasOf } from "./chart.js";
 import { themed } from "./colours.js";
 import { drawLegend } from "./legend.js";
-import { setStatus } from "./page.js";
+import { save, setStatus } from "./page.js";
 
 const FOOT = 34;
 
-/** Set the links of one part of the page, `urls` by format; a link without one is removed. */
+/** Set the links of one part of the page, `urls` by format; a link without one, or under samples, is removed. */
 export function setLinks(part, urls) {
   for (const link of document.querySelectorAll(`[data-links=${part}] a`)) {
-    if (urls[link.dataset.form]) link.href = urls[link.dataset.form];
+    const url = urls[link.dataset.form];
+    if (url && !isSampled(new URL(url, location).searchParams.get("pulse") ?? "")) link.href = url;
     else link.removeAttribute("href");
   }
 }
@@ -25,14 +27,14 @@ export function wireDownloads(caption) {
   for (const button of document.querySelectorAll("[data-picture]")) {
     button.addEventListener("click", () => {
       const part = button.dataset.picture;
-      save(part, layers[part](), caption());
+      savePicture(part, layers[part](), caption());
     });
   }
   document.getElementById("copy").addEventListener("click", copyAddress);
 }
 
 /** One picture: rows of canvases below each other, those of a row on top of each other, the caption at the foot. */
-function save(part, rows, caption) {
+function savePicture(part, rows, caption) {
   const ratio = devicePixelRatio;
   const legend = part === "map" ? 24 : 0;
   const made = document.createElement("canvas");
@@ -51,13 +53,7 @@ function save(part, rows, caption) {
   context.font = `${12 * ratio}px system-ui, sans-serif`;
   context.textBaseline = "middle";
   context.fillText(caption, 12 * ratio, made.height - (FOOT / 2) * ratio, made.width - 24 * ratio);
-  made.toBlob((blob) => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = `${part}.png`;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-  });
+  made.toBlob((blob) => save(blob, `${part}.png`));
 }
 
 async function copyAddress() {

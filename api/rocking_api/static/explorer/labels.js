@@ -1,4 +1,6 @@
-// Labels: outcomes, pulses, numbers and lengths as text.
+// Labels: outcomes, pulses, numbers and quantities as text.
+
+import { inShown, shown, written } from "./units.js";
 
 export const OUTCOMES = {
   NO_UPLIFT: "does not uplift",
@@ -18,6 +20,11 @@ export const PULSES = {
   ricker_antisymmetric: "Ricker wavelet, antisymmetric",
   mavroeidis_papageorgiou: "Mavroeidis and Papageorgiou",
 };
+
+/** The name of a pulse in words. */
+export function pulseName(pulse) {
+  return PULSES[pulse.replace(/^-/, "")] ?? (/^[a-z_]/.test(pulse) ? pulse : "Own samples");
+}
 
 /** A number to some significant digits, without trailing zeros. */
 export function number(value, digits = 3) {
@@ -53,15 +60,21 @@ export function bound(value) {
   return `${digit}·10⁻${[...power].map((figure) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[figure]).join("")}`;
 }
 
-/** A length in mm, cm or m; `text` makes a number of digits of a value. */
+/** A length in the unit that is shown, metric ones by size; `text` makes a number of digits of a value. */
 export function length(metres, text = number) {
+  if (["in", "ft"].includes(shown.width)) return `${text(inShown("width", metres), 3)} ${shown.width}`;
   if (Math.abs(metres) < 1e-3) return `${text(metres * 1e3, 2)} mm`;
   return Math.abs(metres) < 1 ? `${text(metres * 100, 3)} cm` : `${text(metres, 3)} m`;
 }
 
-/** An acceleration in g and in m/s2; `text` makes three digits of a value. */
-export function inG(value, text = number) {
-  return `${text(value / 9.80665)} g (${text(value)} m/s²)`;
+/** An acceleration in the unit that is shown; `text` makes three digits of a value. */
+export function acceleration(value, text = number) {
+  return `${text(inShown("acceleration", value))} ${written(shown.acceleration)}`;
+}
+
+/** A velocity in the unit that is shown. */
+export function velocity(value) {
+  return `${number(inShown("velocity", value))} ${shown.velocity}`;
 }
 
 /** A sentence of words that begin in lower case. */

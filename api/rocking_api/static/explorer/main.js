@@ -1,25 +1,26 @@
 // The page: from the state (the address) to the scenario, and from there to every view.
 
-import { urlOf } from "./api.js";
-import { fillForm, formParts, showAnswer, wireForm } from "./block_form.js";
-import { showControls, wireControls } from "./controls.js";
+import { isSampled, urlOf } from "./api.js";
+import { showAnswer } from "./block_answer.js";
+import { fillForm, wireForm } from "./block_form.js";
 import { setLinks, wireDownloads } from "./downloads.js";
 import { curvesUrl, mapParams, showMap } from "./map.js";
 import { wireGestures } from "./map_gestures.js";
 import { showReadout, wireMap } from "./map_pointer.js";
 import { showMotion } from "./motion.js";
+import { blockUnderSamples } from "./own_pulse.js";
 import { clearErrors } from "./page.js";
 import { once, pane } from "./pane.js";
 import { showPreview } from "./pulse_preview.js";
 import { blockParams, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
+import { showSite } from "./site.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state } from "./state.js";
 import { whole, windowOf } from "./view.js";
-import { number, PULSES } from "./labels.js";
+import { number, pulseName } from "./labels.js";
 
-const BUTTON = "“Does it overturn?”";
-const EDITED = `The block has been edited: press ${BUTTON} for its response.`;
-const LEFT = `The map no longer shows the block of this form: press ${BUTTON} to show it again.`;
+const EDITED = "A number of the sentence cannot be read.";
+const GROUPS = "The map shows a block without a size, by the groups of the paper. Change a number of the sentence to ask about one in metres.";
 
 const block = pane({
   box: document.getElementById("answer"),
@@ -32,13 +33,10 @@ const block = pane({
 let scenario = null; // of the state; null while it is unknown
 let view = null; // window of the map
 let turn = 0; // number of changes of the scenario, by which a late response is recognised
-let edited = false; // the form differs from the state
-let left = false; // a block was shown before the current scenario
 
 /** Show the state. */
 function show() {
   clearErrors();
-  fillForm(state());
   showPreview(state().pulse);
   resolve();
 }
@@ -46,51 +44,52 @@ function show() {
 async function resolve() {
   const wanted = state();
   const mine = ++turn;
-  edited = false;
   scenario = null;
+  fillForm(wanted, null);
+  showSite(wanted);
   if (isBlock(wanted)) {
-    left = true;
     showScenario(null);
     const params = blockParams(wanted);
-    const answer = await block.show(JSON.stringify(params), once("/v1/blocks/response", params));
+    const answer = await block.show(JSON.stringify(params), responseOf(params));
     if (mine !== turn) return;
     scenario = answer ? scenarioOfBlock(answer) : scenarioWithoutResponse(wanted);
   } else {
-    block.nothing(left ? LEFT : "");
+    block.nothing(GROUPS);
     scenario = scenarioOf(wanted);
   }
   showScenario(scenario);
 }
 
-/** Show a scenario in every view; null: it is unknown, and the views are cleared after a while unless `lasting`. */
-function showScenario(found, lasting = false) {
+function responseOf(params) {
+  if (!isSampled(params.pulse)) return once("/v1/blocks/response", params);
+  return async function* load(signal) {
+    yield await blockUnderSamples(params, signal);
+  };
+}
+
+/** Show a scenario in every view; null: it is unknown, `idle` until the reader acts. */
+function showScenario(found, idle = false) {
   if (found || !view) view = windowOf(state(), found?.point);
-  showControls(state(), found);
-  showMap(found, view, lasting);
-  showReadout(null, found);
-  showMotion(found, lasting);
-  showSpectrum(found, view, lasting);
+  if (!idle) fillForm(state(), found);
+  showMap(found, view, idle);
+  showReadout(null, found, idle);
+  showMotion(found, idle);
+  showSpectrum(found, view, idle);
   link(found);
 }
 
-/** The form was edited and not submitted: dim what is shown, which belongs to the block of the state. */
+/** The form cannot be read: dim what is shown, which belongs to the block of the state. */
 function edit() {
-  if (!isBlock(state()) || (scenario && !scenario.answer)) return;
-  const params = (parts) => JSON.stringify(blockParams({ ...state(), ...parts }));
-  if (params(formParts()) === params({})) {
-    resolve();
-    return;
-  }
   turn += 1;
-  edited = true;
   scenario = null;
-  block.wait({ lasting: true, words: EDITED });
+  block.wait({ idle: true, words: EDITED });
+  showSite(null);
   showScenario(null, true);
 }
 
-/** Change the state; a form that was edited is taken over. */
+/** Change the state. */
 function set(parts, keep = true) {
-  change({ ...(edited ? formParts() : {}), ...parts }, { keep });
+  change(parts, { keep });
 }
 
 function link(found) {
@@ -109,19 +108,17 @@ document.getElementById("open-report").addEventListener("click", async () => {
 
 function caption() {
   const { pulse, restitution, alpha_deg, point } = scenario;
-  const parts = [PULSES[pulse] ?? pulse, `η = ${number(restitution, 4)}`];
+  const parts = [pulseName(pulse), `η = ${number(restitution, 4)}`];
   parts.push(Number(alpha_deg) ? `α = ${number(alpha_deg, 4)}°` : "slender limit");
   if (point) parts.push(`ω = ${number(point.frequency_ratio, 5)}`, `1/a = ${number(point.slenderness, 5)}`);
   return parts.join(", ");
 }
 
 const look = () => ({ state: state(), scenario, view });
-wireForm((parts) => change({ ...parts, frequency_ratio: "", slenderness: "", alpha_deg: "0" }), edit);
-wireControls(look, set);
+wireForm(look, set, edit);
 wireGestures(look, set);
 wireMap(look, (point, keep) => set(movedTo(state(), scenario, point), keep), set);
 wireDownloads(caption);
 document.getElementById("whole").addEventListener("click", () => set(whole()));
-document.getElementById("block-pulse").addEventListener("change", ({ target }) => showPreview(target.value));
 onChange(show);
 show();

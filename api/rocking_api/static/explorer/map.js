@@ -6,6 +6,7 @@ import { onTheme, themed } from "./colours.js";
 import { MARGIN, MARGIN_OF_BLOCK, drawFrame } from "./map_frame.js";
 import { drawPicture } from "./map_picture.js";
 import { once, pane } from "./pane.js";
+import { shown } from "./units.js";
 
 const COARSE = { columns: 120, rows: 90 };
 const FINE = { columns: 400, rows: 240 };
@@ -52,14 +53,14 @@ const boundaries = pane({
 });
 
 /** Show the map of a scenario in a window, coarse first, and its boundary curves; null: the scenario is unknown. */
-export function showMap(scenario, view, lasting) {
+export function showMap(scenario, view, idle) {
   if (!scenario) {
-    grid.wait({ lasting });
-    boundaries.wait({ lasting });
+    grid.wait({ idle });
+    boundaries.wait({ idle });
     return;
   }
   const shape = shapeOf(scenario);
-  wanted = { key: JSON.stringify([shape, view, scenario.size]), scenario, view };
+  wanted = { key: JSON.stringify([shape, view, scenario.size, shown]), scenario, view };
   if (drawn?.key === wanted.key) {
     drawn.scenario = scenario; // another point of the same map
     drawMarks();
@@ -90,11 +91,11 @@ export function pointAt(x, y) {
   return inside ? { frequency_ratio: scales.x.value(x), slenderness: scales.y.value(y) } : null;
 }
 
-/** Distances on the canvas [px] as shares of the sides of the frame, to the right and up; null without a map. */
+/** Distances on the canvas [px] as shares of the sides of the frame, to the right and down; null without a map. */
 export function sharesOf(dx, dy) {
   if (!drawn) return null;
   const { frame } = layout(1);
-  return { across: dx / frame.width, up: dy / frame.height };
+  return { across: dx / frame.width, down: dy / frame.height };
 }
 
 /** Mark a point under the pointer, or none. */
@@ -123,7 +124,7 @@ function layout(ratio) {
   const { view } = drawn;
   const scales = {
     x: scale(view.frequency_ratio_min, view.frequency_ratio_max, frame.left, frame.left + frame.width, true),
-    y: scale(view.slenderness_min, view.slenderness_max, frame.top + frame.height, frame.top),
+    y: scale(view.slenderness_min, view.slenderness_max, frame.top, frame.top + frame.height), // the amplitude 1/s upwards
   };
   return { frame, scales };
 }
@@ -151,7 +152,8 @@ function drawMarks() {
   const context = over.getContext("2d");
   context.clearRect(0, 0, over.width, over.height);
   if (hovered) drawCross(context, frame, scales, hovered, ratio);
-  const { point } = drawn.scenario;
+  const { point, change } = drawn.scenario;
+  if (change) drawDiamond(context, frame, scales, { ...point, slenderness: change }, ratio);
   if (point) drawRing(context, frame, scales, point, ratio);
 }
 
@@ -168,11 +170,23 @@ function drawCross(context, frame, scales, point, ratio) {
 
 function drawRing(context, frame, scales, point, ratio) {
   const x = scales.x.place(point.frequency_ratio);
-  const y = Math.max(scales.y.place(point.slenderness), frame.top); // above the window: at its upper edge
-  if (x < frame.left || x > frame.left + frame.width || y > frame.top + frame.height) return;
+  const y = Math.min(scales.y.place(point.slenderness), frame.top + frame.height); // weaker than the window: at its lower edge
+  if (x < frame.left || x > frame.left + frame.width || y < frame.top) return;
   context.beginPath();
   context.arc(x, y, 8 * ratio, 0, 2 * Math.PI);
   for (const [colour, width] of [["#ffffff", 6], ["#111111", 2.4]]) strokeIn(context, colour, width * ratio);
+}
+
+/** The nearest change of the outcome at the period of the point. */
+function drawDiamond(context, frame, scales, point, ratio) {
+  const [x, y] = [scales.x.place(point.frequency_ratio), scales.y.place(point.slenderness)];
+  if (x < frame.left || x > frame.left + frame.width || y < frame.top || y > frame.top + frame.height) return;
+  const half = 7 * ratio;
+  context.beginPath();
+  context.moveTo(x - half, y);
+  for (const [dx, dy] of [[0, -half], [half, 0], [0, half]]) context.lineTo(x + dx, y + dy);
+  context.closePath();
+  for (const [colour, width] of [["#ffffff", 5], ["#111111", 2]]) strokeIn(context, colour, width * ratio);
 }
 
 /** White under black is visible on every colour of the map. */

@@ -1,17 +1,19 @@
-// The frame of the map: ticks and titles, in groups, and for a block in metres also in g and seconds.
+// The frame of the map: ticks and titles, in groups, and for a block in metres in its acceleration and period.
 
 import { ticks } from "./axes.js";
 import { themed } from "./colours.js";
 import { number } from "./labels.js";
+import { inShown, shown, written } from "./units.js";
 
 /** Room around the picture [px]. */
 export const MARGIN = { left: 58, right: 58, top: 14, bottom: 44 };
 export const MARGIN_OF_BLOCK = { ...MARGIN, top: 44 };
 
-/** Draw ticks and titles; `size` (or null) turns groups into the amplitude and the period of one block. */
+/** Draw ticks and titles; for a block of a `size` period and peak acceleration, with the groups as the second scale. */
 export function drawFrame(context, frame, scales, size, ratio) {
   const right = frame.left + frame.width;
   const bottom = frame.top + frame.height;
+  const [middle, centre] = [frame.left + frame.width / 2, frame.top + frame.height / 2];
   context.strokeStyle = themed("muted");
   context.fillStyle = themed("ink");
   context.lineWidth = ratio;
@@ -19,26 +21,30 @@ export function drawFrame(context, frame, scales, size, ratio) {
   context.strokeRect(frame.left, frame.top, frame.width, frame.height);
   const tick = { context, ratio };
 
-  const omegas = ticks(scales.x.low, scales.x.high, scales.x.place, 34 * ratio);
-  for (const omega of omegas) markAcross(tick, scales.x.place(omega), bottom, 1, number(omega, 4));
-  const slendernesses = ticks(scales.y.low, scales.y.high, scales.y.place, 30 * ratio);
-  for (const s of slendernesses) markBeside(tick, frame.left, scales.y.place(s), -1, number(s, 4));
-
-  const unit = size ? size.uplift_in_g : 1;
-  const amplitude = (a) => scales.y.place(unit / a);
-  for (const a of ticks(unit / scales.y.high, unit / scales.y.low, amplitude, 20 * ratio)) {
-    markBeside(tick, right, amplitude(a), 1, number(a, 3));
-  }
+  const below = { at: bottom, side: 1, title: bottom + 34 * ratio };
+  const above = { at: frame.top, side: -1, title: frame.top - 30 * ratio };
+  const across = (axis, place, low, high, words) => {
+    for (const value of ticks(low, high, place, 40 * ratio)) markAcross(tick, place(value), axis.at, axis.side, number(value, 4));
+    title(tick, middle, axis.title, 0, words);
+  };
+  across(size ? above : below, scales.x.place, scales.x.low, scales.x.high, "frequency ratio  ω = ω_g/p");
   if (size) {
-    const period = (T) => scales.x.place((2 * Math.PI) / (size.p * T));
-    const ends = [scales.x.high, scales.x.low].map((omega) => (2 * Math.PI) / (size.p * omega));
-    for (const T of ticks(...ends, period, 40 * ratio)) markAcross(tick, period(T), frame.top, -1, number(T, 3));
-    title(tick, frame.left + frame.width / 2, frame.top - 30 * ratio, 0, "period of the pulse T [s]");
+    const unit = inShown("period", 1);
+    const period = (T) => scales.x.place((2 * Math.PI * unit) / (size.p * T));
+    const [low, high] = [scales.x.high, scales.x.low].map((omega) => (2 * Math.PI * unit) / (size.p * omega));
+    across(below, period, low, high, `period of the pulse T [${shown.period}]`);
   }
-  title(tick, frame.left + frame.width / 2, bottom + 34 * ratio, 0, "frequency ratio  ω = ω_g/p");
-  title(tick, frame.left - 44 * ratio, frame.top + frame.height / 2, -1, "slenderness  1/a = g tan α/a_g");
-  const words = size ? "peak acceleration [g]" : "amplitude  a = a_g/(g tan α)";
-  title(tick, right + 46 * ratio, frame.top + frame.height / 2, 1, words);
+
+  const left = { at: frame.left, side: -1, title: frame.left - 44 * ratio };
+  const beside = { at: right, side: 1, title: right + 46 * ratio };
+  const upwards = (axis, place, low, high, words) => {
+    for (const value of ticks(low, high, place, 24 * ratio)) markBeside(tick, axis.at, place(value), axis.side, number(value, 3));
+    title(tick, axis.title, centre, axis.side, words);
+  };
+  const unit = size ? inShown("acceleration", size.uplift) : 1;
+  const words = size ? `peak acceleration [${written(shown.acceleration)}]` : "amplitude  a = a_g/(g tan α)";
+  upwards(size ? beside : left, scales.y.place, scales.y.low, scales.y.high, "slenderness  1/a = g tan α/a_g");
+  upwards(size ? left : beside, (a) => scales.y.place(unit / a), unit / scales.y.high, unit / scales.y.low, words);
 }
 
 function markAcross({ context, ratio }, x, y, side, text) {

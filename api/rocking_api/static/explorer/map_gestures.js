@@ -49,7 +49,7 @@ function dragged() {
   const [[x0, y0]] = start.points;
   if (!moved && Math.hypot(x - x0, y - y0) < DRAG) return null;
   const shares = sharesOf(x - x0, y - y0);
-  return shares && panned(start.view, -shares.across, shares.up);
+  return shares && panned(start.view, -shares.across, -shares.down);
 }
 
 function pinched() {

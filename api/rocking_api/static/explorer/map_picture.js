@@ -42,15 +42,14 @@ function drawCells(context, scales, grid, colourAt) {
   for (let row = 0; row < rows; row += 1) {
     for (let column = 0; column < columns; column += 1) {
       const colour = colourAt(row * columns + column);
-      // rows of the picture run downwards, slenderness upwards
-      if (colour) image.data.set([...colour, 255], 4 * ((rows - 1 - row) * columns + column));
+      if (colour) image.data.set([...colour, 255], 4 * (row * columns + column)); // slenderness runs downwards
     }
   }
   inner.putImageData(image, 0, 0);
   const left = scales.x.place(grid.frequency_ratio[0]);
   const right = scales.x.place(grid.frequency_ratio[columns - 1]);
-  const bottom = scales.y.place(grid.slenderness[0]);
-  const top = scales.y.place(grid.slenderness[rows - 1]);
+  const top = scales.y.place(grid.slenderness[0]);
+  const bottom = scales.y.place(grid.slenderness[rows - 1]);
   const [wide, high] = [(right - left) / (columns - 1), (bottom - top) / (rows - 1)];
   context.imageSmoothingEnabled = false;
   context.drawImage(small, left - wide / 2, top - high / 2, right - left + wide, bottom - top + high);

@@ -1,15 +1,17 @@
 // Pointer and keyboard on the map: readout, choice of a point, zoom.
 
+import { isSampled } from "./api.js";
 import { hover, pointAt } from "./map.js";
 import { once, pane } from "./pane.js";
 import { validityNote } from "./scenario.js";
 import { middleOf, pointBeside, zoomed } from "./view.js";
-import { responseLabel, number } from "./labels.js";
+import { acceleration, responseLabel, number } from "./labels.js";
+import { inShown, shown } from "./units.js";
 
 const STEP = 0.01;
 const LARGE_STEP = 0.1;
 const ZOOM = 0.5;
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }; // in frequency ratio and slenderness: up is stronger
 
 const over = document.getElementById("map-marks");
 const readout = document.getElementById("map-readout");
@@ -66,11 +68,12 @@ export function wireMap(look, choose, frame) {
 }
 
 /** Show the response at a point, or else at the chosen one; null: the scenario is unknown. */
-export function showReadout(point, scenario) {
-  if (!scenario) return numbers.wait();
+export function showReadout(point, scenario, idle = false) {
+  if (!scenario) return numbers.wait({ idle });
   current = { point: point ?? scenario.point, scenario };
   if (!current.point) return numbers.nothing("Hover over the map to read values.");
   const { pulse, restitution, alpha_deg, size } = scenario;
+  if (isSampled(pulse)) return numbers.nothing(pointLabel(current.point, size));
   const params = { pulse, restitution, alpha_deg, ...rounded(current.point) };
   return numbers.show(JSON.stringify([params, size, point === null]), once("/v1/response", params));
 }
@@ -79,7 +82,7 @@ function pointLabel({ frequency_ratio, slenderness }, size) {
   const groups = `ω ${number(frequency_ratio)}, 1/a ${number(slenderness)}`;
   if (!size) return groups;
   const period = (2 * Math.PI) / (size.p * frequency_ratio);
-  return `${groups} (${number(size.uplift_in_g / slenderness)} g, ${number(period)} s)`;
+  return `${acceleration(size.uplift / slenderness)}, ${number(inShown("period", period))} ${shown.period} (${groups})`;
 }
 
 function rounded({ frequency_ratio, slenderness }) {

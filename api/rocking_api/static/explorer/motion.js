@@ -24,15 +24,15 @@ const motion = pane({
 });
 
 /** Show the motion at the point of a scenario; nothing without a point; null: the scenario is unknown. */
-export async function showMotion(scenario, lasting) {
+export async function showMotion(scenario, idle) {
   setLinks("motion", {});
-  if (!scenario) return motion.wait({ lasting });
+  if (!scenario) return motion.wait({ idle });
   section.classList.toggle("empty", !scenario.point);
   if (!scenario.point) return motion.nothing();
   current = scenario;
   const params = motionParams(scenario);
   const found = await motion.show(JSON.stringify([params, scenario.size]), (signal) => untilRest(params, signal));
-  const url = (format) => urlOf("/v1/history", { ...found.query, format }); // of what is shown, which lasts until rest
+  const url = (format) => urlOf("/v1/history", { ...found.query, pulse: params.pulse, format }); // of what is shown, which lasts until rest
   if (found) setLinks("motion", { csv: url("csv"), nc: url("nc") });
   return found;
 }

@@ -6,6 +6,7 @@ import { DRAWN_ALPHA, trajectoryOf } from "./trajectory.js";
 import { repeat, seek, load } from "./player.js";
 import { showFrame } from "./canvas.js";
 import { OUTCOMES, number } from "./labels.js";
+import { inShown, shown, written } from "./units.js";
 
 const caption = document.getElementById("motion-caption");
 const chartsCaption = document.getElementById("charts-caption");
@@ -24,7 +25,7 @@ export function drawMotion(history, { size, alpha_deg, note = "" }) {
   const alpha = alpha_deg > 0 ? (alpha_deg * Math.PI) / 180 : DRAWN_ALPHA;
   const trajectory = trajectoryOf(history, alpha);
   const units = size
-    ? { time: 1 / size.p, angle: size.alpha * (180 / Math.PI), ground: size.uplift_in_g }
+    ? { time: 1 / size.p, angle: size.alpha * (180 / Math.PI), ground: inShown("acceleration", size.uplift) }
     : { time: 1, angle: 1, ground: 1 };
   drawCharts(history, units, Boolean(size));
   const notes = [note, `It ${OUTCOMES[history.outcome]}.`].filter(Boolean);
@@ -47,7 +48,7 @@ function drawCharts(history, units, dimensional) {
   const acceleration = history.ground_acceleration.map((u) => u * units.ground);
   const impacts = history.impact_time.map((tau) => tau * units.time);
   const names = dimensional
-    ? ["time t [s]", "rotation θ [°]", "ground [g]"]
+    ? ["time t [s]", "rotation θ [°]", `ground [${written(shown.acceleration)}]`]
     : ["time τ = p t", "rotation θ/α", "ground a f"];
   const marks = { draw: [(u) => drawLines(u, [-units.angle, units.angle]), (u) => drawImpacts(u, impacts)] };
   charts = [

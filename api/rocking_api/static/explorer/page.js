@@ -5,7 +5,7 @@ export function setStatus(place, what, again) {
   const wrong = what instanceof Error;
   place.classList.toggle("wrong", wrong);
   if (!wrong) place.textContent = what;
-  else if (showFieldError(what, place.closest("form") ?? document.getElementById("controls"))) {
+  else if (showFieldError(what, document.querySelector("form"))) {
     place.textContent = "No answer: see the field marked in red.";
   } else {
     const button = element("button", "Try again", { type: "button" });
@@ -70,4 +70,11 @@ export function clearErrors() {
     field.removeAttribute("aria-invalid");
     field.removeAttribute("aria-describedby");
   }
+}
+
+/** Have the browser save a blob. */
+export function save(blob, name) {
+  const link = element("a", "", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

@@ -1,10 +1,10 @@
-// One view of the page and its requests. What it shows belongs to the current controls, or is dimmed, or is cleared.
+// One view of the page and its requests. What it shows belongs to the current controls, or is dimmed: the last answer.
 
 import { ask, pause, Problem } from "./api.js";
 import { setStatus } from "./page.js";
 import { refresh } from "./state.js";
 
-const CLEAR_AFTER = 2000; // [ms], how long an outdated view stays visible, dimmed
+const SLOW = 1000; // [ms] after which the page says that the service is slow
 const MIN_INTERVAL = 100; // [ms] between the starts of two requests, while a slider is dragged
 const TIMEOUT = 75_000; // [ms], longer than the time limit of the service
 
@@ -21,7 +21,8 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
   let started = -Infinity; // [ms]
   const timers = [];
 
-  function mark(stale) {
+  function mark(stale, idle = false) {
+    box.inert = idle;
     box.classList.toggle("stale", stale);
     box.setAttribute("aria-busy", String(stale));
     box.dataset.shown = shown ?? "";
@@ -66,8 +67,8 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
     } catch (problem) {
       if (mine !== control) return null;
       stop();
-      if (shown !== key) blank();
-      mark(false);
+      if (shown !== key && problem.parameter !== undefined) blank(); // refused; without an answer the last one stays
+      mark(shown !== null && shown !== key);
       if (!(problem instanceof Problem)) throw problem;
       setStatus(status, problem, refresh);
       return null;
@@ -92,25 +93,20 @@ export function pane({ box, status, doing = "", delay = 0, picture = "", draw, c
       const mine = control;
       mark(shown !== key);
       setStatus(status, doing);
-      const overdue = () => {
-        if (shown === key) return;
-        blank();
-        setStatus(status, "Still waiting for the service …");
-      };
-      timers.push(setTimeout(overdue, CLEAR_AFTER));
+      const overdue = () => shown !== key && setStatus(status, `${doing} Still waiting for the service${shown ? "; dimmed: the last answer" : ""} …`);
+      timers.push(setTimeout(overdue, SLOW));
       const late = new Problem({ detail: `the service has not answered within ${TIMEOUT / 1000} s` });
       timers.push(setTimeout(() => mine.abort(late), TIMEOUT));
       running = follow(key, load, mine);
       return running;
     },
 
-    /** It is unknown what to show: dim what is shown, and clear it after a while unless `lasting`. */
-    wait({ lasting = false, words = "" } = {}) {
+    /** It is unknown what to show: dim what is shown; `idle` if nothing is asked for until the reader acts. */
+    wait({ idle = false, words = "" } = {}) {
       stop();
       wanted = null;
-      mark(true);
+      mark(true, idle);
       setStatus(status, words);
-      if (!lasting) timers.push(setTimeout(blank, CLEAR_AFTER));
     },
 
     /** There is nothing to show; `words` says why. */

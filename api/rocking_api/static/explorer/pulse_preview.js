@@ -1,6 +1,6 @@
 // The chosen ground motion in the form: its acceleration against time, and what its period T is.
 
-import { ask } from "./api.js";
+import { ask, isSampled } from "./api.js";
 import { onTheme, themed } from "./colours.js";
 import { number } from "./labels.js";
 
@@ -30,7 +30,7 @@ async function load() {
 }
 
 function draw() {
-  const pulse = known?.get(chosen.replace(/^-/, ""));
+  const pulse = isSampled(chosen) ? ownOf(chosen) : known?.get(chosen.replace(/^-/, ""));
   canvas.hidden = !pulse;
   note.textContent = pulse ? `It lasts ${number(pulse.duration)} T. ${pulse.definition}` : "";
   if (!pulse || !canvas.clientWidth) return;
@@ -41,7 +41,7 @@ function draw() {
   context.scale(ratio, ratio);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   const span = Math.max(pulse.duration, 1);
-  const sign = chosen.startsWith("-") ? -1 : 1;
+  const sign = chosen.startsWith("-") && !isSampled(chosen) ? -1 : 1;
   const x = (time) => ROOM + (time / span) * (width - 2 * ROOM);
   const middle = (height - ROOM) / 2;
   const y = (value) => middle - sign * value * (middle - 5);
@@ -51,6 +51,14 @@ function draw() {
   line(context, [[0, middle], ends[0], ...points, ends[1], [width, middle]], themed("accent"), 2);
   const start = Math.max((pulse.duration - 1) / 2, 0); // the period is marked in the middle of a long pulse
   drawPeriod(context, x(start), x(start + 1), height - 6);
+}
+
+/** The description of samples over one period, scaled to the peak 1. */
+function ownOf(samples) {
+  const values = samples.split(" ").map(Number);
+  const peak = Math.max(...values.map(Math.abs)) || 1;
+  const time = values.map((_, at) => at / Math.max(values.length - 1, 1));
+  return { time, acceleration: values.map((value) => value / peak), duration: 1, definition: "Linear between the samples." };
 }
 
 function drawPeriod(context, from, to, y) {

@@ -1,7 +1,7 @@
 // The response to a record in words.
 
 import { assumptions, element, facts } from "./page.js";
-import { inG, length, number, sentence as asSentence } from "./labels.js";
+import { acceleration, length, number, sentence as asSentence } from "./labels.js";
 
 const answer = document.getElementById("answer");
 
@@ -57,7 +57,7 @@ function sentence(found) {
 export function ofBlock(found) {
   const friction = found.friction_demand;
   return [
-    ["Uplifts at", inG(found.uplift_acceleration)],
+    ["Uplifts at", acceleration(found.uplift_acceleration)],
     ["Coefficient of restitution", number(found.restitution, 4)],
     ["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)],
   ];
@@ -66,7 +66,7 @@ export function ofBlock(found) {
 /** Facts about the record, times a factor. */
 export function ofRecord(record, scale) {
   return [
-    ["Peak ground acceleration", inG(scale * record.peak_acceleration)],
+    ["Peak ground acceleration", acceleration(scale * record.peak_acceleration)],
     ["Peak ground velocity", `${number(scale * record.peak_velocity)} m/s`],
     ["Peak ground displacement", length(scale * record.peak_displacement)],
     ["Arias intensity", `${number(scale ** 2 * record.arias_intensity)} m/s`],

@@ -2,7 +2,7 @@
 
 import { axis, chart } from "./chart.js";
 import { themed } from "./colours.js";
-import { inG, number, PULSES } from "./labels.js";
+import { acceleration, number, PULSES } from "./labels.js";
 
 const place = document.getElementById("pulse-chart");
 const caption = document.getElementById("pulse-caption");
@@ -26,7 +26,7 @@ export function drawPulse({ pulse, time, record_velocity, pulse_velocity, query,
   );
   const kind = PULSES[pulse.pulse.replace("-", "")] ?? pulse.pulse;
   caption.textContent =
-    `Thick: ${kind}, period ${number(pulse.period)} s, peak ${inG(query.scale * pulse.peak_acceleration)}; ` +
+    `Thick: ${kind}, period ${number(pulse.period)} s, peak ${acceleration(query.scale * pulse.peak_acceleration)}; ` +
     `it takes ${number(100 * pulse.explained, 2)} % of the energy of the velocity of the record (thin).`;
   caution.textContent = `${comparison(pulse)} ${words}`;
 }

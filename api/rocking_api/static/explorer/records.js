@@ -1,8 +1,10 @@
 // The page of a record: file and block from the form, and from there to every view.
 
-import { send } from "./api.js";
+import { file as fileOf, send } from "./api.js";
 import { chartsReady } from "./chart.js";
+import { onDrop } from "./drop.js";
 import { drawMotion } from "./motion_charts.js";
+import { number } from "./labels.js";
 import { clearErrors, element } from "./page.js";
 import { pane } from "./pane.js";
 import { unload } from "./player.js";
@@ -10,13 +12,13 @@ import { showRecordAnswer } from "./record_answer.js";
 import { drawPulse } from "./record_pulse.js";
 import { changes, drawScales } from "./record_scales.js";
 import { onChange, refresh } from "./state.js";
-import { toSI, UNITS } from "./units.js";
+import { toSI } from "./units.js";
 
-const GRAVITY = 9.80665;
 const SAMPLES = 4000;
 
 const form = document.getElementById("record");
 const input = document.getElementById("file");
+const factor = document.getElementById("factor");
 const report = document.getElementById("open-report");
 
 let file = null;
@@ -44,10 +46,12 @@ function view(id, status, doing, draw) {
   return pane({ box, status: document.getElementById(status), doing, draw, clear: () => draw(null) });
 }
 
-/** Show what the form holds. */
-async function show() {
+/** Show what the form holds; without `all` only the response and the motion, while the slider of the factor moves. */
+async function show(_, all = true) {
   clearErrors();
   if (!file) return;
+  const power = Math.log10(Number(form.elements.scale.value.replace(",", ".")));
+  if (Number.isFinite(power)) factor.value = power;
   for (const section of document.querySelectorAll("section.empty")) section.classList.remove("empty");
   const params = paramsOf();
   const key = (more) => JSON.stringify([params, more, file.name, file.size, file.lastModified]);
@@ -60,6 +64,7 @@ async function show() {
   }
   const { scale, ...unscaled } = params;
   await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }));
+  if (!all) return;
   await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }));
   await pulse.show(key("pulse"), upload("pulse", params));
 }
@@ -97,7 +102,7 @@ function sizeOf(found) {
     R: found.half_diagonal,
     p: found.frequency_parameter,
     alpha: (found.alpha_deg * Math.PI) / 180,
-    uplift_in_g: found.uplift_acceleration / GRAVITY,
+    uplift: found.uplift_acceleration,
   };
 }
 
@@ -118,38 +123,36 @@ function openDetails() {
   if (/unit|step|component/.test(problem)) document.getElementById("more").open = true;
 }
 
+/** Until a file is chosen, a part of a record is shown. */
+async function example() {
+  const found = await fileOf("/static/example-record.csv", "South Napa 2014, CE.68150, east, part.csv", new AbortController().signal);
+  if (!file) take(found);
+}
+
 function take(chosen) {
   if (!chosen) return;
   file = chosen;
+  document.getElementById("dropped").textContent = `${chosen.name}; drop another one anywhere on this page`;
   refresh();
 }
 
-for (const name of ["width", "height"]) {
-  for (const unit of Object.keys(UNITS[name])) form.elements[`${name}_unit`].append(element("option", unit));
-}
 for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2"]) form.elements.unit.append(element("option", unit));
 input.addEventListener("change", () => take(input.files[0]));
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (file) refresh();
-  else document.getElementById("file-problem").textContent = "Choose the file of a record first.";
 });
-addEventListener("dragover", (event) => {
-  event.preventDefault();
-  document.body.classList.add("dropping");
-});
-addEventListener("dragleave", () => document.body.classList.remove("dropping"));
-addEventListener("drop", (event) => {
-  event.preventDefault();
-  document.body.classList.remove("dropping");
-  const [dropped] = event.dataTransfer.files;
-  if (!dropped) return;
-  input.files = event.dataTransfer.files;
-  take(dropped);
-});
+onDrop(take);
 report.addEventListener("click", async () => {
   const { showReport } = await import("./report.js");
   const { recordReport } = await import("./record_report.js");
   showReport(recordReport(answer, margins));
 });
+form.addEventListener("change", ({ target }) => target !== input && target !== factor && refresh());
+factor.addEventListener("input", () => {
+  form.elements.scale.value = number(10 ** factor.value);
+  show(null, false);
+});
+factor.addEventListener("change", refresh);
 onChange(show);
+example();

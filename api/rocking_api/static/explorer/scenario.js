@@ -1,10 +1,9 @@
 // The scenario that all views show: dimensionless groups from the address, or those of a block in metres.
 // It holds pulse, restitution, alpha_deg and point (or null); for a block also its size and the response of the service.
 
+import { nearestChange } from "./block_answer.js";
 import { DEFAULTS } from "./state.js";
-import { inUnitOf, toSI } from "./units.js";
-
-const GRAVITY = 9.80665; // [m/s2], the default of the service
+import { inUnit, toSI } from "./units.js";
 
 /** The scenario of a state in groups. */
 export function scenarioOf({ pulse, restitution, alpha_deg, frequency_ratio, slenderness }) {
@@ -30,8 +29,9 @@ export function scenarioOfBlock(answer) {
       R: answer.half_diagonal,
       p: answer.frequency_parameter,
       alpha: (answer.alpha_deg * Math.PI) / 180,
-      uplift_in_g: answer.uplift_acceleration / GRAVITY,
+      uplift: answer.uplift_acceleration,
     },
+    change: answer.uplift_acceleration / nearestChange(answer), // slenderness of it, nan without one
     answer,
   };
 }
@@ -60,10 +60,10 @@ function readable(restitution) {
 /** The parts of a state that show a point: for a block, the ground motion with these groups. */
 export function movedTo(state, scenario, { frequency_ratio, slenderness }) {
   if (!scenario.size) return { frequency_ratio, slenderness };
-  const { p, uplift_in_g } = scenario.size;
+  const { p, uplift } = scenario.size;
   return {
-    acceleration: inUnitOf("acceleration", state.acceleration, (uplift_in_g * GRAVITY) / slenderness), // a_g = g tan(alpha)/s
-    period: inUnitOf("period", state.period, (2 * Math.PI) / (p * frequency_ratio)), // omega = omega_g/p
+    acceleration: inUnit("acceleration", (uplift) / slenderness), // a_g = g tan(alpha)/s
+    period: inUnit("period", (2 * Math.PI) / (p * frequency_ratio)), // omega = omega_g/p
   };
 }
 

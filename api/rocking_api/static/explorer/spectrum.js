@@ -25,8 +25,8 @@ const spectrum = pane({
 });
 
 /** Show the spectrum at the slenderness of a scenario (null: unknown), over the window of the map. */
-export function showSpectrum(scenario, view, lasting) {
-  if (!scenario) return spectrum.wait({ lasting });
+export function showSpectrum(scenario, view, idle) {
+  if (!scenario) return spectrum.wait({ idle });
   section.classList.toggle("empty", !scenario.point);
   if (!scenario.point) return spectrum.nothing();
   current = scenario;

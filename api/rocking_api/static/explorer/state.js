@@ -15,7 +15,11 @@ export const DEFAULTS = {
   height: "",
   acceleration: "",
   period: "",
+  velocity: "30 cm/s", // of the ground at its peak, for pulses of every shape
 };
+
+/** What is shown at first: a block that rocks and comes to rest. */
+const EXAMPLE = { width: "40 cm", height: "160 cm", acceleration: "0.4 g", period: "0.5 s", restitution: "momentum" };
 
 const listeners = [];
 let current = read();
@@ -23,7 +27,7 @@ let step = addressOf(current);
 
 function read() {
   const given = new URLSearchParams(location.search);
-  const found = { ...DEFAULTS };
+  const found = location.search ? { ...DEFAULTS } : { ...DEFAULTS, ...EXAMPLE };
   for (const name of Object.keys(DEFAULTS)) if (given.has(name)) found[name] = given.get(name);
   return found;
 }
@@ -36,8 +40,8 @@ export function state() {
 /** The address that shows a state. */
 export function addressOf(wanted) {
   const told = Object.entries(wanted).filter(([name, value]) => value !== DEFAULTS[name]);
-  const query = new URLSearchParams(told).toString();
-  return query ? `?${query}` : location.pathname;
+  if (!told.length) told.push(["pulse", wanted.pulse]); // without a query the example is shown
+  return `?${new URLSearchParams(told)}`;
 }
 
 /** Whether the state holds a block in metres rather than a point of the map. */

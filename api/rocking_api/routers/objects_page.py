@@ -1,0 +1,143 @@
+"""The page of objects: a table as text, which can be mended in place, and its assessment, rendered here."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from datetime import UTC, datetime
+from pathlib import PurePath
+from urllib.parse import parse_qs
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import HTMLResponse, PlainTextResponse
+
+from rocking._assessment.assess import assess
+from rocking._assessment.columns import VERDICTS
+from rocking._assessment.report import Project, report_html
+from rocking._assessment.result import Assessment
+from rocking._assessment.site import Site
+from rocking._assessment.tables import ObjectTable, objects_of_csv
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.table_reader import SHEETS, rows_of_sheet, text_of
+from rocking._numba.cancellation import StopFlag
+from rocking_api.http.encoding import text_response
+from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.models.assess import MAX_OBJECTS
+from rocking_api.routers.assess import MAX_BODY
+from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
+from rocking_api.service import Service, ServiceDep
+
+MAX_SHEET = 32 * 1024 * 1024
+"""Largest unpacked file of a sheet [bytes]."""
+
+MAX_SENSITIVITY = 200
+"""Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
+
+PATH = "/objects"
+
+DEFAULTS = {"table": "", "pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s", "title": "Objects at a site"}
+
+router = APIRouter(prefix=PATH, include_in_schema=False)
+
+
+@router.get("")
+async def get_objects_page(sample: str | None = None) -> Response:
+    """The page, empty or with the table of the guide."""
+    table = "" if sample is None else (STATIC / "collection.csv").read_text("utf-8")
+    return _page(DEFAULTS | {"table": table})
+
+
+@router.post("")
+async def post_objects_page(request: Request, service: ServiceDep) -> Response:
+    """The page with the assessment of the table in its form."""
+    given = await _form(request, service)
+    table, found = await _assessed(given, request, service)
+    return await service.run_io(lambda: _page(given, table=table, found=found))
+
+
+@router.post("/report")
+async def post_report(request: Request, service: ServiceDep) -> Response:
+    """The report of the assessment, to print."""
+    given = await _form(request, service)
+    table, found = await _assessed(given, request, service)
+    command = f"rocking assess TABLE --pga {given['pga']}{given['pga_unit']} --pgv {given['pgv']}{given['pgv_unit']}"
+    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), command)
+    text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows), request)
+    return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
+
+
+@router.post("/assessment.csv")
+async def post_csv(request: Request, service: ServiceDep) -> Response:
+    """The assessment as CSV."""
+    table, found = await _assessed(await _form(request, service), request, service)
+    return text_response(await service.run_io(lambda: found.to_csv(bad_rows=table.bad_rows)), "assessment")
+
+
+@router.post("/text")
+async def post_text(request: Request, service: ServiceDep, name: str = "") -> Response:
+    """The text of a file, of a sheet as CSV."""
+    body = await service.read_body(request, MAX_BODY)
+    text = await service.run_parser(lambda _: _text(body, PurePath(name).suffix.lower()), request, large=True)
+    return PlainTextResponse(text)
+
+
+def _text(raw: bytes, ending: str) -> str:
+    if ending not in SHEETS:
+        return text_of(raw)
+    try:
+        size = sum(one.file_size for one in zipfile.ZipFile(io.BytesIO(raw)).infolist())
+    except zipfile.BadZipFile:
+        raise InvalidArgumentError("table", ending, "a sheet, which is a zip archive") from None
+    if size > MAX_SHEET:
+        raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
+    try:
+        rows = rows_of_sheet(raw, "table")
+    except ImportError as error:
+        raise UnsupportedBodyError("table", ending, f"CSV, because this service cannot read sheets: {error}") from None
+    text = io.StringIO()
+    csv.writer(text, delimiter=";", lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
+async def _form(request: Request, service: Service) -> dict[str, str]:
+    """The fields of the form; fields `line-N` take the place of lines of the table."""
+    body = await service.read_body(request, 3 * MAX_BODY)  # with signs that are escaped
+    given = await service.run_io(lambda: parse_qs(body.decode("utf-8", "replace"), keep_blank_values=True))
+    fields = DEFAULTS | {name: values[-1] for name, values in given.items()}
+    lines = fields["table"].splitlines()
+    for number in range(len(lines)):
+        lines[number] = fields.pop(f"line-{number + 1}", lines[number])
+    return fields | {"table": "\n".join(lines)}
+
+
+async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
+    pga, pgv = (f"{given[name].replace(',', '.')} {given[f'{name}_unit']}" for name in ("pga", "pgv"))
+    site = Site(pga, pgv)
+    table = await service.run_parser(lambda _: objects_of_csv(given["table"]), request, large=True)
+    count = len(table.objects) + len(table.bad_rows)
+    if count > MAX_OBJECTS:
+        raise TooLargeError("table", count, f"at most {MAX_OBJECTS} rows")
+    if not table.objects:
+        reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
+        raise InvalidArgumentError("table", reasons, "one object or more")
+
+    def run(stop: StopFlag) -> Assessment:
+        return assess(table.objects, site, sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
+
+    await service.kernels.wait()
+    return table, await service.executor.run(run, request)
+
+
+def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
+    text = html(
+        "objects.html",
+        "Which objects overturn?",
+        PATH,
+        given=given,
+        lines=given["table"].splitlines(),
+        table=table,
+        found=found,
+        verdicts=VERDICTS,
+    )
+    return HTMLResponse(text, headers={"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"})

@@ -1,0 +1,82 @@
+// The response of a block to the single pulse, in words.
+
+import { assumptions, element, facts } from "./page.js";
+import { acceleration, length, number, pulseName, threshold, thresholds } from "./labels.js";
+import { inShown, shown, written } from "./units.js";
+
+const answer = document.getElementById("answer");
+const title = document.getElementById("single-title");
+
+/** Show the response of a block; null clears it. */
+export function showAnswer(found) {
+  answer.replaceChildren();
+  answer.hidden = found === null;
+  if (found === null) return;
+  const { pulse, period, peak_acceleration: peak } = found.query;
+  title.textContent = `Under one pulse: ${pulseName(pulse)}, ${number(period)} s, ${acceleration(peak)}`;
+  answer.append(
+    element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
+    element("p", sentence(found)),
+    facts(factsOf(found)),
+  );
+  if (found.warnings.length) {
+    const lines = found.warnings.map((warning) => element("li", warning));
+    answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
+  }
+  answer.append(assumptions(found.metadata));
+}
+
+function safe(found) {
+  return found.rocking_model_applies && !found.overturned;
+}
+
+function verdict(found) {
+  if (!found.rocking_model_applies) return "The rocking model does not apply.";
+  if (found.overturned) return "It overturns.";
+  return found.response.outcome === "NO_UPLIFT" ? "It does not uplift." : "It survives (comes to rest).";
+}
+
+function sentence(found) {
+  if (!safe(found) || found.response.outcome === "NO_UPLIFT") return `It ${found.meaning}.`;
+  return (
+    `Under this one pulse it rocks by at most ${number(found.peak_rotation_deg)}°; its top moves ${length(found.top_displacement)} ` +
+    "to the side. Then it comes to rest."
+  );
+}
+
+function factsOf(found) {
+  const pairs = [["Uplifts at", acceleration(found.uplift_acceleration)]];
+  const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
+  pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : acceleration(largest, threshold)]);
+  if (found.url && largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
+  const margin = applies && marginOf(found);
+  if (margin) pairs.push(margin);
+  const all = applies ? (found.thresholds ?? []) : [];
+  const texts = thresholds(all.map((one) => [inShown("acceleration", one.peak_acceleration), one.overturns_above]));
+  const unit = written(shown.acceleration);
+  const changes = all.map((one, at) => `${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} ${unit}`);
+  if (changes.length > 1) pairs.push(["At this period it", changes.join(", ")]);
+  if (found.url) pairs.push(["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)]);
+  return pairs;
+}
+
+/** Why there is no largest safe acceleration. */
+function reasonForNone({ thresholds }) {
+  if (thresholds === null) return "not found in time";
+  return thresholds.length ? "not known: the rocking model does not apply" : "no limit found";
+}
+
+/** The peak acceleration of the nearest change of outcome at this period [m/s2]; undefined if none is known. */
+export function nearestChange({ query, thresholds: found, rocking_model_applies: applies }) {
+  const apart = (value) => Math.abs(value / query.peak_acceleration - 1);
+  return applies ? (found ?? []).map((one) => one.peak_acceleration).sort((one, other) => apart(one) - apart(other))[0] : undefined;
+}
+
+/** The nearest change of outcome, relative to the peak acceleration. */
+function marginOf(found) {
+  const [given, nearest] = [found.query.peak_acceleration, nearestChange(found)];
+  if (!nearest) return null;
+  const way = nearest > given ? "more" : "less";
+  const share = `${threshold(100 * Math.abs(nearest / given - 1), !found.overturned, 2)} %`;
+  return ["Margin of acceleration", `${found.overturned ? "survives" : "overturns"} with ${share} ${way}`];
+}

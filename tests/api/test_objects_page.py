@@ -1,0 +1,92 @@
+"""The page of objects as the service renders it: rows, rows that cannot be read, report, CSV, sheets, hostile input."""
+
+import io
+import re
+import zipfile
+
+import pytest
+
+import rocking
+from rocking._assessment.columns import VERDICTS
+from tests.api.conftest import assert_problem
+
+TABLE = "object;width [cm];height [cm]\nvase;22;55\n<b>slab</b>;5;60\njug;wide;40\n"
+SITE = {"pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s"}
+
+
+@pytest.fixture(scope="module")
+def text(client):
+    return client.post("/objects", data={"table": TABLE, **SITE}).text
+
+
+@pytest.fixture(scope="module")
+def found():
+    return rocking.assess(
+        [rocking.Object("vase", width=0.22, height=0.55), rocking.Object("slab", width=0.05, height=0.6)],
+        rocking.Site(pga="0.3 g", pgv="30 cm/s"),
+    )
+
+
+def test_rows_are_those_of_the_package_the_worst_first(text, found):
+    assert re.findall(r'<th scope="row">(.*?)</th>', text) == ["&lt;b&gt;slab&lt;/b&gt;", "vase"]
+    for row in found.rows:
+        assert f'<span class="badge verdict-{VERDICTS.index(row["verdict"])}">{row["verdict"]}</span>' in text
+        assert f'<td data-value="{row["factor"]}">{row["factor"]:.3g}</td>' in text
+        assert f'<td data-value="{row["smallest_width"]}">{100 * row["smallest_width"]:.3g}</td>' in text
+    assert 'width="0.22" height="0.55"' in text  # the drawing has the proportions of the object
+    assert "<b>" not in text
+
+
+def test_a_row_that_cannot_be_read_is_mended_in_place(client, text):
+    (line,) = re.findall(r'<input id="line-4" name="line-4" form="objects" value="(.*?)" aria-invalid="true"', text)
+    assert line == "jug;wide;40"
+    assert "wide" in re.search(r'id="reason-4">(.*?)<', text)[1]
+    mended = client.post("/objects", data={"table": TABLE, **SITE, "line-4": "jug;20;40"}).text
+    assert "were not read" not in mended
+    assert "jug;20;40" in re.search(r"<textarea.*?</textarea>", mended, re.DOTALL)[0]
+    assert len(re.findall(r'<th scope="row">', mended)) == 3
+
+
+def test_report_and_csv_are_those_of_the_package(client, found):
+    given = {"table": TABLE, **SITE}
+    report = client.post("/objects/report", data=given)
+    assert "default-src 'none'" in report.headers["content-security-policy"]
+    assert f"{found.rows[0]['factor']:.3g}" in report.text
+    assert "rocking assess TABLE --pga 0.3g --pgv 30cm/s" in report.text
+    table = client.post("/objects/assessment.csv", data=given)
+    assert "attachment" in table.headers["content-disposition"]
+    assert table.text.count("not read") == 1
+
+
+def test_an_error_names_its_field(client):
+    assert_problem(client.post("/objects", data={"table": TABLE, **SITE, "pga": "much"}), 422, "pga")
+    assert_problem(client.post("/objects", data={"table": "", **SITE}), 422)
+    page = client.post("/objects", data={"table": TABLE, **SITE, "pgv": "0"}, headers={"accept": "text/html"})
+    assert (page.status_code, page.headers["content-type"]) == (422, "text/html; charset=utf-8")
+
+
+def test_the_sample_is_on_the_page(client):
+    assert "Marble bust" in client.get("/objects?sample=1").text
+    assert "Marble bust" not in client.get("/objects").text
+
+
+def test_files_are_read_as_text(client):
+    url = "/objects/text?name=old.csv"
+    assert client.post(url, content="Büste;3".encode("cp1252")).text == "Büste;3"
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("xl/workbook.xml", bytes(33 * 1024 * 1024))
+    url = "/objects/text?name=huge.xlsx"
+    assert_problem(client.post(url, content=packed.getvalue()), 413, "table")
+    assert_problem(client.post(url, content=b"no archive"), 422, "table")
+
+
+def test_a_sheet_becomes_text_with_its_cells(client):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (["object", "width [cm]", "height [cm]"], ["vase", 22, 55.5]):
+        book.active.append(row)
+    content = io.BytesIO()
+    book.save(content)
+    text = client.post("/objects/text?name=a.xlsx", content=content.getvalue()).text
+    assert text.splitlines() == ["object;width [cm];height [cm]", "vase;22;55.500000000"]
