@@ -19,11 +19,11 @@ from rocking_api.http.host import HostCheck
 from rocking_api.http.memory_budget import MemoryBudgetMiddleware
 from rocking_api.http.request_log import RequestLog
 from rocking_api.http.zarr_store import ZarrStores
+from rocking_api.models.answer import VERSION
 from rocking_api.models.assess import AssessBody
 from rocking_api.models.blocks import BlockRows
 from rocking_api.models.identify import Trace
 from rocking_api.models.pulses import BODIES
-from rocking_api.models.responses import VERSION
 from rocking_api.routers import (
     assess,
     blocks,

@@ -27,6 +27,7 @@ from rocking_api.models.suites import (
     RotationQuantile,
     Sensitivity,
     SuiteBlock,
+    SuiteParams,
     SuiteRecord,
     SuiteResponse,
     SuiteSummary,
@@ -99,7 +100,7 @@ class SuiteReader:
             links=_links(name, datasets),
         )
 
-    def suite(self, name: str) -> SuiteResponse:
+    def suite(self, name: str, query: SuiteParams) -> SuiteResponse:
         """A suite.
 
         Raises
@@ -118,6 +119,7 @@ class SuiteReader:
         if not len(found.blocks) == len(outcomes) == len(sensitivity):
             raise DatasetError(f"{_FOLDER}{name}: its files are of different blocks; ask again after the run has ended")
         return SuiteResponse(
+            query=query,
             name=name,
             **found.about,
             intensity=found.intensity,

@@ -98,6 +98,7 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     (bad,) = answer["bad_rows"]
     assert (bad["row"], bad["column"]) == (3, "width")
     assert "tall" in bad["reason"]
+    assert answer["warnings"] == ["rows that were not read: 1, see `bad_rows`"]
     assert answer["skipped"] == ["colour"]
     response = client.post(URL, content=TABLE, headers=CSV)
     assert response.headers["content-type"].startswith("text/csv")

@@ -54,7 +54,8 @@ def test_a_body_whose_mass_is_not_in_the_middle(client):
     assert {name: response[name] for name in expected.summary()} == expected.summary()
     assert [one["peak_acceleration"] for one in response["thresholds"]] == expected.thresholds.value.tolist()
     assert client.get(response["url"]).json()["edge"] == response["edge"]
-    assert get_response(client, offset=0.0).json() == get_response(client).json()
+    middle = get_response(client, offset=0.0).json()
+    assert get_response(client).json() == middle | {"url": middle["url"].removesuffix("&offset=0.0")}
     assert_problem(get_response(client, offset=0.03, method="cube"), 422, "method")
     problem = assert_problem(get_response(client, offset=0.2), 422, "offset")
     assert "less than half the width to either side, 0.2 m" in problem["detail"]

@@ -179,8 +179,10 @@ def test_history_with_the_reactions_of_the_ground(client):
 
 def test_history_of_a_block_that_lifts_off_has_no_friction_demand_there(client):
     stocky = BLOCK | {"slenderness": 0.2, "frequency_ratio": 12, "alpha_deg": 45, "contact": "true"}
-    contact = client.get("/v1/history", params=stocky).json()["contact"]
+    answer = client.get("/v1/history", params=stocky).json()
+    contact = answer["contact"]
     assert contact["lifts_off"]
+    assert answer["warnings"] == [contact["warnings"]]
     assert contact["largest_friction_demand"] is None
     pressed = [normal > 0 for normal in contact["normal_reaction"]]
     assert [demand is not None for demand in contact["friction_demand"]] == pressed

@@ -1,6 +1,7 @@
 """GET and POST /v1/response."""
 
 import io
+import math
 
 import numpy as np
 import pytest
@@ -71,6 +72,23 @@ def test_overturned_has_no_peak_and_a_note(client):
     assert result["overturned"]
     assert result["peak_rotation"] is result["error_bound"] is None
     assert "overturns" in result["note"]
+
+
+def test_without_a_bound_there_is_a_warning(client):
+    block = {"frequency_ratio": 5.0, "restitution": 0.9, "method": "solver"}
+    found = client.get("/v1/thresholds", params={"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.9}).json()
+    threshold = found["thresholds"][0]["slenderness"]
+    below, above = threshold * (1.0 - 1e-11), threshold * (1.0 + 1e-11)  # it overturns below
+    while math.nextafter(below, 1.0) < above:
+        middle = below + 0.5 * (above - below)
+        if get_response(client, slenderness=middle, **block).json()["overturned"]:
+            below = middle
+        else:
+            above = middle
+    result = get_response(client, slenderness=above, **block).json()
+    assert (result["overturned"], result["error_bound"]) == (False, None)
+    assert result["warnings"] == [result["note"]]
+    assert "rounding" in result["note"]
 
 
 def test_above_slenderness_one_there_is_no_uplift(client):
@@ -319,6 +337,7 @@ def test_at_the_ends_of_the_ranges_every_request_has_a_response(client, slendern
 
 def test_a_json_batch_may_repeat_its_pulse_in_the_url(client):
     body = {"pulse": "sine", "slenderness": [0.6], "frequency_ratio": 6.0, "restitution": 0.85}
-    assert client.post("/v1/response?pulse=sine", json=body).json() == client.post("/v1/response", json=body).json()
+    named, plain = client.post("/v1/response?pulse=sine", json=body), client.post("/v1/response", json=body)
+    assert named.json() == plain.json() | {"url": "POST /v1/response?pulse=sine"}
     assert_problem(client.post("/v1/response?pulse=cosine", json=body), 422, "pulse")
     assert_problem(client.post("/v1/response?restitution=0.85", json=body), 422, "restitution")

@@ -28,9 +28,8 @@ def health_of(client):
 
 
 def test_healthy(client):
-    assert health_of(client) | {"version": ""} == {
+    assert {name: health_of(client)[name] for name in ("status", "datasets", "unchecked", "problems")} == {
         "status": "ok",
-        "version": "",
         "datasets": len(NAMES),
         "unchecked": 0,
         "problems": {},
@@ -43,7 +42,7 @@ def test_without_results_the_solver_is_used_and_health_reports_it(tmp_path):
         assert health["status"] == "degraded"
         assert "make reproduce" in health["problems"]["spectra"]
         assert client.get("/v1/response", params=QUERY).json()["source"] == "solver"
-        assert client.get("/v1/datasets").json() == {"datasets": []}
+        assert client.get("/v1/datasets").json()["datasets"] == []
         assert_problem(client.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "restitution")
 
 
@@ -77,7 +76,7 @@ def test_ready_without_data_sets_and_with_intact_ones(client, tmp_path):
     response = ready_of(client)
     assert response.status_code == 200
     assert response.headers["cache-control"] == "no-store"
-    assert response.json() == client.get("/health").json()
+    assert response.json() == client.get("/health").json() | {"url": "/ready"}
     with client_of(tmp_path / "none") as empty:
         empty.get("/v1/response", params=QUERY | {"method": "solver"})  # waits for the solver
         deadline = time.monotonic() + 60

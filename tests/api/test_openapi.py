@@ -1,11 +1,17 @@
-"""The OpenAPI description: every property is described, and every example succeeds as it stands."""
+"""The OpenAPI description: every property is described, and every example succeeds and has the answer described."""
 
 import json
+import re
 from urllib.parse import quote
 
 import pytest
 
+from tests.api.test_api_state import health_of
+
 JSON = "application/json"
+
+VARIABLE = re.compile(r"^(coordinates|variables|dimensions)\.[^.]+")
+"""What the description of a data set holds by the name of a variable or dimension."""
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +61,9 @@ def test_every_answer_states_its_model_or_where_it_is_stated(client, description
     for path, _, operation in operations(description):
         schema = operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
         if path.startswith("/v1/") and path not in lists and schema:
-            for one in schema.get("anyOf", [schema]):
-                fields = description["components"]["schemas"][one["$ref"].rpartition("/")[2]]["properties"]
-                found.setdefault(tuple(sorted({"metadata", "metadata_url"} & set(fields))), set()).add(path)
+            for model in schema.get("anyOf", [schema]):
+                named = description["components"]["schemas"][model["$ref"].rpartition("/")[2]]["properties"]
+                found.setdefault(tuple(sorted({"metadata", "metadata_url"} & set(named))), set()).add(path)
     assert set(found) == {("metadata",), ("metadata_url",)}
     assert found[("metadata",)] == {
         path for path in description["paths"] if path.startswith(("/v1/blocks", "/v1/records"))
@@ -81,29 +87,101 @@ def example_of(parameter):
     return schema["enum"][0] if parameter.get("required") and "enum" in schema else None
 
 
-def test_every_example_succeeds_as_it_stands(client, description):
-    failed, tried = [], 0
+@pytest.fixture(scope="module")
+def asked(client, description):
+    """Each example of the description: path, operation, query, arguments of the request, and its response."""
+    health_of(client)
+    found = []
     for path, method, operation in operations(description):
-        query = {}
+        url, query = path, {}
         for parameter in operation.get("parameters", []):
             value = example_of(parameter)
             assert value is not None or not parameter["required"], f"{path}: {parameter['name']} has no example"
             if parameter["in"] == "path":
-                path = path.replace(f"{{{parameter['name']}}}", quote(value, safe="/."))  # noqa: PLW2901
+                url = url.replace(f"{{{parameter['name']}}}", quote(value, safe="/."))
             elif value is not None:
-                query[parameter["name"]] = str(value).lower() if isinstance(value, bool) else value
+                query[parameter["name"]] = value
         bodies = operation.get("requestBody", {}).get("content", {None: {}})
         for media_type, body in bodies.items():
             if media_type and body.get("schema", {}).get("format") == "binary":
                 continue
-            content = None
+            sent = {}
             if media_type:
                 assert "example" in body, f"{path}: {media_type} has no example"
                 content = body["example"] if media_type != JSON else json.dumps(body["example"])
-            headers = {"content-type": media_type} if media_type else {}
-            response = client.request(method, path, params=query, content=content, headers=headers)
-            tried += 1
-            if response.status_code != 200:
-                failed.append((path, media_type, response.text[:300]))
+                sent = {"content": content, "headers": {"content-type": media_type}}
+            texts = {name: str(value).lower() if isinstance(value, bool) else value for name, value in query.items()}
+            found.append((path, operation, query, sent, client.request(method, url, params=texts, **sent)))
+    return found
+
+
+def test_every_example_succeeds_as_it_stands(asked):
+    failed = [(path, sent, found.text[:300]) for path, _, _, sent, found in asked if found.status_code != 200]
     assert failed == []
-    assert tried > 20
+    assert len(asked) > 20
+
+
+def numbers(value, path=()):
+    """Paths of the numbers in an answer."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from numbers(part, (*path, key))
+    elif isinstance(value, list):
+        for part in value:
+            yield from numbers(part, path)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield ".".join(path)
+
+
+def fields(schemas, schema, path=()):
+    """Paths of the fields that a schema describes."""
+    schema = schemas[schema["$ref"].rpartition("/")[2]] if "$ref" in schema else schema
+    for name, part in schema.get("properties", {}).items():
+        yield ".".join((*path, name))
+        yield from fields(schemas, part, (*path, name))
+    for part in (*schema.get("anyOf", ()), schema.get("items"), schema.get("additionalProperties")):
+        if isinstance(part, dict):
+            yield from fields(schemas, part, path)
+
+
+def test_every_json_answer_holds_question_units_warnings_version_and_address(client, description, asked):
+    schemas = description["components"]["schemas"]
+    tried = set()
+    for path, operation, query, sent, response in asked:
+        schema = operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
+        if schema is None or response.headers["content-type"] != JSON:
+            continue
+        answer = response.json()
+        assert answer["query"] | query == answer["query"], path
+        assert isinstance(answer["warnings"], list), path
+        assert answer["version"] == description["info"]["version"], path
+        method, _, url = answer["url"].rpartition(" ")
+        assert client.request(method or "GET", url, **sent).json() == answer, path
+        found = {VARIABLE.sub(r"\1", name) for name in numbers(answer) if not re.search(r"\battributes\.", name)}
+        assert found <= set(answer["units"]), path
+        assert set(answer["units"]) <= found | set(fields(schemas, schema)), path
+        assert all(answer["units"].values()), path
+        tried.add((method or "GET", path))
+    assert tried == {
+        (method.upper(), path)
+        for path, method, operation in operations(description)
+        if operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
+    }
+
+
+def test_units_are_those_of_the_fields(client):
+    def units(path, **query):
+        return client.get(path, params=query).json()["units"]
+
+    block = {"width": 0.4, "height": 1.6, "pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
+    found = units("/v1/blocks/response", **block)
+    stated = ("query.width", "half_diagonal", "frequency_parameter", "thresholds.peak_acceleration", "friction_demand")
+    assert [found[name] for name in stated] == ["m", "m", "rad/s", "m/s2", "1"]
+    found = units("/v1/datasets")
+    assert [found[f"datasets.extent.{axis}"] for axis in ("alpha", "slenderness", "frequency_ratio")] == [
+        "rad",
+        "1",
+        "1",
+    ]
+    suite = client.get("/v1/suites/demonstration").json()
+    assert suite["units"]["intensity"] == suite["units"]["blocks.sensitivity.intensity"] == suite["unit"] == "m s-2"

@@ -94,9 +94,9 @@ def test_responses_may_be_stored_for_a_minute_and_are_revalidated(client):
 
 def test_a_version_of_a_data_set_is_immutable(client):
     entry = client.get("/v1/datasets").json()["datasets"][0]
-    kept = client.get(entry["version"])
+    kept = client.get(entry["version_url"])
     assert "immutable" in kept.headers["cache-control"]
     assert kept.headers["etag"] == f'"{entry["sha256"]}"'
     assert client.get(entry["netcdf"]).headers["cache-control"] == "no-cache"
-    gone = entry["version"].replace(entry["sha256"], "0" * 64)
+    gone = entry["version_url"].replace(entry["sha256"], "0" * 64)
     assert entry["sha256"] in assert_problem(client.get(gone), 404)["detail"]

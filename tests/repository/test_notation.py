@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 import typer
 from rocking_api.app import create_app
+from rocking_api.models.answer import Answer
 from rocking_api.settings import Settings
 
 import rocking
@@ -68,7 +69,8 @@ def options() -> Iterator[str]:
 
 
 def http_parameters() -> Iterator[str]:
-    """Parameters of the routes and fields of their JSON bodies."""
+    """Parameters of the routes, fields of their JSON bodies, and the fields that every answer has."""
+    yield from (*Answer.model_fields, *Answer.model_computed_fields)
     document = create_app(Settings()).openapi()
     models = document["components"]["schemas"]
 

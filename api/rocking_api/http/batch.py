@@ -24,10 +24,9 @@ from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_stream, dataset_of,
 from rocking_api.http.errors import InvalidQueryError, SlowBodyError, TooLargeError, UnsupportedBodyError
 from rocking_api.http.memory_budget import Reservation
 from rocking_api.http.number_columns import GROUPS, Columns, check_columns, cut_arrays, parse_array, parse_csv
-from rocking_api.models.metadata import METADATA_URL
 from rocking_api.models.params import BatchParams, LookupOptions, check_value
 from rocking_api.models.pulses import sampled_pulse, with_samples
-from rocking_api.models.responses import VERSION, columns_of
+from rocking_api.models.responses import BatchResponse, columns_of
 
 _BODY, _OPTIONS = with_samples(BatchParams), with_samples(LookupOptions)
 
@@ -206,7 +205,7 @@ def _read_netcdf(body: bytes, max_points: int) -> Columns:
     return {str(column.name): np.ravel(column.values) for column in xr.broadcast(*columns)}
 
 
-def batch_response(batch: Batch, result: BatchResult, form: Form) -> Response:
+def batch_response(batch: Batch, request: Request, result: BatchResult, form: Form) -> Response:
     """The response in a format; JSON and CSV are written while they are sent."""
     query: dict[str, Any] = batch.options.model_dump() | {"points": batch.points}
     if form == "nc":
@@ -215,5 +214,5 @@ def batch_response(batch: Batch, result: BatchResult, form: Form) -> Response:
     columns = columns_of(result)
     if form == "csv":
         return csv_stream(batch.groups | columns, "response")
-    fields = {"data_versions": result.versions, "version": VERSION, "metadata_url": METADATA_URL, "query": query}
-    return json_stream(fields, columns)
+    answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
+    return json_stream(answer, request, columns)

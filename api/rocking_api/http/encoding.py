@@ -14,13 +14,13 @@ import xarray as xr
 from fastapi import Request, Response
 from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
-from pydantic import BaseModel
 from pydantic_core import to_json
 
 from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking._datasets.cube import MODEL_RESULT, VARIABLES
 from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND
 from rocking_api.execution.evaluation import FIELDS, BatchResult
+from rocking_api.models.answer import Answer, url_of
 
 Form = Literal["json", "csv", "nc", "nrml"]
 
@@ -71,9 +71,10 @@ def negotiated_form(
     return default or offered[0]
 
 
-def json_response(model: BaseModel, headers: Mapping[str, str] | None = None) -> Response:
-    """A model as JSON, without validation."""
-    return Response(model.model_dump_json(), headers=headers, media_type=MEDIA_TYPES["json"])
+def json_response(answer: Answer, request: Request, headers: Mapping[str, str] | None = None) -> Response:
+    """An answer to a request as JSON, without validation."""
+    answer.url = url_of(request)
+    return Response(answer.model_dump_json(), headers=headers, media_type=MEDIA_TYPES["json"])
 
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
@@ -99,8 +100,9 @@ def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
     return _streamed(parts(), _points(columns), MEDIA_TYPES["csv"], _file(f"{name}.csv"))
 
 
-def json_stream(fields: Mapping[str, Any], columns: Mapping[str, Column]) -> Response:
-    """A JSON object of the columns, arrays (points,), then the other fields, written while it is sent."""
+def json_stream(answer: Answer, request: Request, columns: Mapping[str, Column]) -> Response:
+    """As `json_response`, after columns, arrays (points,), that the answer lacks; written while it is sent."""
+    answer.url = url_of(request)
 
     def parts() -> Iterator[bytes]:
         opening = b"{"
@@ -110,7 +112,7 @@ def json_stream(fields: Mapping[str, Any], columns: Mapping[str, Column]) -> Res
                 yield opening + to_json(column[start : start + ROWS].tolist(), inf_nan_mode="null")[1:-1]
                 opening = b","
             opening = (b"" if len(column) else opening) + b"],"
-        yield opening + to_json(fields, inf_nan_mode="null")[1:]
+        yield opening + answer.model_dump_json().encode()[1:]
 
     return _streamed(parts(), _points(columns), MEDIA_TYPES["json"], {})
 

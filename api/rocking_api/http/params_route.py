@@ -16,12 +16,13 @@ from urllib.parse import parse_qsl
 from fastapi import Request, Response
 from fastapi.params import Depends
 from fastapi.routing import APIRoute
-from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from rocking._base.errors import InvalidArgumentError
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import json_response
 from rocking_api.http.errors import InvalidQueryError
+from rocking_api.models.answer import Answer
 from rocking_api.models.params import Params
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -43,7 +44,7 @@ class ParamsRoute(APIRoute):
 
         async def handle(request: Request) -> Response:
             result = await endpoint(**await read(request))
-            response = json_response(result) if isinstance(result, BaseModel) else result
+            response = json_response(result, request) if isinstance(result, Answer) else result
             return revalidated(request, response) if shared else response
 
         return handle

@@ -12,9 +12,10 @@ from rocking._base.errors import InvalidArgumentError, integer, number
 from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.records.record import Record
+from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
-from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD
+from rocking_api.models.responses import BY_SOLVER
 
 MAX_OBJECTS = 2000
 """Most rows of a table [-]."""
@@ -177,12 +178,12 @@ AssessedRow: type[BaseModel] = create_model(
 class UnreadRow(BaseModel):
     """A row of the table that was not read."""
 
-    row: int = Field(description="number in the table, from 1")
+    row: int = Field(description="number in the table, from 1 [-]")
     column: str = Field(description="name of the column; empty: the whole row")
     reason: str = Field(description="what was found and what is allowed")
 
 
-class AssessResponse(BaseModel):
+class AssessResponse(Answer):
     """Objects at a site, the worst first."""
 
     query: Annotated[SerializeAsAny[AssessParams], ECHO] = QUERY
@@ -192,5 +193,4 @@ class AssessResponse(BaseModel):
     bad_rows: list[UnreadRow] = Field(description="rows that were not read; the others are assessed")
     skipped: list[str] = Field(description="columns of the table that are not used")
     source: str = BY_SOLVER
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD

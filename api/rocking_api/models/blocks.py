@@ -9,10 +9,11 @@ from pydantic_core import PydanticCustomError
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import in_range
+from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Method, Params, PulseName, TableFormat, Tolerance, check_value
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD, PointResponse
+from rocking_api.models.responses import BY_SOLVER, PointResponse
 
 RANGES = {
     "width": (1e-4, 1e4, "m"),
@@ -123,7 +124,7 @@ class BlockRows(Params):
     pulse: GivenPulse | None = Field(None, description="a pulse by its name, or by samples; absent: that of the query")
 
 
-class BlocksResponse(BaseModel):
+class BlocksResponse(Answer):
     """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
 
     query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
@@ -147,7 +148,6 @@ class BlocksResponse(BaseModel):
     error_bound: list[float | None] = Field(description="bound of the error of peak_rotation [-]; null if overturned")
     metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
-    version: str = VERSION_FIELD
 
 
 class Threshold(BaseModel):
@@ -194,7 +194,7 @@ class Margins(BaseModel):
     sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal searched [m]")
 
 
-class BodySummary(BaseModel):
+class BodySummary(Answer):
     """What happens to a body whose centre of mass is not that of the block, under any motion."""
 
     meaning: str = Field(description="the outcome in words; where the rocking model does not apply, that and why")
@@ -222,27 +222,23 @@ class BodySummary(BaseModel):
         description="coefficient of friction that pure rocking needs, impacts excluded [-]; null: it lifts off"
     )
     lifts_off: bool = Field(description="whether pure rocking would need a tensile reaction of the ground")
-    warnings: list[str] = Field(description="where the answer is in doubt")
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
-    version: str = VERSION_FIELD
 
 
 class BodyResponse(BodySummary):
     """What happens to a body under a pulse."""
 
     query: BlockParams = QUERY
-    url: str = Field(description="path of the request, defaults included")
     thresholds: list[Threshold] = Field(
         description="all amplitudes at which the outcome changes, this period, ascending"
     )
 
 
-class BlockResponse(BaseModel):
+class BlockResponse(Answer):
     """What happens to the block."""
 
     query: BlockParams = QUERY
-    url: str = Field(description="path of the request, defaults included")
     response: PointResponse = Field(description="the same request and response in dimensionless groups")
     overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
     rocking_model_applies: bool = Field(
@@ -284,8 +280,6 @@ class BlockResponse(BaseModel):
         description="ratio of the horizontal to the vertical impulse at its impacts, 0 without impacts [-]"
     )
     smallest_normal_reaction: float = Field(description="over its weight, for as long [-]; 0 and below: it lifts off")
-    warnings: list[str] = Field(description="where the answer, one about pure rocking, is in doubt")
     notes: list[str] = Field(description="what else is worth knowing")
     data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
     metadata: Metadata = METADATA_FIELD
-    version: str = VERSION_FIELD

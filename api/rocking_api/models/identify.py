@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from rocking._base.errors import in_range
+from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
-from rocking_api.models.responses import QUERY, VERSION_FIELD
 
 MAX_SAMPLES = 20_000
 """Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
@@ -22,7 +22,7 @@ class IdentifyParams(Params):
 
     edges: int = Field(
         1,
-        description="1 for a body with equal edges, 2 for one with a right and a left edge",
+        description="1 for a body with equal edges, 2 for one with a right and a left edge [-]",
         json_schema_extra={"enum": [1, 2]},
     )
     degrees: bool = Field(False, description="the rotations are in degrees, not in radians")
@@ -46,7 +46,7 @@ class Trace(Params):
     rotation: Samples = Field(description="rotation; positive values turn on the right edge [rad]")
 
 
-class IdentifyResponse(BaseModel):
+class IdentifyResponse(Answer):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
     query: IdentifyParams = QUERY
@@ -66,7 +66,6 @@ class IdentifyResponse(BaseModel):
     time: list[float] = Field(description="times of the samples [s]")
     rotation: list[float] = Field(description="rotation as given [rad]")
     fitted: list[float | None] = Field(description="rotation of the block [rad]; null where nothing is fitted")
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pydantic import BaseModel, Field
 
+from rocking_api.models.answer import Answer
+
 ASSUMPTIONS = (
     "The block is rigid, rectangular and of uniform density.",
     "The motion is plane: the ground moves horizontally, parallel to a face of the block.",
@@ -56,6 +58,10 @@ class Metadata(BaseModel):
     assumptions: list[str] = Field(description="assumptions, one sentence each")
     disclaimer: str = Field(description="limits of use")
     reference: str = Field(description="publication whose equation numbers are used")
+
+
+class MetadataResponse(Metadata, Answer):
+    """The same as an answer."""
 
 
 METADATA = Metadata(

@@ -11,6 +11,7 @@ from rocking._base.errors import in_range, one_of
 from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
+from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.blocks import (
     RANGES,
     BodySummary,
@@ -22,7 +23,7 @@ from rocking_api.models.blocks import (
 )
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format, Params
-from rocking_api.models.responses import BY_SOLVER, QUERY, VERSION_FIELD, Motion
+from rocking_api.models.responses import BY_SOLVER, Motion
 
 SMALLEST_SCALE = 1e-6
 """Smallest factor of a record [-]."""
@@ -73,7 +74,7 @@ class RecordFileParams(Params):
     )
     baseline_order: int | None = Field(
         None,
-        description="degree of the baseline that is removed from the acceleration; absent: none",
+        description="degree of the baseline that is removed from the acceleration [-]; absent: none",
         json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
     )
 
@@ -199,7 +200,7 @@ class FittedPulse(BaseModel):
     )
 
 
-class RecordResponse(BaseModel):
+class RecordResponse(Answer):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
     query: RecordResponseParams = QUERY
@@ -257,10 +258,8 @@ class RecordResponse(BaseModel):
         description="over its weight [-]; 0 and below: it lifts off; null: not known"
     )
     pulse: FittedPulse | None = Field(None, description="null unless requested")
-    warnings: list[str] = Field(description="where the answer is in doubt")
     metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
-    version: str = VERSION_FIELD
 
 
 class RecordBodyResponse(BodySummary):
@@ -274,18 +273,19 @@ class RecordBodyResponse(BodySummary):
 
 
 class RecordHistoryResponse(Motion):
-    """A motion under a record; `impact_time` in seconds."""
+    """A motion under a record."""
 
     query: RecordHistoryParams = QUERY
     record: RecordDescription = _RECORD
     time: list[float] = Field(description="from the first sample [s]")
+    impact_time: list[float] = Field(description="times of the impacts [s]")
     vertical_acceleration: list[float] | None = Field(
         None, description="of the ground over g, upwards [-]; null: the record has no vertical component"
     )
     metadata: Metadata = METADATA_FIELD
 
 
-class RecordScalesResponse(BaseModel):
+class RecordScalesResponse(Answer):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
     query: RecordScalesParams = QUERY
@@ -303,10 +303,9 @@ class RecordScalesResponse(BaseModel):
     )
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
-    version: str = VERSION_FIELD
 
 
-class RecordPulseResponse(BaseModel):
+class RecordPulseResponse(Answer):
     """The pulse fitted to the velocity of a record, and both motions for a drawing."""
 
     query: RecordPulseParams = QUERY
@@ -320,4 +319,3 @@ class RecordPulseResponse(BaseModel):
     caution: str = Field(CAUTION, description="why the pulse does not replace the record")
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
-    version: str = VERSION_FIELD

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from importlib.metadata import version
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field, GetJsonSchemaHandler, SerializeAsAny, create_model
-from pydantic_core import core_schema
+from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from rocking._model.fields import (
     COLUMN_FIELDS,
@@ -26,12 +24,12 @@ from rocking._model.fields import (
 from rocking._model.response import Outcome
 from rocking_api.execution.evaluation import BatchResult, PointResult
 from rocking_api.http.encoding import Column
+from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import HistoryParams, OverturningParams, ResponseParams
+from rocking_api.models.params import HistoryParams, LookupOptions, OverturningParams, ResponseParams, SpectrumParams
 
 Model = TypeVar("Model", bound=BaseModel)
 
-VERSION = version("rocking")
 OUTCOMES = [outcome.name for outcome in Outcome]
 
 _PEAK = Field(description=PEAK_ROTATION.description())
@@ -41,22 +39,8 @@ _IMPACTS = Field(description=f"{IMPACTS.description()}; -1 if nodes of a data se
 _EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
 _BOUND = Field(description=ERROR_BOUND.description())
 _SOURCE = Field(description=SOURCE.description())
-QUERY = Field(description="parameters of the request, defaults included")
 
 
-class Echo:
-    """The schema of an echoed query: its parameters, and what else a body has, such as the digest of samples."""
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        found = dict(handler.resolve_ref_schema(handler(schema)))
-        found.pop("additionalProperties", None)
-        return found
-
-
-ECHO = Echo()
-VERSION_FIELD = Field(VERSION, description="version of the package")
 BY_SOLVER = Field("solver", description="what answered: always the solver")
 _DATA = Field(
     description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
@@ -71,7 +55,7 @@ def with_derived_fields(kind: Any) -> Callable[[type[Model]], type[Model]]:
 
 
 @with_derived_fields(float | None)
-class PointResponse(BaseModel):
+class PointResponse(Answer):
     """One block."""
 
     query: ResponseParams = QUERY
@@ -85,12 +69,11 @@ class PointResponse(BaseModel):
     note: str | None = Field(None, description="why peak_rotation or error_bound is null")
     source: str = _SOURCE
     data_version: str | None = _DATA
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD
 
 
 @with_derived_fields(list[float | None])
-class Columns(BaseModel):
+class Columns(Answer):
     """Many blocks, in the order of the request."""
 
     peak_rotation: list[float | None] = _PEAK
@@ -101,20 +84,27 @@ class Columns(BaseModel):
     error_bound: list[float | None] = _BOUND
     source: list[str] = _SOURCE
     data_versions: list[str] = Field(description="sha256 of each data set used")
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD
+
+
+class BatchQuery(LookupOptions):
+    """What the answer repeats of a batch."""
+
+    points: int = Field(description="number of points [-]")
 
 
 class BatchResponse(Columns):
     """A batch."""
 
-    query: dict[str, Any] = Field(description="options of the request, and its number of points")
+    query: Annotated[SerializeAsAny[BatchQuery], ECHO] = Field(
+        description="options of the request, and its number of points"
+    )
 
 
 class SpectrumResponse(Columns):
     """A spectrum."""
 
-    query: dict[str, Any] = QUERY
+    query: Annotated[SerializeAsAny[SpectrumParams], ECHO] = QUERY
     frequency_ratio: list[float] = Field(description="omega_g/p [-]")
 
 
@@ -122,19 +112,18 @@ class Curve(BaseModel):
     """One boundary curve."""
 
     outcome: str = Field(description="outcome on the side where the block overturns")
-    impacts: int = Field(description="impacts before it overturns there; -1: more than 12, or not counted")
+    impacts: int = Field(description="impacts before it overturns there; -1: more than 12, or not counted [-]")
     slenderness: list[float] = Field(description="1/a [-]")
     frequency_ratio: list[float] = Field(description="omega_g/p [-]")
 
 
-class OverturningResponse(BaseModel):
+class OverturningResponse(Answer):
     """The boundary curves of a pulse and a restitution."""
 
     query: Annotated[SerializeAsAny[OverturningParams], ECHO] = QUERY
     curves: list[Curve] = Field(description="boundary curves")
     source: str = Field(description="dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD
 
 
@@ -155,7 +144,7 @@ class ContactResponse(BaseModel):
     warnings: str = Field(description="where the assumption of pure rocking is doubtful, in words")
 
 
-class Motion(BaseModel):
+class Motion(Answer):
     """A motion: outcome and samples, whatever its variable of time is."""
 
     overturned: bool = _OVERTURNED
@@ -165,10 +154,8 @@ class Motion(BaseModel):
     rotation: list[float] = Field(description="theta/alpha [-]")
     angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau, tau = p t [-]")
     ground_acceleration: list[float] = Field(description="u_g/(g tan alpha) [-]; under a pulse a f")
-    impact_time: list[float] = Field(description="times of the impacts, of the variable of time")
     contact: ContactResponse | None = Field(None, description="null unless requested")
     source: str = BY_SOLVER
-    version: str = VERSION_FIELD
 
 
 class HistoryResponse(Motion):
@@ -176,6 +163,7 @@ class HistoryResponse(Motion):
 
     query: Annotated[SerializeAsAny[HistoryParams], ECHO] = QUERY
     tau: list[float] = Field(description="time p t from the start of the pulse [-]")
+    impact_time: list[float] = Field(description="times p t of the impacts [-]")
     metadata_url: str = METADATA_URL_FIELD
 
 
@@ -197,16 +185,16 @@ class DatasetSummary(BaseModel):
     extent: dict[str, tuple[float, float]] = Field(
         description="smallest and largest alpha [rad], slenderness [-] and frequency_ratio [-]"
     )
-    size: int = Field(description="bytes of the netCDF file")
+    size: int = Field(description="size of the netCDF file [byte]")
     sha256: str = Field(description="sha256 of the netCDF file")
     metadata: str = Field(description="path of its description")
     netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
-    version: str = Field(description="path of this version of the file; immutable")
+    version_url: str = Field(description="path of this version of the file; immutable")
     zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
     links: list[Link] = Field(description="the same paths with relation and media type")
 
 
-class DatasetCatalogue(BaseModel):
+class DatasetCatalogue(Answer):
     """All data sets."""
 
     datasets: list[DatasetSummary] = Field(description="in the order of their names")
@@ -216,27 +204,26 @@ class VariableDescription(BaseModel):
     """A variable of a data set."""
 
     dimensions: list[str] = Field(description="names of its dimensions, in order")
-    shape: list[int] = Field(description="its size along each of them")
+    shape: list[int] = Field(description="its size along each of them [-]")
     dtype: str = Field(description="type of its values")
     attributes: dict[str, Any] = Field(description="CF attributes: units, long_name, equation and others")
 
 
-class DatasetDescription(DatasetSummary):
+class DatasetDescription(DatasetSummary, Answer):
     """Contents of a data set."""
 
-    dimensions: dict[str, int] = Field(description="size of each dimension")
+    dimensions: dict[str, int] = Field(description="size of each dimension [-]")
     coordinates: dict[str, VariableDescription] = Field(description="coordinates by name")
     variables: dict[str, VariableDescription] = Field(description="variables by name")
     attributes: dict[str, Any] = Field(description="CF and ACDD attributes, digests of code and settings")
 
 
-class Health(BaseModel):
+class Health(Answer):
     """State of the service."""
 
     status: str = Field(description="ok, or degraded: data sets are missing or damaged, and the solver replaces them")
-    version: str = VERSION_FIELD
-    datasets: int = Field(description="data sets found")
-    unchecked: int = Field(0, description="of these, not yet checked; retry in a moment")
+    datasets: int = Field(description="data sets found [-]")
+    unchecked: int = Field(0, description="of these, not yet checked; retry in a moment [-]")
     problems: dict[str, str] = Field(description="what is missing or damaged, by name")
 
 
@@ -277,14 +264,16 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
     """The response for one block."""
     outcome = Outcome(point.outcome)
     overturned = outcome >= Outcome.OVERTURNED_DIRECTLY
-    note = None
+    note, warnings = None, []
     if overturned:
         note = "the block overturns: there is no peak"
     elif math.isinf(point.error_bound):
         note = "the outcome changes within the rounding of the question: there is no bound"
+        warnings = [note]
     derived: dict[str, Any] = {name: finite(value) for name, value in point.derived.items()}
     return PointResponse(
         query=params,
+        warnings=warnings,
         peak_rotation=finite(point.peak_rotation),
         overturned=overturned,
         outcome=outcome.name,

@@ -6,13 +6,17 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
+from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Params
-from rocking_api.models.responses import VERSION_FIELD, Link
+from rocking_api.models.responses import Link
 
 _NAME = Field(description="name of the suite")
 _TITLE = Field(description="title of its fragility")
 _MEASURE = Field(description="measure of intensity, such as pga")
+OF_MEASURE = "unit of the measure"
+"""What descriptions state as the unit of an intensity, which depends on the suite."""
+
 _UNIT = Field(description="unit of the measure, as CF writes it")
 
 
@@ -40,11 +44,10 @@ class SuiteSummary(BaseModel):
     links: list[Link] = Field(description="the suite, and its data sets")
 
 
-class SuiteCatalogue(BaseModel):
+class SuiteCatalogue(Answer):
     """All suites of the results folder."""
 
     suites: list[SuiteSummary] = Field(description="the suites that can be read")
-    version: str = VERSION_FIELD
 
 
 class SuiteRecord(BaseModel):
@@ -181,9 +184,10 @@ class SuiteBlock(BaseModel):
     )
 
 
-class SuiteResponse(BaseModel):
+class SuiteResponse(Answer):
     """Blocks under a suite of records."""
 
+    query: SuiteParams = QUERY
     name: str = _NAME
     title: str = _TITLE
     measure: str = _MEASURE
@@ -195,4 +199,8 @@ class SuiteResponse(BaseModel):
     blocks: list[SuiteBlock] = Field(description="the blocks")
     links: list[Link] = Field(description="the data sets of the suite, for download")
     metadata: Metadata = METADATA_FIELD
-    version: str = VERSION_FIELD
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units, with that of the measure of the suite."""
+        return {name: self.unit if unit == OF_MEASURE else unit for name, unit in super().units.items()}

@@ -71,7 +71,7 @@ async def post_assess(params: Annotated[AssessParams, Query()], request: Request
     params.check()
     body = await service.read_body(request, MAX_BODY)
     table, site = await service.run_parser(lambda _: _read(body, given, params), request, large=True)
-    return await service.run_heavy(params, lambda stop: _assess(params, site, table, form, stop), request)
+    return await service.run_heavy(params, lambda stop: _assess(params, request, site, table, form, stop), request)
 
 
 def _read(body: bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, Site]:
@@ -94,20 +94,25 @@ def _read(body: bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, S
     return table, site
 
 
-def _assess(params: AssessParams, site: Site, table: ObjectTable, form: Form, stop: StopFlag) -> Response:
+def _assess(
+    params: AssessParams, request: Request, site: Site, table: ObjectTable, form: Form, stop: StopFlag
+) -> Response:
     kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed")}
     found = assess(table.objects, site, **kept, stop=stop)
     if form == "csv":
         return text_response(found.to_csv(bad_rows=table.bad_rows), "assessment")
+    unread = len(table.bad_rows)
     return json_response(
         AssessResponse.model_validate(
             {
                 "query": params,
+                "warnings": [f"rows that were not read: {unread}, see `bad_rows`"] if unread else [],
                 "rows": found.rows,
                 "motions": found.motions,
                 "highest_factor": found.highest_factor,
                 "bad_rows": [vars(one) for one in table.bad_rows],
                 "skipped": table.skipped,
             }
-        )
+        ),
+        request,
     )

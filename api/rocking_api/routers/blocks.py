@@ -101,7 +101,7 @@ async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request
     params.check()
     body = await service.read_body(request, MAX_BODY)
     query, table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)
-    return await service.run_heavy(query, lambda stop: _blocks(service, query, table, form, stop), request)
+    return await service.run_heavy(query, lambda stop: _blocks(service, query, request, table, form, stop), request)
 
 
 def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksParams, BlockTable]:
@@ -152,12 +152,14 @@ def _check_count(count: int) -> None:
         raise TooLargeError("blocks", count, f"at most {MAX_BLOCKS}")
 
 
-def _blocks(service: Service, params: BlocksParams, table: BlockTable, form: str, stop: StopFlag) -> Response:
+def _blocks(
+    service: Service, params: BlocksParams, request: Request, table: BlockTable, form: str, stop: StopFlag
+) -> Response:
     columns: dict[str, Any] = {**respond_table(table, stop)}
     service.metrics.points("solver", len(table.problems))
     if form == "csv":
         return csv_response(columns, "blocks")
-    return json_response(BlocksResponse.model_construct(query=params, **columns))
+    return json_response(BlocksResponse.model_construct(query=params, **columns), request)
 
 
 def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse | BodyResponse:
@@ -171,7 +173,6 @@ def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockRespon
     peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
     return BlockResponse(
         query=params,
-        url=_url(params),
         response=found,
         overturned=found.overturned,
         peak_rotation_deg=None if peak is None else math.degrees(peak),
@@ -194,11 +195,7 @@ def _body(service: Service, params: BlockParams, body: RigidBody, stop: StopFlag
     motion = params.model_dump(include={"peak_acceleration", "period", "restitution"})
     found = body.response(params.pulse, **motion, stop=stop)
     service.metrics.points("solver", 1)
-    return BodyResponse(query=params, url=_url(params), thresholds=_thresholds(found.thresholds), **found.summary())
-
-
-def _url(params: BlockParams) -> str:
-    return "/v1/blocks/response?" + urlencode(params.model_dump(exclude_none=True))
+    return BodyResponse(query=params, thresholds=_thresholds(found.thresholds), **found.summary())
 
 
 def _thresholds(found: BodyThresholds) -> list[Threshold]:
@@ -220,7 +217,9 @@ def _point(service: Service, params: BlockParams, problem: BlockProblem, stop: S
     points = {name: getattr(dimensionless, name) for name in ("slenderness", "frequency_ratio", "restitution")}
     (point,) = point_results(*evaluate(service.cubes, dimensionless, **points, stop=stop))
     service.metrics.points(point.source, 1)
-    return point_response(dimensionless, point)
+    answer = point_response(dimensionless, point)
+    answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
+    return answer
 
 
 def _assessed(found: Assessment) -> dict[str, Any]:

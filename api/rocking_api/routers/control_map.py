@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field
+from pydantic import Field, SerializeAsAny
 
 from rocking._base.errors import in_range
 from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES
@@ -21,6 +21,7 @@ from rocking_api.http.caching import not_modified
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import (
     FREQUENCY_RATIO,
@@ -35,7 +36,7 @@ from rocking_api.models.params import (
     alpha_of,
 )
 from rocking_api.models.pulses import body_of
-from rocking_api.models.responses import BY_SOLVER, OUTCOMES, QUERY, VERSION_FIELD
+from rocking_api.models.responses import BY_SOLVER, OUTCOMES
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -62,19 +63,18 @@ class MapParams(Params):
     format: Format = None
 
 
-class MapResponse(BaseModel):
+class MapResponse(Answer):
     """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
-    query: dict[str, Any] = QUERY
+    query: Annotated[SerializeAsAny[MapParams], ECHO] = QUERY
     frequency_ratio: list[float] = Field(description="omega_g/p of the columns [-]")
     slenderness: list[float] = Field(description="1/a of the rows [-]")
     peak_rotation: list[float | None] = Field(
         description=f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
     )
-    outcome: list[int] = Field(description="final outcome as an index into `outcomes`")
+    outcome: list[int] = Field(description="final outcome as an index into `outcomes` [-]")
     outcomes: list[str] = Field(description="names of the outcomes")
     source: str = BY_SOLVER
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD
 
 
@@ -110,11 +110,12 @@ async def post_map(request: Request, service: ServiceDep) -> Response:
 async def _answer(params: MapParams, request: Request, service: Service) -> Response:
     form = negotiated_form(request, params.format)
     axes = _axes(service, params)
-    return await service.run_heavy(params, lambda stop: _map(params, *axes, form, stop), request)
+    return await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
 
 
 def _map(
     params: MapParams,
+    request: Request,
     frequency_ratio: NDArray[np.float64],
     slenderness: NDArray[np.float64],
     form: str,
@@ -128,9 +129,8 @@ def _map(
         alpha=alpha_of(params.alpha_deg),
         stop=stop,
     )
-    query = params.model_dump(exclude={"format"})
     if form == "nc":
-        return netcdf_response(_dataset(query, frequency_ratio, slenderness, found), "map")
+        return netcdf_response(_dataset(params, frequency_ratio, slenderness, found), "map")
     if form == "csv":
         s, w = np.meshgrid(slenderness, frequency_ratio, indexing="ij")
         columns: dict[str, NDArray[Any]] = {"slenderness": s, "frequency_ratio": w}
@@ -140,13 +140,14 @@ def _map(
         return csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
     return json_response(
         MapResponse.model_construct(
-            query=query,
+            query=params,
             frequency_ratio=frequency_ratio.tolist(),
             slenderness=slenderness.tolist(),
             peak_rotation=found.peak_rotation.ravel().round(DIGITS).tolist(),
             outcome=found.outcome.ravel().tolist(),
             outcomes=OUTCOMES,
-        )
+        ),
+        request,
     )
 
 
@@ -164,7 +165,7 @@ def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDA
 
 
 def _dataset(
-    query: dict[str, Any], frequency_ratio: NDArray[np.float64], slenderness: NDArray[np.float64], found: Found
+    params: MapParams, frequency_ratio: NDArray[np.float64], slenderness: NDArray[np.float64], found: Found
 ) -> xr.Dataset:
     """The map with the names, types and attributes of the data sets."""
     variables: dict[str, Any] = {}
@@ -174,7 +175,7 @@ def _dataset(
         values = getattr(found, name).astype(dtype)
         variables[name] = (("slenderness", "frequency_ratio"), values, MODEL_RESULT | kept)
     coordinates = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
-    attributes = {name: value for name, value in query.items() if value is not None}
+    attributes = params.model_dump(exclude={"format"}, exclude_none=True)
     return xr.Dataset(
         variables,
         coords={name: (name, values, AXES[name]) for name, values in coordinates.items()},

@@ -31,7 +31,7 @@ ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".z
 
 
 @router.get("", summary="Catalogue", response_model=DatasetCatalogue)
-async def get_datasets(service: ServiceDep) -> Response:
+async def get_datasets(request: Request, service: ServiceDep) -> Response:
     """All data sets in the results folder that can be read."""
 
     def work() -> list[Summary]:
@@ -43,7 +43,7 @@ async def get_datasets(service: ServiceDep) -> Response:
 
     summaries = await service.run_io(work)
     catalogue = DatasetCatalogue(datasets=[DatasetSummary(**_summary(summary)) for summary in summaries])
-    return json_response(catalogue, {"Cache-Control": REVALIDATE})
+    return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
 
 
 @router.head("/{name:path}.nc", include_in_schema=False)
@@ -100,10 +100,10 @@ async def get_zarr(name: DatasetName, key: ZarrKey, request: Request, service: S
 
 
 @router.get("/{name:path}", summary="Description", response_model=DatasetDescription)
-async def get_dataset(name: DatasetName, service: ServiceDep) -> Response:
+async def get_dataset(name: DatasetName, request: Request, service: ServiceDep) -> Response:
     """Dimensions, variables and attributes of a data set, its size and its sha256."""
     description = await service.run_io(partial(_description, service, name))
-    return json_response(description, {"Cache-Control": REVALIDATE})
+    return json_response(description, request, {"Cache-Control": REVALIDATE})
 
 
 def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
@@ -142,11 +142,11 @@ def _summary(found: Summary) -> dict[str, Any]:
     product = found.product
     path = f"/v1/datasets/{product.name}"
     paths = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
-    paths["version"] = f"{path}.nc?sha256={product.sha256}"
+    paths["version_url"] = f"{path}.nc?sha256={product.sha256}"
     links = [
         Link(rel="self", href=path, type="application/json"),
         Link(rel="data", href=paths["netcdf"], type="application/x-netcdf"),
-        Link(rel="version", href=paths["version"], type="application/x-netcdf"),
+        Link(rel="version", href=paths["version_url"], type="application/x-netcdf"),
         Link(rel="zarr", href=paths["zarr"], type="application/vnd+zarr"),
     ]
     if product.name.startswith("spectra/"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 
 from rocking_api.execution.kernels import NotReadyError
 from rocking_api.http.encoding import json_response
@@ -15,23 +15,23 @@ router = APIRouter(tags=["health"], route_class=ParamsRoute)
 
 
 @router.get("/health", summary="State and versions", response_model=Health)
-async def get_health(service: ServiceDep) -> Response:
+async def get_health(request: Request, service: ServiceDep) -> Response:
     """Always 200 while the process answers, whatever the state of the data sets: for what restarts it.
 
     Every data set is checked once per version of its file, in the background; this waits at most 0.1 s for it, and not
     for heavy work.
     """
-    return await _health(service)
+    return await _health(request, service)
 
 
 @router.get("/ready", summary="Whether all of it can be served", response_model=Health)
-async def get_ready(service: ServiceDep) -> Response:
+async def get_ready(request: Request, service: ServiceDep) -> Response:
     """503 while the solver is loaded, or while a data set that exists cannot be used: for what distributes requests.
 
     The damaged data sets are named. Data sets that are missing, or not yet checked, do not matter: the solver replaces
     the former, and the latter are checked before they are used.
     """
-    answer = await _health(service)
+    answer = await _health(request, service)
     if not service.kernels.is_loaded:
         raise NotReadyError("the solver is being loaded; retry in a moment")
     if service.dataset_checker.damaged:
@@ -39,8 +39,8 @@ async def get_ready(service: ServiceDep) -> Response:
     return answer
 
 
-async def _health(service: Service) -> Response:
+async def _health(request: Request, service: Service) -> Response:
     names, unchecked, problems = await service.dataset_checker.state()
     status = "degraded" if problems else "ok"
     health = Health(status=status, datasets=len(names), unchecked=unchecked, problems=problems)
-    return json_response(health, {"Cache-Control": "no-store"})
+    return json_response(health, request, {"Cache-Control": "no-store"})

@@ -30,7 +30,7 @@ async def get_history(params: Annotated[HistoryParams, Query()], request: Reques
     if params.samples > service.settings.max_samples:
         raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
     form = negotiated_form(request, params.format)
-    return await service.run_heavy(params, lambda stop: _history(params, form, stop), request)
+    return await service.run_heavy(params, lambda stop: _history(params, request, form, stop), request)
 
 
 @router.post(
@@ -45,7 +45,7 @@ async def post_history(request: Request, service: ServiceDep) -> Response:
     return await get_history(await service.read_params(HistoryParams, request), request, service)
 
 
-def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:
+def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag) -> Response:
     motion = time_history(
         params.pulse,
         slenderness=params.slenderness,
@@ -62,7 +62,9 @@ def _history(params: HistoryParams, form: str, stop: StopFlag) -> Response:
     columns, reactions = motion_columns(motion, "tau")
     if form == "csv":
         return csv_response(columns | reactions, "history")
-    return json_response(HistoryResponse.model_construct(query=params, **motion_fields(motion, reactions), **columns))
+    return json_response(
+        HistoryResponse.model_construct(query=params, **motion_fields(motion, reactions), **columns), request
+    )
 
 
 def motion_columns(motion: xr.Dataset, time: str) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -79,6 +81,7 @@ def motion_fields(motion: xr.Dataset, reactions: dict[str, Any]) -> dict[str, An
         "outcome": motion.attrs["outcome"],
         "peak_rotation": finite(float(motion.attrs["peak_rotation"])),
         "impacts": int(motion.attrs["impacts"]),
+        "warnings": [motion.attrs["warnings"]] if reactions and motion.attrs["warnings"] else [],
         "impact_time": motion["impact_time"].values.tolist(),
         "contact": _contact(motion, reactions) if reactions else None,
     }

@@ -80,7 +80,9 @@ async def post_identify(params: Annotated[IdentifyParams, Query()], request: Req
     params.check()
     body = await service.read_body(request, MAX_BODY)
     time, rotation = await service.run_parser(lambda stop: _read(body, given, stop), request, large=True)
-    return await service.run_heavy(params, lambda stop: _identified(params, time, rotation, form, stop), request)
+    return await service.run_heavy(
+        params, lambda stop: _identified(params, request, time, rotation, form, stop), request
+    )
 
 
 def _read(body: bytes, form: Form, stop: StopFlag) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -94,7 +96,12 @@ def _read(body: bytes, form: Form, stop: StopFlag) -> tuple[NDArray[np.float64],
 
 
 def _identified(
-    params: IdentifyParams, time: NDArray[np.float64], rotation: NDArray[np.float64], form: Form, stop: StopFlag
+    params: IdentifyParams,
+    request: Request,
+    time: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    form: Form,
+    stop: StopFlag,
 ) -> Response:
     # scipy.stats takes longer to import than the service to start
     from rocking._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
@@ -107,4 +114,6 @@ def _identified(
     columns: dict[str, Any] = {name: found[name].values.tolist() for name in ("time", "rotation", "impact_time")}
     columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
     noise, offset = found["noise"].item(), found["offset"].item()
-    return json_response(IdentifyResponse.model_construct(query=params, noise=noise, offset=offset, **edges, **columns))
+    return json_response(
+        IdentifyResponse.model_construct(query=params, noise=noise, offset=offset, **edges, **columns), request
+    )

@@ -47,7 +47,7 @@ async def get_overturning(
     """The curves of the workflow; without those for this restitution they are traced, and cached."""
     form = negotiated_form(request, params.format)
     try:
-        return await service.run_heavy(params, lambda stop: _overturning(service, params, form, stop), request)
+        return await service.run_heavy(params, lambda stop: _overturning(service, params, request, form, stop), request)
     except TimeLimitError as error:
         given = params.model_dump(include={"pulse", "restitution", "alpha_deg"}, exclude_none=True)
         where = f"/v1/map?{urlencode(given)}" if sampled_pulse(params) is None else "POST /v1/map"
@@ -67,7 +67,7 @@ async def post_overturning(request: Request, service: ServiceDep) -> Response:
     return await get_overturning(await service.read_params(OverturningParams, request), request, service)
 
 
-def _overturning(service: Service, params: OverturningParams, form: str, stop: StopFlag) -> Response:
+def _overturning(service: Service, params: OverturningParams, request: Request, form: str, stop: StopFlag) -> Response:
     curves, version = _read(service, params)
     if curves is None:
         curves = _traced(service, params, stop)
@@ -84,7 +84,9 @@ def _overturning(service: Service, params: OverturningParams, form: str, stop: S
         }
         return csv_response(columns, "overturning")
     source = "dataset" if version else "solver"
-    return json_response(OverturningResponse(query=params, curves=_curves(curves), source=source, data_version=version))
+    return json_response(
+        OverturningResponse(query=params, curves=_curves(curves), source=source, data_version=version), request
+    )
 
 
 def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | None, str | None]:

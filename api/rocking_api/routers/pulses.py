@@ -13,8 +13,8 @@ from pydantic import BaseModel, Field
 from rocking._base.errors import in_range
 from rocking._excitation import pulses
 from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.params import Params
-from rocking_api.models.responses import VERSION_FIELD
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
@@ -42,7 +42,7 @@ class PulseParameter(BaseModel):
     """A parameter of a pulse in Python; the service takes its default."""
 
     name: str = Field(description="name of the parameter")
-    default: float = Field(description="value that the service takes")
+    default: float = Field(description="value that the service takes [-]; a phase is in radians")
 
 
 class PulseDescription(BaseModel):
@@ -60,18 +60,20 @@ class PulseDescription(BaseModel):
     )
 
 
-class PulsesResponse(BaseModel):
+class PulsesResponse(Answer):
     """All excitations."""
 
+    query: PulsesParams = QUERY
     pulses: list[PulseDescription] = Field(description="those of the package, then those registered in this process")
-    version: str = VERSION_FIELD
 
 
 @router.get("/pulses", summary="The excitations")
 async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse:
     """Name, definition, parameters and duration of each pulse; `period` of the other routes is T_p."""
     params.check()
-    return PulsesResponse.model_construct(pulses=[_described(name, params.samples) for name in pulses.pulse_names()])
+    return PulsesResponse.model_construct(
+        query=params, pulses=[_described(name, params.samples) for name in pulses.pulse_names()]
+    )
 
 
 def _described(name: str, samples: int) -> PulseDescription:

@@ -98,7 +98,7 @@ async def post_history(
     record = await _read(params, request, service)
     if record.samples > limit and params.samples is None:
         raise TooLargeError("samples", record.samples, f"at most {limit}; state `samples`")
-    return await service.run_heavy(params, lambda stop: _history(params, record, form, stop), request)
+    return await service.run_heavy(params, lambda stop: _history(params, request, record, form, stop), request)
 
 
 @router.post(
@@ -114,7 +114,7 @@ async def post_scales(
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
     form = negotiated_form(request, params.format)
     record = await _read(params, request, service)
-    return await service.run_heavy(params, lambda stop: _scales(params, record, form, stop), request)
+    return await service.run_heavy(params, lambda stop: _scales(params, request, record, form, stop), request)
 
 
 @router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_BODY)
@@ -205,7 +205,7 @@ def _body(params: RecordResponseParams, body: RigidBody, record: Record, stop: S
     )
 
 
-def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopFlag) -> Response:
+def _history(params: RecordHistoryParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
     block = Block(params.width, params.height, params.gravity)
     motion = time_history(
         record,
@@ -225,11 +225,12 @@ def _history(params: RecordHistoryParams, record: Record, form: str, stop: StopF
             record=_description(record),
             **motion_fields(motion, reactions),
             **columns,
-        )
+        ),
+        request,
     )
 
 
-def _scales(params: RecordScalesParams, record: Record, form: str, stop: StopFlag) -> Response:
+def _scales(params: RecordScalesParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
     block = Block(params.width, params.height, params.gravity)
     eta = restitution_of(block, params.restitution)
     uplift, highest, _ = search_range(record, block, None)
@@ -263,7 +264,8 @@ def _scales(params: RecordScalesParams, record: Record, form: str, stop: StopFla
     return json_response(
         RecordScalesResponse.model_construct(
             query=params, record=_description(record), thresholds=_thresholds(thresholds, record), **columns
-        )
+        ),
+        request,
     )
 
 

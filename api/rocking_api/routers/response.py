@@ -77,7 +77,7 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     form = negotiated_form(request, None, default=given)
     batch = await _read(request, service, given)
     reservation_of(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
-    return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, form, stop), request)
+    return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, request, form, stop), request)
 
 
 async def _read(request: Request, service: Service, given: Form) -> Batch:
@@ -91,9 +91,9 @@ async def _read(request: Request, service: Service, given: Form) -> Batch:
     return await service.run_parser(read, request, large=len(body) > LARGE_BODY)
 
 
-def _answered(service: Service, batch: Batch, form: Form, stop: StopFlag) -> Response:
+def _answered(service: Service, batch: Batch, request: Request, form: Form, stop: StopFlag) -> Response:
     result = evaluate_many(service.cubes, batch.options, batch.groups, stop)
     from_cubes = int(result.from_cube.sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)
-    return batch_response(batch, result, form)
+    return batch_response(batch, request, result, form)

@@ -31,7 +31,7 @@ async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Requ
     form = negotiated_form(request, params.format)
     frequency_ratio = _axis(service, params)
     return await service.run_heavy(
-        params, lambda stop: _spectrum(service, params, frequency_ratio, form, stop), request
+        params, lambda stop: _spectrum(service, params, request, frequency_ratio, form, stop), request
     )
 
 
@@ -57,7 +57,12 @@ def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
 
 
 def _spectrum(
-    service: Service, params: SpectrumParams, frequency_ratio: NDArray[np.float64], form: str, stop: StopFlag
+    service: Service,
+    params: SpectrumParams,
+    request: Request,
+    frequency_ratio: NDArray[np.float64],
+    form: str,
+    stop: StopFlag,
 ) -> Response:
     shape = frequency_ratio.shape
     groups = {
@@ -66,12 +71,13 @@ def _spectrum(
         "restitution": np.broadcast_to(np.float64(params.restitution), shape),
     }
     result = evaluate_many(service.cubes, params, groups, stop)
-    query = params.model_dump(exclude={"format"})
     if form == "nc":
-        attributes = {name: value for name, value in query.items() if value is not None}
+        attributes = params.model_dump(exclude={"format"}, exclude_none=True)
         return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum")
     curve = {"frequency_ratio": frequency_ratio} | columns_of(result)
     if form == "csv":
         return csv_stream(curve, "spectrum")
     lists = {name: column[:].tolist() for name, column in curve.items()}
-    return json_response(SpectrumResponse.model_construct(query=query, data_versions=list(result.versions), **lists))
+    return json_response(
+        SpectrumResponse.model_construct(query=params, data_versions=list(result.versions), **lists), request
+    )

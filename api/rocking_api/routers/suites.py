@@ -19,10 +19,10 @@ SuiteName = Annotated[str, Path(description="name of a suite, see /v1/suites", e
 
 
 @router.get("", summary="Catalogue", response_model=SuiteCatalogue)
-async def get_suites(service: ServiceDep) -> Response:
+async def get_suites(request: Request, service: ServiceDep) -> Response:
     """All suites in the results folder that can be read; `make reproduce CONFIG=...` makes one."""
     found = await service.run_io(service.suites.summaries)
-    return json_response(SuiteCatalogue(suites=found), {"Cache-Control": REVALIDATE})
+    return json_response(SuiteCatalogue(suites=found), request, {"Cache-Control": REVALIDATE})
 
 
 @router.get(
@@ -43,7 +43,7 @@ async def get_suite(
     params.check()
     form = negotiated_form(request, params.format, ("json", "csv", "nrml"))
     if form == "json":
-        found = await service.run_io(partial(service.suites.suite, name))
-        return json_response(found, {"Cache-Control": REVALIDATE})
+        found = await service.run_io(partial(service.suites.suite, name, params))
+        return json_response(found, request, {"Cache-Control": REVALIDATE})
     text = await service.run_io(partial(service.suites.text, name, form, params.curves))
     return text_response(text, name, form, {"Cache-Control": REVALIDATE})

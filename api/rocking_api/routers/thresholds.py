@@ -11,10 +11,11 @@ from rocking._boundary.amplitude import Thresholds, thresholds
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.params_route import ParamsRoute
+from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
 from rocking_api.models.pulses import body_of
-from rocking_api.models.responses import BY_SOLVER, ECHO, QUERY, VERSION_FIELD
+from rocking_api.models.responses import BY_SOLVER
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -44,10 +45,10 @@ class AmplitudeThreshold(BaseModel):
     )
     outcome: str = Field(description="outcome on the side where it overturns")
     meaning: str = Field(description="that outcome in words")
-    impacts: int = Field(description="impacts before it overturns there")
+    impacts: int = Field(description="impacts before it overturns there [-]")
 
 
-class AmplitudeResponse(BaseModel):
+class AmplitudeResponse(Answer):
     """All amplitudes at which the outcome changes."""
 
     query: Annotated[SerializeAsAny[AmplitudeParams], ECHO] = QUERY
@@ -56,7 +57,6 @@ class AmplitudeResponse(BaseModel):
         description="amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
     source: str = BY_SOLVER
-    version: str = VERSION_FIELD
     metadata_url: str = METADATA_URL_FIELD
 
 

@@ -1,0 +1,89 @@
+"""What every JSON answer holds beside its own fields: the question, units, warnings, version, and how to ask again."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from importlib.metadata import version
+from typing import Any, get_args
+
+from fastapi import Request
+from pydantic import BaseModel, Field, GetJsonSchemaHandler, computed_field
+from pydantic_core import core_schema
+
+from rocking_api.models.params import Params
+
+VERSION = version("rocking")
+
+QUERY = Field(description="parameters of the request, defaults included; empty without any")
+
+_UNIT = re.compile(r"(\w*) \[([^]]+)\]")
+
+
+_PULSE = {"type": "string", "title": "Pulse", "description": "name of the pulse, or of its samples"}
+
+
+class Echo:
+    """The schema of an echoed query: its parameters, and what else a body has, such as the digest of samples."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        found = dict(handler.resolve_ref_schema(handler(schema)))
+        found.pop("additionalProperties", None)
+        if "pulse" in found["properties"]:
+            found["properties"] = found["properties"] | {"pulse": _PULSE}
+        return found
+
+
+ECHO = Echo()
+
+
+class Answer(BaseModel):
+    """Base of the models of all routes that answer in JSON; a route with parameters declares its own `query`."""
+
+    query: Params = Field(default=Params(), description=QUERY.description)
+    warnings: list[str] = Field(default_factory=list, description="where the answer is in doubt")
+    version: str = Field(default=VERSION, description="version of the package")
+    url: str = Field(
+        default="",
+        description="path and query string that repeat the question; POST and a blank before them: with the body",
+    )
+
+    @computed_field(  # type: ignore[prop-decorator]
+        description="unit of each number by its field, 1 for a plain number; names of nested fields are joined by dots"
+    )
+    @property
+    def units(self) -> dict[str, str]:
+        return units_of(type(self))
+
+
+@cache
+def units_of(model: type[BaseModel]) -> dict[str, str]:
+    """The units in the descriptions of the fields of a model, by field; `1` for [-].
+
+    Several in one description are those of the keys of a dictionary, each after its key.
+    """
+    units: dict[str, str] = {}
+    for name, field in model.model_fields.items():
+        stated = [(key, "1" if unit == "-" else unit) for key, unit in _UNIT.findall(field.description or "")]
+        units |= {name if len(stated) == 1 else f"{name}.{key}": unit for key, unit in stated}
+        for nested in _models_in(field.annotation):
+            units |= {f"{name}.{inner}": unit for inner, unit in units_of(nested).items()}
+    return units
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
+
+
+def url_of(request: Request) -> str:
+    """Path and query string of a request, after the method unless it is GET."""
+    scope = request.scope
+    given = scope["raw_path"] + b"?" + scope["query_string"] if scope["query_string"] else scope["raw_path"]
+    url: str = given.decode("latin-1")
+    return url if scope["method"] == "GET" else f"{scope['method']} {url}"
