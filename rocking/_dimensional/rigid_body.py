@@ -344,7 +344,13 @@ def body_of_size(
     mass_height: Scalar | None = None,
     gravity: Scalar = STANDARD_GRAVITY,
 ) -> Block | RigidBody:
-    """The block of this size, or the body if its centre of mass is elsewhere; arguments as of `RigidBody.from_size`."""
-    if mass_height is None and not number("offset", offset, -math.inf, math.inf, unit="m"):
+    """The block of this size, or the body if its centre of mass is elsewhere, at most at its height.
+
+    Arguments and errors are those of `RigidBody.from_size`.
+    """
+    if mass_height is not None:
+        highest = number("height", height, 0.0, math.inf, closed="neither", unit="m")
+        mass_height = number("mass_height", mass_height, 0.0, highest, closed="right", unit="m")
+    elif not number("offset", offset, -math.inf, math.inf, unit="m"):
         return Block(width, height, gravity)
     return RigidBody.from_size(width, height, offset=offset, mass_height=mass_height, gravity=gravity)

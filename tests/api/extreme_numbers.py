@@ -179,8 +179,8 @@ SUITE: dict[str, Any] = {
 
 QUERY: dict[str, Any] = {
     "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
-    "samples": 20, "points": 20, "mass_height": 0.8,
-    "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
+    "mass_height": 0.8,
+    "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
     "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
 }  # fmt: skip
 """Ordinary values of the parameters of routes that have neither an example nor a default, or an expensive one."""
@@ -420,6 +420,8 @@ def walk_routes(walk: Walk, results: Path) -> None:
                 if value is None and is_numeric(one["schema"]) and key not in EXCLUDED:
                     walk.faults.append(f"{name}: the parameter {key} has no ordinary value in this test")
                 query[key] = value
+            if "mass_height" in query:
+                query.pop("fit", None)  # only a block in the middle is compared with a fitted pulse
             target = path.format(**{key: query.pop(key) for key in list(query) if f"{{{key}}}" in path})
             query = {key: value for key, value in query.items() if value is not None}
             numbers = {key: value for key, value in query.items() if is_numeric(parameters[key]["schema"])}
