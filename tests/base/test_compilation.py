@@ -226,7 +226,8 @@ def test_pairs_of_reference_counts_are_removed_from_entries(monkeypatch):
 @pytest.mark.skipif(INTERNALS is None, reason="of the faster way alone")
 def test_only_entries_that_count_references_are_prepared_for_the_removal_of_pairs(monkeypatch, tmp_path):
     """The others are optimised once, which takes a twentieth less time."""
-    monkeypatch.setattr("rocking._numba.kernel_cache.cache_folder", lambda: str(tmp_path))  # what is cached is not optimised again
+    # what is cached is not optimised again
+    monkeypatch.setattr("rocking._numba.kernel_cache.cache_folder", lambda: str(tmp_path))
     prepared = []
     optimise = CPUCodeLibrary._optimize_final_module
 
