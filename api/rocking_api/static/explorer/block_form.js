@@ -69,7 +69,7 @@ export function fillForm(state, scenario) {
   const own = isSampled(state.pulse);
   pulse.value = own ? OWN : state.pulse;
   samples.parentElement.hidden = !own;
-  if (own) samples.value = state.pulse;
+  if (own && document.activeElement !== samples) samples.value = state.pulse; // not while it is typed
   for (const name of QUANTITIES) {
     if (state[name] === "") continue;
     const { value, unit } = split(state[name]);
