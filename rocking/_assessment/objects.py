@@ -213,9 +213,9 @@ class MeshObject(Object):
         return {f"{angle} deg": _mesh_plane(self.path, angle, self.unit) for angle in range(0, 180, STEP)}
 
     def outline(self, direction: str) -> Array:
-        from rocking._assessment.outline import mesh_outline  # noqa: PLC0415  (trimesh is an extra)
+        from rocking._dimensional.mesh import mesh_outline  # noqa: PLC0415  (trimesh is an extra)
 
-        angle = float(direction.removesuffix(" deg"))
+        angle = math.radians(float(direction.removesuffix(" deg")))
         offset = np.array([self.planes[direction].offset, 0.0])  # of the centre of mass from the middle of the base
         return np.asarray(mesh_outline(self.path, angle, self.unit) + offset)
 

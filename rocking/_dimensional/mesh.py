@@ -1,4 +1,4 @@
-"""Mass properties of a surface mesh in a vertical plane, by trimesh (extra `mesh`)."""
+"""Mass properties and outline of a surface mesh in a vertical plane, by trimesh (extra `mesh`)."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.units import UNITS
@@ -34,13 +36,7 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
         If the file cannot be read, encloses no volume, or does not stand.
     """
     factor = UNITS["m"][one_of("unit", unit, UNITS["m"])]
-    try:
-        mesh = trimesh.load_mesh(Path(path), process=True)
-    except Exception as error:  # noqa: BLE001  (each format has its own errors)
-        raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
-    if not len(mesh.vertices) or not abs(mesh.volume) > 0.0:
-        raise InvalidArgumentError("path", str(path), "a mesh that encloses a volume")
-    along = np.array([math.cos(direction), math.sin(direction), 0.0])
+    mesh, along = _mesh(path), _horizontal(direction)
     across = np.cross([0.0, 0.0, 1.0], along)
     points, centre = np.asarray(mesh.vertices), np.asarray(mesh.center_mass)
     lowest, highest = float(points[:, 2].min()), float(points[:, 2].max())
@@ -58,3 +54,33 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
         (highest - lowest) * factor,
     )
     return found, bool(mesh.is_watertight)
+
+
+def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.float64]:
+    """Convex outline in the plane of a direction, for drawings; arguments and errors as of `mesh_properties`.
+
+    Returns
+    -------
+    float array (points, 2)
+        Distances from the centre of mass along the plane, and heights above the lowest point [m].
+    """
+    mesh = _mesh(path)
+    vertices = np.asarray(mesh.vertices)
+    heights = vertices[:, 2] - vertices[:, 2].min()
+    points = np.stack([(vertices - mesh.center_mass) @ _horizontal(direction), heights], axis=1)
+    return np.asarray(points[ConvexHull(points).vertices] * UNITS["m"][unit])
+
+
+def _mesh(path: str | Path) -> trimesh.Trimesh:
+    try:
+        mesh = trimesh.load_mesh(Path(path), process=True)
+    except Exception as error:  # noqa: BLE001  (each format has its own errors)
+        raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
+    if not len(mesh.vertices) or not abs(mesh.volume) > 0.0:
+        raise InvalidArgumentError("path", str(path), "a mesh that encloses a volume")
+    return mesh
+
+
+def _horizontal(direction: float) -> NDArray[np.float64]:
+    """Unit vector at an angle from the x axis [rad]."""
+    return np.array([math.cos(direction), math.sin(direction), 0.0])
