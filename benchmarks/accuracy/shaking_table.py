@@ -3,7 +3,7 @@
 The folder is `data/Shake_Table_Response` of the virtual shake robot study, the repository
 ZhiangChen/virtual_shake_robot_pybullet (GPL-3): `TestNNN.txt` with the measured motion of the table, 800 samples a
 second, and `Results_Granite.xlsx` with the outcomes of two specimens and of discrete-element runs. The sheet is read by
-pandas with openpyxl; a sheet saved as CSV under the same name serves as well. docs/shaking-table.md has the results.
+the extra `sheets`; a sheet saved as CSV under the same name serves as well. docs/shaking-table.md has the results.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def read_test(path: Path) -> rocking.Record:
 def read_outcomes(folder: Path) -> pd.DataFrame:
     """Outcomes by number of the test, true where the specimen overturned; `measured` and names of runs by specimen."""
     sheet = folder / "Results_Granite.csv"
-    table = pd.read_csv(sheet) if sheet.exists() else pd.read_excel(sheet.with_suffix(".xlsx"))
+    table = pd.read_csv(sheet) if sheet.exists() else pd.read_excel(sheet.with_suffix(".xlsx"), engine="calamine")
     table = table.set_index("Test Number").astype(bool)
     names = [re.search(r"Specimen (\d)(?:-Numerical (.+))?", name) for name in table.columns]
     table.columns = pd.MultiIndex.from_tuples([(int(one[1]), one[2] or "measured") for one in names if one])

@@ -9,6 +9,7 @@ import pytest
 import rocking
 from rocking._assessment.columns import VERDICTS
 from tests.api.conftest import assert_problem
+from tests.sheets import xlsx_bytes
 
 TABLE = "object;width [cm];height [cm]\nvase;22;55\n<b>slab</b>;5;60\njug;wide;40\n"
 SITE = {"pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s"}
@@ -82,11 +83,6 @@ def test_files_are_read_as_text(client):
 
 
 def test_a_sheet_becomes_text_with_its_cells(client):
-    openpyxl = pytest.importorskip("openpyxl")
-    book = openpyxl.Workbook()
-    for row in (["object", "width [cm]", "height [cm]"], ["vase", 22, 55.5]):
-        book.active.append(row)
-    content = io.BytesIO()
-    book.save(content)
-    text = client.post("/objects/text?name=a.xlsx", content=content.getvalue()).text
+    content = xlsx_bytes([["object", "width [cm]", "height [cm]"], ["vase", 22, 55.5]])
+    text = client.post("/objects/text?name=a.xlsx", content=content).text
     assert text.splitlines() == ["object;width [cm];height [cm]", "vase;22;55.500000000"]

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import zipfile
 
 import pytest
 
@@ -10,6 +9,7 @@ import rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.table import read_blocks, read_table
+from tests.sheets import xlsx_bytes
 
 HEADER = "name,width [m],height [m],peak_acceleration [g],period [s]\n"
 NAMES = ["vase, blue", 'say "no"', "two\nlines", "a\rb", "a\r\nb", " vase ", "", "vase; red", "6'", "=1+1", "'-1"]
@@ -112,37 +112,10 @@ def test_values_for_all_rows_stand_for_columns_that_the_table_lacks(tmp_path):
     assert {(problem.peak_acceleration, problem.period) for problem in table.problems} == {(4.0, 0.5)}
 
 
-SHEET = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-PACKAGE = "http://schemas.openxmlformats.org/package/2006"
-
-
 def test_a_sheet_is_read_as_its_text_is(tmp_path):
-    pytest.importorskip("python_calamine")
-    rows = [["Name", "width [cm]", "height", "PGA [g]", "period [s]"], ["vase", 20, "0,8 m", 0.4, 0.5]]
-    cells = "".join(
-        "<row>"
-        + "".join(
-            f'<c t="inlineStr"><is><t>{one}</t></is></c>' if isinstance(one, str) else f"<c><v>{one}</v></c>"
-            for one in row
-        )
-        + "</row>"
-        for row in rows
-    )
-    parts = {
-        "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types"/>',
-        "_rels/.rels": f'<Relationships xmlns="{PACKAGE}/relationships"><Relationship Id="rId1" '
-        f'Type="{OFFICE}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
-        "xl/workbook.xml": f'<workbook xmlns="{SHEET}" xmlns:r="{OFFICE}"><sheets>'
-        '<sheet name="a" sheetId="1" r:id="rId1"/></sheets></workbook>',
-        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}/relationships"><Relationship Id="rId1" '
-        f'Type="{OFFICE}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
-        "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{SHEET}"><sheetData>{cells}</sheetData></worksheet>',
-    }
     path = tmp_path / "blocks.xlsx"
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, text in parts.items():
-            archive.writestr(name, text)
+    rows = [["Name", "width [cm]", "height", "PGA [g]", "period [s]"], ["vase", 20, "0,8 m", 0.4, 0.5]]
+    path.write_bytes(xlsx_bytes(rows))
     table = read_blocks(path, "sine")
     assert table.names == ["vase"]
     assert (table.problems[0].block.width, table.problems[0].block.height) == (0.2, 0.8)
