@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.motions import first_exceedances
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.result import Assessment
 from rocking._assessment.search import (
@@ -23,7 +24,7 @@ from rocking._assessment.search import (
 )
 from rocking._assessment.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
 from rocking._assessment.site import Motion, Site
-from rocking._assessment.sliding import first_exceedance, sliding_displacement
+from rocking._assessment.sliding import sliding_displacement
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._base.units import Scalar
@@ -63,8 +64,8 @@ def assess(
     site : Site
         The ground motions; horizontal ones come from both sides.
     sensitivity : bool
-        Whether to compute the smallest width, the largest height and the factors of changed objects, which takes most
-        of the time.
+        Whether to compute the smallest width, the largest height, the factors of changed objects, and when an object
+        with a coefficient of friction needs more of it while it rocks, which takes most of the time.
     samples : int
         Quasi-random variants of each object within its tolerance, and 0.05 of the restitution, of which
         `sampled_share` is the share that overturns, 0 to 100,000; 0: none.
@@ -140,7 +141,7 @@ def assess(
         "yearly_rate": _yearly_rate(body, site, stop),
         "friction_needed": uplift / STANDARD_GRAVITY,
     }
-    columns |= _sliding(given, body, motions, stop)
+    columns |= _sliding(given, body, motions, sensitivity, stop)
     columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
         columns |= changed_objects(given, bodies, motions, stop, lambda share: advance(1.0 + share))
@@ -184,22 +185,31 @@ def _yearly_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> Array:
 
 
 def _sliding(
-    objects: Sequence[Object], body: BodyArray, motions: Sequence[Motion], stop: StopFlag | None
+    objects: Sequence[Object], body: BodyArray, motions: Sequence[Motion], rocking: bool, stop: StopFlag | None
 ) -> dict[str, Any]:
-    """Whether each body slides before it rocks (None: not known), from when on, and how far at most if it does."""
+    """Whether each body slides before it rocks (None: not known), under which motions from when on, and how far."""
+    given: list[Any] = [one.friction for one in objects for _ in one.planes]
+    friction = np.array([math.nan if mu is None else mu for mu in given], dtype=np.float64)
     needed = np.asarray(body.uplift_acceleration) / STANDARD_GRAVITY
+    first = [None if mu is None else bool(mu < need) for mu, need in zip(given, needed, strict=True)]
+    times = first_exceedances(body, friction, motions, stop, rocking=rocking)
 
     @cache
-    def slips(friction: float) -> tuple[float, float]:
+    def slip(mu: float) -> float:
         check_stop(stop)
-        times = [first_exceedance(motion, friction) for motion in motions]
-        return float(np.fmin.reduce(times)), max(sliding_displacement(motion, friction) for motion in motions)
+        return max(sliding_displacement(motion, mu) for motion in motions)
 
-    given: list[Any] = [one.friction for one in objects for _ in one.planes]
-    first = [None if mu is None else bool(mu < need) for mu, need in zip(given, needed, strict=True)]
-    found = [slips(mu) if slides else (math.nan, math.nan) for mu, slides in zip(given, first, strict=True)]
-    at, displacement = np.array(found).T
-    return {"slides_first": np.array(first, dtype=object), "slides_at": at, "sliding": displacement}
+    def under(row: Array) -> str:
+        listed = (f"{one.name} from {t:.3g} s" for one, t in zip(motions, row.tolist(), strict=True) if t == t)
+        return "; ".join(listed) or "none"
+
+    known = [slides or (slides is not None and rocking) for slides in first]
+    return {
+        "slides_first": np.array(first, dtype=object),
+        "slides_under": [under(row) if own else "" for row, own in zip(times, known, strict=True)],
+        "slides_at": least(times),
+        "sliding": np.array([slip(mu) if slides else math.nan for mu, slides in zip(given, first, strict=True)]),
+    }
 
 
 def _warnings(objects: Sequence[Object], columns: dict[str, Any]) -> list[str]:
@@ -214,6 +224,9 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any]) -> list[str]:
             texts.append(
                 f"slides before it rocks: friction {one.friction:.3g}, {columns['friction_needed'][k]:.3g} needed"
             )
+        elif math.isfinite(columns["slides_at"][k]):
+            when = f"more is needed from {columns['slides_at'][k]:.3g} s on"
+            texts.append(f"may slide while it rocks: friction {one.friction:.3g}, {when}")
         if columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
         if one.diameter is not None:

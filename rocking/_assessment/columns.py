@@ -101,7 +101,12 @@ OUTPUTS = (
     Column("yearly_rate", "1/year", "annual rate of overturning, where a hazard curve is given"),
     Column("friction_needed", "-", "coefficient of friction that uplift needs"),
     Column("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
-    Column("slides_at", "s", "earliest time at which a motion needs more friction than that, where it slides first"),
+    Column(
+        "slides_under",
+        "",
+        "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, too",
+    ),
+    Column("slides_at", "s", "earliest of these times"),
     Column("sliding", "m", "displacement if it only slides, where it slides first; the other bound"),
     Column(
         "smallest_width", "m", "smallest base at this height up to which the motions of the site do not overturn it"

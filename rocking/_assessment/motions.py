@@ -10,16 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.objects import Bodies, BodyArray, Object
-from rocking._assessment.search import least
-from rocking._assessment.site import LENGTH, Motion
+from rocking._assessment.search import least, problems_of
+from rocking._assessment.site import LENGTH, Motion, static_acceleration
 from rocking._assessment.sliding import first_exceedance
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
+from rocking._history.contact import contact_extremes, first_excess
 from rocking._model.parameters import FREQUENCY_RATIO
-from rocking._numba.cancellation import StopFlag
+from rocking._numba.cancellation import StopFlag, check_stop
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +39,7 @@ def bodies_of(given: Sequence[tuple[Object, str]]) -> BodyArray:
     return Bodies.of(one for one, _ in given).take(starts + np.array(rows)).scaled()
 
 
-def history_of(one: Object, direction: str, motion: Motion, *, contact: bool = False) -> xr.Dataset:
+def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     """The motion of an object under a motion of a site, from the side from which it rotates more."""
     sides = [
         RigidBody(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
@@ -46,7 +48,7 @@ def history_of(one: Object, direction: str, motion: Motion, *, contact: bool = F
     peak: dict[str, Any] = {"peak_acceleration": motion.peak_acceleration, "period": motion.period}
     if isinstance(motion.motion, Record):
         peak = {"scale": motion.peak_acceleration / motion.motion.peak_acceleration}
-    found = [side.history(motion.motion, restitution=one.restitution, contact=contact, **peak) for side in sides]
+    found = [side.history(motion.motion, restitution=one.restitution, **peak) for side in sides]
     return max(found, key=lambda each: float(np.abs(each["rotation"]).max()))
 
 
@@ -55,19 +57,12 @@ def friction_of(one: Object, direction: str, motions: Sequence[Motion]) -> xr.Da
     import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 
     body = bodies_of([(one, direction)])
-    slope = float((body.uplift_acceleration / body.gravity)[0])
-    friction: Any = one.friction  # a number, see `Object`
-    needed, exceeded = [], []
-    for motion in motions:
-        found = history_of(one, direction, motion, contact=True)
-        needed.append(found.attrs["largest_friction_demand"])
-        if friction is None:
-            exceeded.append(math.nan)
-        elif friction < slope:
-            exceeded.append(first_exceedance(motion, friction))
-        else:
-            over = np.flatnonzero(found["friction_demand"].values > friction)
-            exceeded.append(float(found["time"].values[over[0]]) if over.size else math.nan)
+    needed = [
+        max(contact_extremes(each.body_motion()).largest_friction_demand for each in problems_of(body, motion))
+        for motion in motions
+    ]
+    given: Any = math.nan if one.friction is None else one.friction  # a number, see `Object`
+    exceeded = first_exceedances(body, np.array([given]), motions)[0]
     variables = {
         "friction_needed": ("motion", needed, {"units": "1", "long_name": "largest coefficient of friction needed"}),
         "exceeded_at": (
@@ -77,6 +72,30 @@ def friction_of(one: Object, direction: str, motions: Sequence[Motion]) -> xr.Da
         ),
     }
     return xr.Dataset(variables, {"motion": [motion.name for motion in motions]})
+
+
+def first_exceedances(
+    body: BodyArray, friction: Array, motions: Sequence[Motion], stop: StopFlag | None = None, *, rocking: bool = True
+) -> Array:
+    """Times at which motions first need more than the friction (bodies,) of bodies [s]; array (bodies, motions).
+
+    Nan where a motion does not, where the friction is nan, and, without `rocking`, of bodies that uplift before they
+    slide: their whole motion is computed otherwise.
+    """
+    uplift = np.asarray(body.uplift_acceleration)
+    slides = friction * STANDARD_GRAVITY < uplift
+    found = np.full((friction.size, len(motions)), math.nan)
+    for k, motion in enumerate(motions):
+        at = {mu: first_exceedance(motion, mu) for mu in set(friction[slides].tolist())}
+        found[slides, k] = [at[mu] for mu in friction[slides].tolist()]
+        rocks = np.flatnonzero(~slides & ~np.isnan(friction) & (static_acceleration(motion) > uplift))
+        for problem in problems_of(body, motion) if rocking else ():
+            p = problem.body.right.frequency_parameter
+            for row in rocks.tolist():
+                time = first_excess(problem.body_motion(stop=stop, index=row), friction[row]) / p[row]
+                found[row, k] = np.fmin(found[row, k], time)
+                check_stop(stop)
+    return found
 
 
 def envelope_of(

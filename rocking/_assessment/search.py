@@ -51,7 +51,7 @@ def factors_of(
         if progress is not None:
             progress(k / len(motions))
         peak = motion.peak_acceleration
-        problems = _problems(body, motion, peak)
+        problems = problems_of(body, motion)
         if isinstance(motion.motion, Record):
             found = [_record_factor(one, motion.motion, stop) for one in problems]
         else:
@@ -67,7 +67,7 @@ def overturned_by(
     given = motion.peak_acceleration if acceleration is None else acceleration
     if isinstance(motion.motion, Record):
         given = np.minimum(given, motion.motion.peak_acceleration * _strongest(motion.motion))
-    problems = _problems(body, motion, given)
+    problems = problems_of(body, motion, given)
     codes = [problem.solve(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
     return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
 
@@ -78,7 +78,7 @@ def responses_of(
     """Whether each motion overturns each body, and otherwise its largest rotation [rad] and movement of the top [m]."""
     overturned, rotation, displacement = [], [], []
     for motion in motions:
-        problems = _problems(body, motion, motion.peak_acceleration)
+        problems = problems_of(body, motion)
         found = [respond_bodies(problem, stop=stop) for problem in problems]
         overturned.append(np.logical_or.reduce([one.overturned for one in found]))
         rotation.append(np.fmax.reduce([one.rotation for one in found]))
@@ -86,9 +86,10 @@ def responses_of(
     return np.stack(overturned, 1), np.stack(rotation, 1), np.stack(displacement, 1)
 
 
-def _problems(body: BodyArray, motion: Motion, acceleration: Array | float) -> list[BodyProblem]:
-    """The bodies under a motion, and under its mirror image where that differs."""
-    given = motion.motion, np.asarray(acceleration), np.asarray(motion.period), None
+def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[BodyProblem]:
+    """The bodies under a motion, and its mirror image where that differs, at the strength of the site or another."""
+    peak = motion.peak_acceleration if acceleration is None else acceleration
+    given = motion.motion, np.asarray(peak), np.asarray(motion.period), None
     return [BodyProblem(side, *given) for side in body.sides]
 
 

@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 
 from rocking._assessment.objects import Bodies, Object
 from rocking._assessment.search import Progress, factors_of, least, overturned_by
-from rocking._assessment.site import Motion
-from rocking._base.constants import STANDARD_GRAVITY
-from rocking._excitation.records.record import Record
+from rocking._assessment.site import Motion, static_acceleration
 from rocking._numba.cancellation import StopFlag
 
 Array = NDArray[np.float64]
@@ -104,7 +102,7 @@ def _any_overturns(
 
 def _limiting_sizes(bodies: Bodies, motions: Sequence[Motion], stop: StopFlag | None) -> dict[str, Array]:
     """Smallest base and largest height up to which, from where a body does not uplift, no motion overturns it [m]."""
-    strongest = max(_static_acceleration(motion) for motion in motions)
+    strongest = max(static_acceleration(motion) for motion in motions)
     still = strongest / np.asarray(bodies.scaled().uplift_acceleration)  # on a base larger by this it does not uplift
     rows = np.arange(still.size)
     every, sizes = np.repeat(rows, SIZES.size), np.tile(SIZES, still.size)
@@ -122,16 +120,6 @@ def _limiting_sizes(bodies: Bodies, motions: Sequence[Motion], stop: StopFlag | 
         size = _bisected(lambda size: reached(rows, size), low, high, known)
         found[name] = bodies.base * still / size if narrower else bodies.height * size / still
     return found
-
-
-def _static_acceleration(motion: Motion) -> float:
-    """Acceleration that tilts a body at rest as much as the motion with its vertical component [m/s2]."""
-    given = motion.motion
-    if not isinstance(given, Record) or given.vertical is None:
-        return motion.peak_acceleration
-    scale = motion.peak_acceleration / given.peak_acceleration
-    weight = 1.0 + scale * given.vertical / STANDARD_GRAVITY
-    return float(np.max(scale * np.abs(given.acceleration) / np.maximum(weight, 0.01)))
 
 
 def _bisected(overturns: Callable[[Array], Bools], low: Array, high: Array, known: Bools) -> Array:

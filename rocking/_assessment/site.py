@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number
 from rocking._base.units import Scalar, Values
 from rocking._excitation.impulse import impulse_of
@@ -261,6 +262,16 @@ def sampled(motion: Motion) -> Record:
     phases = np.linspace(pulse.start, pulse.end, SHAPE_PIECES + 1)
     step = (phases[1] - phases[0]) * motion.period / (2.0 * math.pi)
     return Record(pulse.shape(phases) * motion.peak_acceleration, step, "m/s2", motion.name)
+
+
+def static_acceleration(motion: Motion) -> float:
+    """Acceleration that tilts a body at rest as much as the motion with its vertical component [m/s2]."""
+    given = motion.motion
+    if not isinstance(given, Record) or given.vertical is None:
+        return motion.peak_acceleration
+    scale = motion.peak_acceleration / given.peak_acceleration
+    weight = 1.0 + scale * given.vertical / STANDARD_GRAVITY
+    return float(np.max(scale * np.abs(given.acceleration) / np.maximum(weight, 0.01)))
 
 
 def _floats(value: Any) -> list[float]:

@@ -128,13 +128,17 @@ class BodyProblem:
 
         return solve
 
-    def body_motion(self, duration: float | None = None, stop: StopFlag | None = None) -> BodyMotion:
-        """The motion of one body as a function of time, up to a duration [s] or 8/p after the ground motion."""
+    def body_motion(self, duration: float | None = None, stop: StopFlag | None = None, index: int = 0) -> BodyMotion:
+        """The motion of one of the bodies over time, up to a duration [s] or 8/p after the ground motion."""
         self._reject_flight()
-        cell: KernelRecord = self.cells[:1].copy()[0]
-        inertia = float(self.body.right.inertia_ratio), float(self.body.left.inertia_ratio)
-        tilt = float(self.body.tilt)
-        p = float(self.body.right.frequency_parameter)
+        cell: KernelRecord = self.cells[index : index + 1].copy()[0]
+        edges, place = (self.body.right, self.body.left), np.unravel_index(index, self.shape)
+
+        def own(values: Array) -> float:
+            return float(np.broadcast_to(values, self.shape)[place])
+
+        inertia = own(edges[0].inertia_ratio), own(edges[1].inertia_ratio)
+        tilt, p = own(self.body.tilt), own(edges[0].frequency_parameter)
         motion = self.motion
         if isinstance(motion, Record):
             end, rows = p * motion.duration, motion_samples(motion)

@@ -263,6 +263,39 @@ def contact_extremes(motion: BodyMotion) -> ContactExtremes:
     )
 
 
+def first_excess(motion: BodyMotion, friction: float) -> float:
+    """tau from which a motion needs more than a coefficient of friction; nan if it does not.
+
+    Up to where a body that overturns exceeds alpha permanently, as `contact_extremes`. The demand is taken to be linear
+    between samples: `MAX_STEP` apart in tau and in the phase of the ground motion, and both sides of every event.
+    """
+    record, impact_times = motion.events()
+    end, sides = motion.pulse_end, _event_sides(motion, record, impact_times)
+    step = max(MAX_STEP / motion.ground_rate, end / MAX_STEPS)
+    tau = np.concatenate([np.arange(0.0, end, step), np.arange(end, motion.horizon, MAX_STEP), sides])
+    tau = np.unique(np.clip(tau, 0.0, motion.horizon))
+    rotation, velocity = motion.sample(tau)
+    count = motion.sample_count(tau, rotation, record)
+    if overturned(record):
+        count = min(count, int(np.flatnonzero(np.abs(rotation[:count]) <= 1.0)[-1]) + 1)
+    tau = tau[:count]
+    found = reactions_of(motion, impact_times, tau, rotation[:count], velocity[:count])
+    excess = math.tan(motion.alpha) * found.friction_demand - friction
+    over = np.flatnonzero(excess > 0.0)
+    if not over.size:
+        return math.nan
+    k = int(over[0])
+    if k == 0 or excess[k] == math.inf:
+        return float(tau[k])
+    return float(tau[k] - (tau[k] - tau[k - 1]) * (excess[k] / (excess[k] - excess[k - 1])))
+
+
+def _event_sides(motion: BodyMotion, record: Record, impact_times: Floats) -> Floats:
+    """Events, times just before and after each of them, and where the ground acceleration has kinks; not in order."""
+    events = np.concatenate([impact_times, motion.jump_times(record), [motion.pulse_end]])
+    return np.concatenate([events, events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET), motion.kink_times])
+
+
 def _largest_impulse_ratio(motion: BodyMotion, left: Floats) -> float:
     """Of impacts that leave the edges with these sgn(theta); 0 if there are none."""
     alpha = motion.alpha + motion.tilt, motion.alpha * motion.contact_geometry.ratio - motion.tilt  # above the base
@@ -279,9 +312,7 @@ def _fine_samples(motion: BodyMotion, record: Record, impact_times: Floats) -> t
     end = motion.pulse_end
     after = max(impact_times.max(initial=end) - end, 0.0) + LAST_FLIGHT
     steps = max(MAX_STEP / motion.ground_rate, end / MAX_STEPS), max(MAX_STEP, after / MAX_STEPS)
-    events = np.concatenate([impact_times, motion.jump_times(record), [end]])
-    sides = events * (1 - EVENT_OFFSET), events * (1 + EVENT_OFFSET)
-    tau = np.concatenate([np.linspace(0.0, motion.horizon, 400), events, *sides, motion.kink_times])
+    tau = np.concatenate([np.linspace(0.0, motion.horizon, 400), _event_sides(motion, record, impact_times)])
     tau = np.unique(np.clip(tau, 0.0, motion.horizon))
     while True:
         rotation, velocity = motion.sample(tau)

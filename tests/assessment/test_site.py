@@ -1,12 +1,13 @@
 """Pairs of components, floors and records of a site, meshes, samples and friction."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import rocking
-from rocking._assessment.motions import envelope_of, history_of
+from rocking._assessment.motions import envelope_of
 from rocking._assessment.search import LEVELS, RECORD_RESOLUTION
 from rocking._assessment.sensitivity import ETA_CHANGE
 from rocking._assessment.site import Motion
@@ -151,19 +152,44 @@ def test_friction_is_exceeded_where_the_motion_says() -> None:
     assert first_exceedance(motion, 0.2) == pytest.approx(0.2 * g / (4.0 + 2.0 * 0.2), rel=1e-12)
     assert math.isnan(first_exceedance(motion, 0.6))
     site = rocking.Site(4.0, 0.5, shapes=["sine"])
-    rough, smooth = (rocking.Object("one", width=0.3, height=1.0, friction=mu) for mu in (0.31, 0.2))
+    smooth = rocking.Object("one", width=0.3, height=1.0, friction=0.2)
     (row,) = rocking.assess(smooth, site, sensitivity=False).rows
     angle = math.asin(0.2 * g / 4.0)
     assert row["slides_at"] == pytest.approx(angle / (2.0 * math.pi) * site.motions[0].period, rel=1e-4)
-    found = rocking.assess(rough, site, sensitivity=False)
+    assert row["slides_under"] == f"sine from {row['slides_at']:.3g} s"
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.04])
+def test_friction_that_suffices_for_uplift_is_exceeded_while_it_rocks(offset: float) -> None:
+    site = rocking.Site(4.0, 0.5, shapes=["sine", "ricker"])
+    one = rocking.Object("one", width=0.3, height=1.0, offset_width=offset, friction=0.31)
+    found = rocking.assess(one, site)
     friction = found.friction()
-    history = history_of(rough, "width", site.motions[0], contact=True)
-    assert friction["friction_needed"].item() > 0.31
-    at = friction["exceeded_at"].item()
-    demand = history["friction_demand"].sel(time=at).values
-    assert np.max(demand) > 0.31
-    assert (history["friction_demand"].where(history["time"] < at, drop=True) <= 0.31).all()
-    assert found.columns["slides_first"][0] is False
+    earliest = []
+    for motion in site.motions:
+        histories = [
+            rocking.RigidBody.from_size(0.3, 1.0, offset=side).history(
+                motion.motion, peak_acceleration=4.0, period=motion.period, samples=20_001, contact=True
+            )
+            for side in {offset, -offset}
+        ]
+        largest = max(each.attrs["largest_friction_demand"] for each in histories)
+        needed, at = (friction[name].sel(motion=motion.name).item() for name in ("friction_needed", "exceeded_at"))
+        assert needed == pytest.approx(largest, rel=1e-9)
+        over = [each["time"].values[each["friction_demand"].values > 0.31] for each in histories]
+        earliest.append(min((times[0] for times in over if times.size), default=math.nan))
+        assert at == pytest.approx(earliest[-1], abs=5e-4, nan_ok=True)
+    assert np.isfinite(earliest).any()
+    (row,) = found.rows
+    assert row["slides_first"] is False
+    assert row["slides_at"] == pytest.approx(np.nanmin(earliest), abs=5e-4)
+    listed = friction["exceeded_at"].to_series().dropna()
+    assert row["slides_under"] == "; ".join(f"{name} from {at:.3g} s" for name, at in listed.items())
+    assert "may slide while it rocks" in row["warnings"]
+    (quick,) = rocking.assess(one, site, sensitivity=False).rows
+    assert (quick["slides_under"], quick["slides_at"]) == ("", None)
+    (held,) = rocking.assess(replace(one, friction=5.0), site).rows
+    assert (held["slides_under"], held["slides_at"]) == ("none", None)
 
 
 def test_the_history_overturns_where_the_row_does() -> None:
