@@ -220,13 +220,10 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any]) -> list[str]:
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
             texts.append(f"the lowest factor {factor:.3g} lies within {100 * CLOSE:g} % of the motions of the site")
-        if columns["slides_first"][k]:
-            texts.append(
-                f"slides before it rocks: friction {one.friction:.3g}, {columns['friction_needed'][k]:.3g} needed"
-            )
-        elif math.isfinite(columns["slides_at"][k]):
-            when = f"more is needed from {columns['slides_at'][k]:.3g} s on"
-            texts.append(f"may slide while it rocks: friction {one.friction:.3g}, {when}")
+        if math.isfinite(columns["slides_at"][k]):
+            when = f"friction {one.friction:.3g}, more is needed from {columns['slides_at'][k]:.3g} s on"
+            how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"
+            texts.append(f"{how}: {when}")
         if columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
         if one.diameter is not None:

@@ -81,13 +81,13 @@ class Line:
 
 @dataclass(frozen=True)
 class Chart:
-    """Lines over two axes, and marks (x, y) of the site."""
+    """Lines over two axes, and marks (x, y, colour) of the site."""
 
     title: str
     x: Axis
     y: Axis
     lines: list[Line]
-    marks: list[tuple[float, float]]
+    marks: list[tuple[float, float, str]]
 
 
 def line_of(name: str, axes: tuple[Axis, Axis], x: Array, y: Array, style: int = 0) -> Line:

@@ -114,11 +114,14 @@ def _envelopes(found: Assessment) -> list[Chart]:
             Axis("peak acceleration [m/s²]", 0.0, top, HEIGHT),
         )
         lines = [line_of(name, axes, periods, values[k], style) for style, (name, values) in enumerate(lowest.items())]
-        marks = sorted({(motion.period, motion.peak_acceleration) for motion in motions})
-        marked = [(float(axes[0].at(t)), -float(axes[1].at(a))) for t, a in marks]
+        colours: dict[tuple[float, float], str] = {}
+        for motion in motions:
+            place, own = (motion.period, motion.peak_acceleration), lines[list(lowest).index(motion.motion.name)].colour
+            colours[place] = "black" if colours.get(place, own) != own else own  # of several shapes
+        marked = [(float(axes[0].at(t)), -float(axes[1].at(a)), colour) for (t, a), colour in colours.items()]
         charts.append(
             Chart(
-                "Lowest peak acceleration that overturns it, for each shape; the rings are the motions of the site",
+                "Lowest peak acceleration that overturns it, for each shape; rings: the motions of the site",
                 *axes,
                 lines,
                 marked,

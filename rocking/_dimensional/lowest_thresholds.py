@@ -35,16 +35,23 @@ COARSE = 128
 """Number of intervals between the nodes that are solved first, a power of two.
 
 An interval between two nodes is then halved if, at a multiple of their variation there, the margin can reach zero and
-the peak rotation alpha. The multiple is the number of flights, `FEWEST_FLIGHTS` at least for the peak, up to
-`MOST_FLIGHTS`, since each impact makes the outcome depend more on the amplitude. Of 2,800 random bodies under seven
-pulses, 1,799 overturn up to a = 12: with 16 at least for the peak, and `LAYERS` equal to `CLOSE`, the lowest threshold
-is that of all nodes for each of them. Of 42,000 thresholds at two sites none differs from those with the present
-values; with 8 for the peak one does, with a `MOST_FLIGHTS` of 8 one, of 4 five, all of them under the pulse c2.
+the peak rotation alpha, from more than `QUIET` on. The multiple is the number of flights, `FEWEST_FLIGHTS` at least for
+the peak, up to `MOST_FLIGHTS`, since each impact makes the outcome depend more on the amplitude. Of 2,800 random bodies
+under seven pulses, 1,799 overturn up to a = 12: with 16 at least for the peak, and `LAYERS` equal to `CLOSE`, the
+lowest threshold is that of all nodes for each of them. Of 42,000 thresholds at two sites none differs from those with
+the present values; with 8 for the peak one does, with a `MOST_FLIGHTS` of 8 one, of 4 five, all under the pulse c2.
 """
 
 MOST_FLIGHTS = 16
 
 FEWEST_FLIGHTS = 4
+
+QUIET = 0.25
+"""Peak |theta|/alpha that one end of an interval must exceed to be halved for this reason [-].
+
+Of 14,000 random bodies under seven pulses none loses a threshold up to 0.4, 2 under the pulse c2 do with 0.5, 62 with
+0.9. It saves 27 % of the work under c1 and c2, where bodies strike often at small rotations, else 5 to 20 %.
+"""
 
 CLOSE, LAYERS = 32, 4
 """Number of nodes below the first that overturns that are all solved, at most and for each flight.
@@ -190,6 +197,7 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
         flights = np.minimum(1 + np.maximum(nodes.impacts[:-1], nodes.impacts[1:]), MOST_FLIGHTS)
         likely = _reach(nodes.margin, same, flights) >= 0.0
         likely &= _reach(nodes.peak, same, np.maximum(flights, FEWEST_FLIGHTS)) >= BALANCED
+        likely &= np.maximum(nodes.peak[:-1], nodes.peak[1:]) > QUIET
         first = np.full(count.size, 2 * GRID.size)
         first[nodes.line[nodes.overturned]] = nodes.place[nodes.overturned]
         close = first[nodes.line[1:]] - nodes.place[1:] < np.minimum(CLOSE, LAYERS * flights)
