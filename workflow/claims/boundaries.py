@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray as xr
@@ -21,7 +21,7 @@ CASES = {
 }
 
 
-def exact_curves(boundaries: Sequence[xr.Dataset]) -> list[Claim]:
+def exact_curves(boundaries: Sequence[xr.Dataset]) -> Iterator[Claim]:
     """(3.10), (3.18) and (3.20) with (3.21) against the traced points of their own mode.
 
     Parameters
@@ -41,8 +41,8 @@ def exact_curves(boundaries: Sequence[xr.Dataset]) -> list[Claim]:
             count[case] += int(part.sum())
             worst[case] = max(worst[case], float(difference[part].max(initial=0.0)))
     eta = [float(curves.restitution) for curves in boundaries]
-    return [
-        Claim(
+    for case, (equation, text) in CASES.items():
+        yield Claim(
             key=f"curve-{case.replace(' ', '-')}",
             place=f"section 3, {equation}",
             printed=f"{equation} {text}",
@@ -52,11 +52,9 @@ def exact_curves(boundaries: Sequence[xr.Dataset]) -> list[Claim]:
             verdict=verdict_of(count[case] > 0 and worst[case] < SAME),
             numbers={"largest_difference": worst[case], "points": count[case]},
         )
-        for case, (equation, text) in CASES.items()
-    ]
 
 
-def completeness(cubes: Sequence[xr.Dataset]) -> list[Claim]:
+def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
     """Whether the closed forms give the outcome of every slender block of the spectrum cubes of the sine."""
     missed, missed_linear, numbers = [], [], {}
     place, at_edge = np.empty((0, 2)), False
@@ -89,18 +87,16 @@ def completeness(cubes: Sequence[xr.Dataset]) -> list[Claim]:
         numbers |= {"slenderness_from": s0, "omega_from": w0, "omega_to": w1}
     numbers |= {"missed": share, "missed_linear_in_omega": float(np.mean(missed_linear))}
     s, omega = cubes[0].slenderness.values, cubes[0].frequency_ratio.values
-    return [
-        Claim(
-            key="complete",
-            place="section 3, (3.10), (3.18), (3.20), (3.21), (3.31)",
-            printed="the closed-form expressions describe overturning under one sine completely",
-            criterion=f"they give the final outcome everywhere; {MEASURE}, 1/a {s[0]:.2f} to {s[-1]:.2f}, omega "
-            f"{omega[0]:.1f} to {omega[-1]:.0f}, mean over eta",
-            found=where,
-            verdict=verdict_of(1.0 - share),
-            numbers=numbers,
-        )
-    ]
+    yield Claim(
+        key="complete",
+        place="section 3, (3.10), (3.18), (3.20), (3.21), (3.31)",
+        printed="the closed-form expressions describe overturning under one sine completely",
+        criterion=f"they give the final outcome everywhere; {MEASURE}, 1/a {s[0]:.2f} to {s[-1]:.2f}, omega "
+        f"{omega[0]:.1f} to {omega[-1]:.0f}, mean over eta",
+        found=where,
+        verdict=verdict_of(1.0 - share),
+        numbers=numbers,
+    )
 
 
 STEP = 1e-9
@@ -121,39 +117,35 @@ def sides_of_limit() -> tuple[Floats, Flags, Flags]:
     return omega, below, above
 
 
-def limit_separates(omega: Floats, impact_below: Flags, impact_above: Flags) -> list[Claim]:
+def limit_separates(omega: Floats, impact_below: Flags, impact_above: Flags) -> Iterator[Claim]:
     """(3.31): the curve on which the first impact coincides with the end of the pulse."""
     separates = impact_below & ~impact_above
-    return [
-        Claim(
-            key="limit-separates",
-            place="section 3d, (3.31)",
-            printed="below (3.31) the first impact is within the pulse, above it after the pulse",
-            criterion=f"the first impact leaves the pulse within a relative {STEP:.0e} of the curve; "
-            f"{omega.size} frequency ratios from {omega[0]:g} to {omega[-1]:g}",
-            found=f"at {int(separates.sum())} of them",
-            verdict=verdict_of(float(separates.mean())),
-            numbers={"share": float(separates.mean())},
-        )
-    ]
+    yield Claim(
+        key="limit-separates",
+        place="section 3d, (3.31)",
+        printed="below (3.31) the first impact is within the pulse, above it after the pulse",
+        criterion=f"the first impact leaves the pulse within a relative {STEP:.0e} of the curve; "
+        f"{omega.size} frequency ratios from {omega[0]:g} to {omega[-1]:g}",
+        found=f"at {int(separates.sum())} of them",
+        verdict=verdict_of(float(separates.mean())),
+        numbers={"share": float(separates.mean())},
+    )
 
 
-def limit_value(omega: Floats, slenderness: Floats) -> list[Claim]:
+def limit_value(omega: Floats, slenderness: Floats) -> Iterator[Claim]:
     """How far the curve (3.31), 1/a over equidistant omega, is a line at 0.4."""
     rounds_to = (slenderness >= 0.35) & (slenderness < 0.45)
     inside = omega[rounds_to]
     where = f"for omega from {inside[0]:.2f} to {inside[-1]:.2f}" if inside.size else "nowhere"
-    return [
-        Claim(
-            key="limit-0.4",
-            place="section 4a, below (4.13)",
-            printed="(3.31) roughly corresponds to g alpha/a_g = 0.4",
-            criterion=f"1/a on (3.31) rounds to 0.4, 0.35 to 0.45; omega {omega[0]:g} to {omega[-1]:g}, as in figure 8",
-            found=f"so {where}; 1/a falls from {slenderness[0]:.2f} to {slenderness[-1]:.2f}",
-            verdict=verdict_of(float(rounds_to.mean())),
-            numbers={"share": float(rounds_to.mean()), "first": slenderness[0], "last": slenderness[-1]},
-        )
-    ]
+    yield Claim(
+        key="limit-0.4",
+        place="section 4a, below (4.13)",
+        printed="(3.31) roughly corresponds to g alpha/a_g = 0.4",
+        criterion=f"1/a on (3.31) rounds to 0.4, 0.35 to 0.45; omega {omega[0]:g} to {omega[-1]:g}, as in figure 8",
+        found=f"so {where}; 1/a falls from {slenderness[0]:.2f} to {slenderness[-1]:.2f}",
+        verdict=verdict_of(float(rounds_to.mean())),
+        numbers={"share": float(rounds_to.mean()), "first": slenderness[0], "last": slenderness[-1]},
+    )
 
 
 def time_near_equilibrium(restitution: Sequence[float]) -> Floats:
@@ -178,21 +170,18 @@ def time_near_equilibrium(restitution: Sequence[float]) -> Floats:
     return np.array(found)
 
 
-def overturning_in_free_rocking(time_close: Floats) -> list[Claim]:
+def overturning_in_free_rocking(time_close: Floats) -> Iterator[Claim]:
     """(3.8): at the smallest amplitude that overturns, the block overturns after the pulse, slowing down near alpha."""
     after = time_close > 0.0
-    return [
-        Claim(
-            key="free-rocking",
-            place="section 3, (3.8)",
-            printed="at the smallest amplitude that overturns, overturning takes place in free rocking, where the "
-            "velocity tends to a minimum",
-            criterion=f"a block within a relative {STEP:.0e} of its threshold leaves alpha, the unstable equilibrium, "
-            f"by {percent(SMALL)} only after the pulse; thresholds of cases 1.1, 1.2 and 2, omega 1 to 4",
-            found=f"at {int(after.sum())} of {after.size} thresholds; it stays there until p t = "
-            f"{time_close.min():.1f} "
-            "after the pulse or longer",
-            verdict=verdict_of(float(after.mean())),
-            numbers={"thresholds": after.size, "share": float(after.mean()), "shortest": float(time_close.min())},
-        )
-    ]
+    yield Claim(
+        key="free-rocking",
+        place="section 3, (3.8)",
+        printed="at the smallest amplitude that overturns, overturning takes place in free rocking, where the "
+        "velocity tends to a minimum",
+        criterion=f"a block within a relative {STEP:.0e} of its threshold leaves alpha, the unstable equilibrium, "
+        f"by {percent(SMALL)} only after the pulse; thresholds of cases 1.1, 1.2 and 2, omega 1 to 4",
+        found=f"at {int(after.sum())} of {after.size} thresholds; it stays there until p t = {time_close.min():.1f} "
+        "after the pulse or longer",
+        verdict=verdict_of(float(after.mean())),
+        numbers={"thresholds": after.size, "share": float(after.mean()), "shortest": float(time_close.min())},
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -56,31 +56,29 @@ def _first_impact(amplitude: float, omega: float) -> tuple[float, float]:
     return at - float(uplift_phase(amplitude)) / omega, float(np.abs(history.angular_velocity[after])) / eta
 
 
-def exact_impact(impacts: Impacts) -> list[Claim]:
+def exact_impact(impacts: Impacts) -> Iterator[Claim]:
     """(3.13) and (3.15) against the impacts that the solver finds."""
     time = float(np.abs(impacts.time / impacts.integrated_time - 1).max())
     velocity = float(np.abs(impacts.velocity / impacts.integrated_velocity - 1).max())
     blocks = f"{impacts.time.size} blocks between (3.31) and (3.10), omega 0.5 to 12"
-    return [
-        Claim(
-            key="impact-time-exact",
-            place="section 3b, (3.13)",
-            printed="(3.13) is the exact time of the impact that follows the pulse",
-            criterion=f"it is the time that the solver finds, within a relative {SAME:.0e}; {blocks}",
-            found=f"largest relative difference {time:.0e}",
-            verdict=verdict_of(time < SAME),
-            numbers={"largest_relative_difference": time},
-        ),
-        Claim(
-            key="impact-velocity",
-            place="section 3b, (3.15)",
-            printed="the velocity before that impact is sqrt(1 - D0*)",
-            criterion=f"it is the velocity that the solver finds, within a relative {SAME:.0e}; the same blocks",
-            found=f"largest relative difference {velocity:.0e}",
-            verdict=verdict_of(velocity < SAME),
-            numbers={"largest_relative_difference": velocity},
-        ),
-    ]
+    yield Claim(
+        key="impact-time-exact",
+        place="section 3b, (3.13)",
+        printed="(3.13) is the exact time of the impact that follows the pulse",
+        criterion=f"it is the time that the solver finds, within a relative {SAME:.0e}; {blocks}",
+        found=f"largest relative difference {time:.0e}",
+        verdict=verdict_of(time < SAME),
+        numbers={"largest_relative_difference": time},
+    )
+    yield Claim(
+        key="impact-velocity",
+        place="section 3b, (3.15)",
+        printed="the velocity before that impact is sqrt(1 - D0*)",
+        criterion=f"it is the velocity that the solver finds, within a relative {SAME:.0e}; the same blocks",
+        found=f"largest relative difference {velocity:.0e}",
+        verdict=verdict_of(velocity < SAME),
+        numbers={"largest_relative_difference": velocity},
+    )
 
 
 def other_roots() -> Floats:
@@ -92,22 +90,20 @@ def other_roots() -> Floats:
     return np.asarray((1 - case_1_2_impact_velocity(a, omega)) / growing)
 
 
-def other_root(exponential: Floats) -> list[Claim]:
+def other_root(exponential: Floats) -> Iterator[Claim]:
     """Whether the second root of the quadratic in e^tau is ever a time after the uplift."""
     physical = exponential > 1.0
-    return [
-        Claim(
-            key="other-root",
-            place="section 3b, below (3.12)",
-            printed="the other solution of (3.12) is negative and lacks physical meaning",
-            criterion="e^tau of the second root is below 1, so that its time is negative or not real; "
-            f"{exponential.size} blocks between (3.31) and (3.10), omega 0.5 to 12",
-            found=f"at {percent(1 - float(physical.mean()))} of them; of all, its logarithm is not real at "
-            f"{percent(float((exponential <= 0).mean()))}",
-            verdict=verdict_of(1.0 - float(physical.mean())),
-            numbers={"share_positive": float(physical.mean())},
-        )
-    ]
+    yield Claim(
+        key="other-root",
+        place="section 3b, below (3.12)",
+        printed="the other solution of (3.12) is negative and lacks physical meaning",
+        criterion="e^tau of the second root is below 1, so that its time is negative or not real; "
+        f"{exponential.size} blocks between (3.31) and (3.10), omega 0.5 to 12",
+        found=f"at {percent(1 - float(physical.mean()))} of them; of all, its logarithm is not real at "
+        f"{percent(float((exponential <= 0).mean()))}",
+        verdict=verdict_of(1.0 - float(physical.mean())),
+        numbers={"share_positive": float(physical.mean())},
+    )
 
 
 class Curve(NamedTuple):
@@ -151,24 +147,22 @@ def _on_curve(curve: Curve) -> str:
     )
 
 
-def impact_about_one(curve: Curve) -> list[Claim]:
+def impact_about_one(curve: Curve) -> Iterator[Claim]:
     """(3.23): the impact comes at tau = 1."""
     near = curve.known & (np.abs(curve.impact_time - 1) <= ABOUT)
     share = float(near.sum() / curve.known.sum())
     all_near = np.all(~curve.known | near, axis=0) & curve.known.any(axis=0)
     from_omega = float(curve.frequency_ratio[all_near].min()) if all_near.any() else np.nan
-    return [
-        Claim(
-            key="impact-at-1/p",
-            place="section 3c, (3.23)",
-            printed="the block returns to impact about 1/p after uplift",
-            criterion=f"p t of the impact is between {1 - ABOUT:g} and {1 + ABOUT:g}; {_on_curve(curve)}",
-            found=f"on {percent(share)}, at every eta from omega = {from_omega:.2f} on; p t rises "
-            f"from {np.nanmin(curve.impact_time):.2f} to {np.nanmax(curve.impact_time):.2f} at omega = 1",
-            verdict=verdict_of(share),
-            numbers={"share": share, "omega_from": from_omega, "largest": float(np.nanmax(curve.impact_time))},
-        )
-    ]
+    yield Claim(
+        key="impact-at-1/p",
+        place="section 3c, (3.23)",
+        printed="the block returns to impact about 1/p after uplift",
+        criterion=f"p t of the impact is between {1 - ABOUT:g} and {1 + ABOUT:g}; {_on_curve(curve)}",
+        found=f"on {percent(share)}, at every eta from omega = {from_omega:.2f} on; p t rises "
+        f"from {np.nanmin(curve.impact_time):.2f} to {np.nanmax(curve.impact_time):.2f} at omega = 1",
+        verdict=verdict_of(share),
+        numbers={"share": share, "omega_from": from_omega, "largest": float(np.nanmax(curve.impact_time))},
+    )
 
 
 def expansion_errors() -> dict[float, tuple[Floats, Floats]]:
@@ -184,38 +178,35 @@ def expansion_errors() -> dict[float, tuple[Floats, Floats]]:
     }
 
 
-def ad_hoc_function(errors: Mapping[float, tuple[Floats, Floats]]) -> list[Claim]:
+def ad_hoc_function(errors: Mapping[float, tuple[Floats, Floats]]) -> Iterator[Claim]:
     """(3.27) near tau = 1, for small and for intermediate omega."""
     window = f"abs(tau - 1) up to {WINDOW:g}, any phase of uplift"
     slow = np.concatenate([errors[1.0][1], errors[2.0][1]])
     offset, five = errors[5.0]
     good = five <= FAIR
     reach = float(np.abs(offset[good]).max(initial=0.0))
-    return [
-        Claim(
-            key="ad-hoc-sine-slow",
-            place="section 3c, below (3.27), figure S1",
-            printed="(3.27) is excellent for small omega < 2",
-            criterion=f"it differs from the sine by at most {percent(SMALL)} of its amplitude at omega = 1 and 2; "
-            f"{window}",
-            found=f"largest difference {percent(float(errors[1.0][1].max()))} at omega = 1, "
-            f"{percent(float(errors[2.0][1].max()))} at omega = 2",
-            verdict=verdict_of(float((slow <= SMALL).mean())),
-            numbers={"largest_at_1": float(errors[1.0][1].max()), "largest_at_2": float(errors[2.0][1].max())},
-        ),
-        Claim(
-            key="ad-hoc-sine-intermediate",
-            place="section 3c, below (3.27), figure S1",
-            printed="(3.27) is satisfactory around tau = 1 for intermediate omega of about 5",
-            criterion=f"it differs from the sine by at most {percent(FAIR)} of its amplitude at omega = 5; {window}",
-            found=f"so for abs(tau - 1) up to {reach:.2f}; the largest difference is {percent(float(five.max()))}",
-            verdict=verdict_of(float(good.mean())),
-            numbers={"share": float(good.mean()), "largest": float(five.max()), "within": reach},
-        ),
-    ]
+    yield Claim(
+        key="ad-hoc-sine-slow",
+        place="section 3c, below (3.27), figure S1",
+        printed="(3.27) is excellent for small omega < 2",
+        criterion=f"it differs from the sine by at most {percent(SMALL)} of its amplitude at omega = 1 and 2; {window}",
+        found=f"largest difference {percent(float(errors[1.0][1].max()))} at omega = 1, "
+        f"{percent(float(errors[2.0][1].max()))} at omega = 2",
+        verdict=verdict_of(float((slow <= SMALL).mean())),
+        numbers={"largest_at_1": float(errors[1.0][1].max()), "largest_at_2": float(errors[2.0][1].max())},
+    )
+    yield Claim(
+        key="ad-hoc-sine-intermediate",
+        place="section 3c, below (3.27), figure S1",
+        printed="(3.27) is satisfactory around tau = 1 for intermediate omega of about 5",
+        criterion=f"it differs from the sine by at most {percent(FAIR)} of its amplitude at omega = 5; {window}",
+        found=f"so for abs(tau - 1) up to {reach:.2f}; the largest difference is {percent(float(five.max()))}",
+        verdict=verdict_of(float(good.mean())),
+        numbers={"share": float(good.mean()), "largest": float(five.max()), "within": reach},
+    )
 
 
-def approximate_time(curve: Curve) -> list[Claim]:
+def approximate_time(curve: Curve) -> Iterator[Claim]:
     """(3.29) against the exact time of impact; where it has no real root it does not hold."""
     omega, known = curve.frequency_ratio, curve.known
     error = np.abs(curve.approximate_time / curve.impact_time - 1)
@@ -228,23 +219,26 @@ def approximate_time(curve: Curve) -> list[Claim]:
     )
     worst = float(np.nanmax(np.abs(curve.approximate_time - curve.impact_time)))
     from_omega = float(omega[np.all(~known | good, axis=0) & known.any(axis=0)].min(initial=np.inf))
-    return [
-        Claim(
-            key="ad-hoc-time",
-            place="section 3c, (3.29)",
-            printed="(3.29) approximates the time of impact",
-            criterion=f"within {percent(SMALL)}; {_on_curve(curve)}",
-            found=f"on {percent(share)}, from omega = {from_omega:.2f} on; "
-            + (without if missing.any() else "it")
-            + f" is off by up to p t = {worst:.1f}",
-            verdict=verdict_of(share),
-            numbers={"share": share, "share_without_value": float(missing.sum() / known.sum()),
-                     "first_value_from": float(first.min()), "last_value_from": float(first.max()), "largest": worst},
-        )
-    ]  # fmt: skip
+    yield Claim(
+        key="ad-hoc-time",
+        place="section 3c, (3.29)",
+        printed="(3.29) approximates the time of impact",
+        criterion=f"within {percent(SMALL)}; {_on_curve(curve)}",
+        found=f"on {percent(share)}, from omega = {from_omega:.2f} on; "
+        + (without if missing.any() else "it")
+        + f" is off by up to p t = {worst:.1f}",
+        verdict=verdict_of(share),
+        numbers={
+            "share": share,
+            "share_without_value": float(missing.sum() / known.sum()),
+            "first_value_from": float(first.min()),
+            "last_value_from": float(first.max()),
+            "largest": worst,
+        },
+    )
 
 
-def smallest_solutions(curve: Curve) -> list[Claim]:
+def smallest_solutions(curve: Curve) -> Iterator[Claim]:
     """The curve of (3.30) against that of (3.20) and (3.21)."""
     omega, known = curve.frequency_ratio, curve.known
     difference = np.abs(curve.semi_analytical / curve.amplitude - 1)
@@ -258,19 +252,17 @@ def smallest_solutions(curve: Curve) -> list[Claim]:
         f"{low:g} to {high:g}": float(np.nanmax(known_difference[:, (omega >= low) & (omega <= high)]))
         for low, high in ((1, 2), (2, 3), (3, 4))
     }
-    return [
-        Claim(
-            key="minima-coincide",
-            place="section 3c, figure 3",
-            printed="the smallest solution of (3.30) coincides with that of (3.20) and (3.21)",
-            criterion=f"within {percent(CLOSE)} in a; {_on_curve(curve)}",
-            found=f"on {percent(share)}; largest difference "
-            + ", ".join(f"{percent(value)} for omega {band}" for band, value in bands.items())
-            + (without if missing.any() else ""),
-            verdict=verdict_of(share),
-            numbers={"share": share} | {f"omega {band}": value for band, value in bands.items()},
-        )
-    ]
+    yield Claim(
+        key="minima-coincide",
+        place="section 3c, figure 3",
+        printed="the smallest solution of (3.30) coincides with that of (3.20) and (3.21)",
+        criterion=f"within {percent(CLOSE)} in a; {_on_curve(curve)}",
+        found=f"on {percent(share)}; largest difference "
+        + ", ".join(f"{percent(value)} for omega {band}" for band, value in bands.items())
+        + (without if missing.any() else ""),
+        verdict=verdict_of(share),
+        numbers={"share": share} | {f"omega {band}": value for band, value in bands.items()},
+    )
 
 
 def ends_of_case_1_1() -> tuple[Floats, Floats]:
@@ -279,21 +271,17 @@ def ends_of_case_1_1() -> tuple[Floats, Floats]:
     return eta, case_1_1_end(eta)
 
 
-def end_of_case_1_1(restitution: Floats, end: Floats) -> list[Claim]:
+def end_of_case_1_1(restitution: Floats, end: Floats) -> Iterator[Claim]:
     """Where overturning by case 1.1 ends."""
     below = end <= 5.0
     limit = f"up to eta = {restitution[below].max():.3f}" if below.any() else "for none"
-    return [
-        Claim(
-            key="no-case-1.1-above-5",
-            place="section 3c, below (3.27)",
-            printed="for omega > 5 the block does not overturn by case 1.1",
-            criterion=f"case 1.1 ends below omega = 5; eta {restitution[0]:.2f} to {restitution[-1]:.2f}, as in "
-            f"figure 8",
-            found=f"so {limit}; it ends at omega = {end[0]:.2f} for eta = {restitution[0]:.2f} and at {end[-1]:.2f} "
-            f"for "
-            f"{restitution[-1]:.2f}",
-            verdict=verdict_of(float(below.mean())),
-            numbers={"share": float(below.mean()), "end_first": float(end[0]), "end_last": float(end[-1])},
-        )
-    ]
+    yield Claim(
+        key="no-case-1.1-above-5",
+        place="section 3c, below (3.27)",
+        printed="for omega > 5 the block does not overturn by case 1.1",
+        criterion=f"case 1.1 ends below omega = 5; eta {restitution[0]:.2f} to {restitution[-1]:.2f}, as in figure 8",
+        found=f"so {limit}; it ends at omega = {end[0]:.2f} for eta = {restitution[0]:.2f} and at {end[-1]:.2f} for "
+        f"{restitution[-1]:.2f}",
+        verdict=verdict_of(float(below.mean())),
+        numbers={"share": float(below.mean()), "end_first": float(end[0]), "end_last": float(end[-1])},
+    )

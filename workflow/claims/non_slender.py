@@ -26,25 +26,22 @@ FREQUENCY_RATIOS = {"sine": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0), "cosine": (1.0,
 """Frequency ratios before and beyond the tip of the region of overturning after impacts [-]."""
 
 
-def collapse(figure: xr.Dataset) -> list[Claim]:
+def collapse(figure: xr.Dataset) -> Iterator[Claim]:
     """Figure 9: thresholds of two blocks, each integrated in SI units, on one curve."""
     above = figure.threshold_overturns_above.values
     as_stated = (figure.threshold_falls_above.values == above) & (figure.threshold_falls_below.values == 1 - above)
     sizes = " and ".join(f"{R:g}" for R in figure.half_diagonal.values)
     step = float(figure.attrs["step"])
-    return [
-        Claim(
-            key="similar-blocks",
-            place="section 5, (5.3), figure 9",
-            printed="overturning plots of geometrically similar blocks of different size collapse to one curve",
-            criterion=f"blocks of R = {sizes} m at alpha = {np.degrees(figure.attrs['alpha']):.0f} degrees, "
-            f"integrated in SI "
-            f"units by (2.2), change their outcome within a relative {step:.0e} of the one curve",
-            found=f"at {int(as_stated.sum())} of {as_stated.size} thresholds",
-            verdict=verdict_of(float(as_stated.mean())),
-            numbers={"thresholds": as_stated.size, "on_the_curve": int(as_stated.sum()), "step": step},
-        )
-    ]
+    yield Claim(
+        key="similar-blocks",
+        place="section 5, (5.3), figure 9",
+        printed="overturning plots of geometrically similar blocks of different size collapse to one curve",
+        criterion=f"blocks of R = {sizes} m at alpha = {np.degrees(figure.attrs['alpha']):.0f} degrees, integrated in "
+        f"SI units by (2.2), change their outcome within a relative {step:.0e} of the one curve",
+        found=f"at {int(as_stated.sum())} of {as_stated.size} thresholds",
+        verdict=verdict_of(float(as_stated.mean())),
+        numbers={"thresholds": as_stated.size, "on_the_curve": int(as_stated.sum()), "step": step},
+    )
 
 
 class Case(NamedTuple):
@@ -76,7 +73,7 @@ def _change(case: Case, angle: float) -> float:
     return float(np.abs(rigid.amplitude / slender.amplitude - 1).max())
 
 
-def dependence_on_alpha(cases: Sequence[Case]) -> list[Claim]:
+def dependence_on_alpha(cases: Sequence[Case]) -> Iterator[Claim]:
     """Thresholds of figure 10 compared with those of the slender limit, and their collapse in the groups of (6.1)."""
     change = {angle: np.array([_change(case, angle) for case in cases]) for angle in ANGLES}
     tested = np.concatenate([values for angle, values in change.items() if angle <= LESS_THAN_15])
@@ -90,34 +87,30 @@ def dependence_on_alpha(cases: Sequence[Case]) -> list[Claim]:
     )
     together = np.ptp(first, axis=1) / first[:, 0] <= SMALL
     ratios = "; ".join(f"{pulse}, omega {w[0]:g} to {w[-1]:g}" for pulse, w in FREQUENCY_RATIOS.items())
-    return [
-        Claim(
-            key="alpha-thresholds",
-            place="section 5, figure 10",
-            printed="the dependence of overturning on alpha is relatively small for alpha < 15 degrees",
-            criterion=f"at 5, 10 and 15 degrees as many amplitudes change the outcome as for the slender block, and "
-            f"each differs "
-            f"by at most {percent(SMALL)}; {ratios}; share of cases",
-            found=f"for {int((tested <= SMALL).sum())} of {tested.size} cases. By angle: {listed}",
-            verdict=verdict_of(float((tested <= SMALL).mean())),
-            numbers={"share": float((tested <= SMALL).mean())}
-            | {f"share_{angle:.0f}_deg": float((values <= SMALL).mean()) for angle, values in change.items()}
-            | {f"other_number_{angle:.0f}_deg": int(np.isinf(values).sum()) for angle, values in change.items()},
-        ),
-        Claim(
-            key="contours-collapse",
-            place="section 6, below figure 13",
-            printed="in most cases the overturning contours for different alpha collapse to a single curve in the "
-            "groups of (6.1)",
-            criterion=f"the smallest amplitude a_g/(g tan alpha) that overturns varies by at most {percent(SMALL)} "
-            f"from 0 to 20 "
-            f"degrees in more than half of the cases; {ratios}",
-            found=f"in {int(together.sum())} of {together.size} cases; median "
-            f"{percent(float(np.median(np.ptp(first, axis=1) / first[:, 0])))}",
-            verdict=verdict_of(bool(together.mean() > 0.5)),
-            numbers={"share": float(together.mean())},
-        ),
-    ]
+    yield Claim(
+        key="alpha-thresholds",
+        place="section 5, figure 10",
+        printed="the dependence of overturning on alpha is relatively small for alpha < 15 degrees",
+        criterion="at 5, 10 and 15 degrees as many amplitudes change the outcome as for the slender block, and each "
+        f"differs by at most {percent(SMALL)}; {ratios}; share of cases",
+        found=f"for {int((tested <= SMALL).sum())} of {tested.size} cases. By angle: {listed}",
+        verdict=verdict_of(float((tested <= SMALL).mean())),
+        numbers={"share": float((tested <= SMALL).mean())}
+        | {f"share_{angle:.0f}_deg": float((values <= SMALL).mean()) for angle, values in change.items()}
+        | {f"other_number_{angle:.0f}_deg": int(np.isinf(values).sum()) for angle, values in change.items()},
+    )
+    yield Claim(
+        key="contours-collapse",
+        place="section 6, below figure 13",
+        printed="in most cases the overturning contours for different alpha collapse to a single curve in the "
+        "groups of (6.1)",
+        criterion=f"the smallest amplitude a_g/(g tan alpha) that overturns varies by at most {percent(SMALL)} from 0 "
+        f"to 20 degrees in more than half of the cases; {ratios}",
+        found=f"in {int(together.sum())} of {together.size} cases; median "
+        f"{percent(float(np.median(np.ptp(first, axis=1) / first[:, 0])))}",
+        verdict=verdict_of(bool(together.mean() > 0.5)),
+        numbers={"share": float(together.mean())},
+    )
 
 
 def tips(restitution: float) -> dict[str, dict[float, float]]:
@@ -140,27 +133,24 @@ def _tip(pulse: str, angle: float, restitution: float) -> float:
     return float(omega[(found.outcome == Outcome.OVERTURNED_AFTER_IMPACT).any(axis=0)].max())
 
 
-def tip_of_the_loop(found: Mapping[str, Mapping[float, float]]) -> list[Claim]:
+def tip_of_the_loop(found: Mapping[str, Mapping[float, float]]) -> Iterator[Claim]:
     """The tip of the region of overturning after an impact by alpha."""
     changes = [abs(tips[angle] / tips[0.0] - 1) for tips in found.values() for angle in tips if angle > 0]
     small = [change <= SMALL for change in changes]
-    return [
-        Claim(
-            key="alpha-tip",
-            place="section 5, figure 10",
-            printed="the dependence of overturning on alpha is relatively small for alpha < 15 degrees",
-            criterion="the largest omega at which a block overturns after an impact differs from that of the slender "
-            "block by at "
-            f"most {percent(SMALL)} at 5, 10 and 15 degrees, sine and cosine; share of cases",
-            found=f"in {sum(small)} of {len(small)} cases; largest omega: "
-            + "; ".join(
-                f"{pulse}: " + ", ".join(f"{tip:.2f} ({angle:.0f} degrees)" for angle, tip in tips.items())
-                for pulse, tips in found.items()
-            ),
-            verdict=verdict_of(float(np.mean(small))),
-            numbers={f"{pulse}_{angle:.0f}_deg": tip for pulse, tips in found.items() for angle, tip in tips.items()},
-        )
-    ]
+    yield Claim(
+        key="alpha-tip",
+        place="section 5, figure 10",
+        printed="the dependence of overturning on alpha is relatively small for alpha < 15 degrees",
+        criterion="the largest omega at which a block overturns after an impact differs from that of the slender block "
+        f"by at most {percent(SMALL)} at 5, 10 and 15 degrees, sine and cosine; share of cases",
+        found=f"in {sum(small)} of {len(small)} cases; largest omega: "
+        + "; ".join(
+            f"{pulse}: " + ", ".join(f"{tip:.2f} ({angle:.0f} degrees)" for angle, tip in tips.items())
+            for pulse, tips in found.items()
+        ),
+        verdict=verdict_of(float(np.mean(small))),
+        numbers={f"{pulse}_{angle:.0f}_deg": tip for pulse, tips in found.items() for angle, tip in tips.items()},
+    )
 
 
 CONVERGENCE_ANGLES = (8.0, 4.0, 2.0)
@@ -180,26 +170,22 @@ def _distances(angle: float, restitution: float) -> Iterator[float]:
         yield from np.abs(rigid.amplitude / slender - 1)
 
 
-def convergence(distances: Floats) -> list[Claim]:
+def convergence(distances: Floats) -> Iterator[Claim]:
     """Convergence of the thresholds under the sine to the closed forms of section 3 as alpha decreases."""
     orders = np.log2(distances[:-1] / distances[1:])
     halved = np.abs(orders - 2) < 0.2
-    return [
-        Claim(
-            key="slender-limit",
-            place="section 5, figure 10",
-            printed="as alpha decreases the curves of the sine converge to the closed forms for slender blocks",
-            criterion="their distance falls with the square of alpha, as the terms that the linearisation drops: by a "
-            "power of 1.8 to "
-            f"2.2 from {CONVERGENCE_ANGLES[0]:g} to {CONVERGENCE_ANGLES[-1]:g} degrees; six thresholds at omega 3 and "
-            f"4",
-            found=f"by a power of {orders.min():.3f} to {orders.max():.3f}; at {CONVERGENCE_ANGLES[-1]:g} degrees the "
-            f"distance is at "
-            f"most {percent(float(distances[-1].max()))}",
-            verdict=verdict_of(float(halved.mean())),
-            numbers={"lowest_order": orders.min(), "highest_order": orders.max(), "largest": distances[-1].max()},
-        )
-    ]
+    yield Claim(
+        key="slender-limit",
+        place="section 5, figure 10",
+        printed="as alpha decreases the curves of the sine converge to the closed forms for slender blocks",
+        criterion="their distance falls with the square of alpha, as the terms that the linearisation drops: by a "
+        f"power of 1.8 to 2.2 from {CONVERGENCE_ANGLES[0]:g} to {CONVERGENCE_ANGLES[-1]:g} degrees; six thresholds at "
+        "omega 3 and 4",
+        found=f"by a power of {orders.min():.3f} to {orders.max():.3f}; at {CONVERGENCE_ANGLES[-1]:g} degrees the "
+        f"distance is at most {percent(float(distances[-1].max()))}",
+        verdict=verdict_of(float(halved.mean())),
+        numbers={"lowest_order": orders.min(), "highest_order": orders.max(), "largest": distances[-1].max()},
+    )
 
 
 STEP = 1e-9
@@ -221,23 +207,20 @@ def uplifts() -> tuple[Floats, Flags, Flags]:
     return angles, below, above
 
 
-def uplift(angles: Floats, below: Flags, above: Flags) -> list[Claim]:
+def uplift(angles: Floats, below: Flags, above: Flags) -> Iterator[Claim]:
     """The condition of uplift of a block that is not slender."""
     exact = ~below & above
     twenty = np.radians(20.0)
     slender = float(np.tan(twenty) / twenty - 1)
-    return [
-        Claim(
-            key="uplift",
-            place="section 5, below (5.3)",
-            printed="g tan(alpha)/a_g is exactly what decides whether a block enters rocking",
-            criterion=f"a ground acceleration a relative {STEP:.0e} above g tan(alpha) has a larger moment about the "
-            f"corner than the "
-            f"weight of the block, one below it has not; {angles.size} angles from {np.degrees(angles[0]):.0f} to "
-            f"{np.degrees(angles[-1]):.0f} degrees",
-            found=f"so at {int(exact.sum())} of them; with g alpha the condition would be off by {percent(slender)} "
-            f"at 20 degrees",
-            verdict=verdict_of(float(exact.mean())),
-            numbers={"angles": angles.size, "exact": int(exact.sum()), "slender_error_at_20_deg": slender},
-        )
-    ]
+    yield Claim(
+        key="uplift",
+        place="section 5, below (5.3)",
+        printed="g tan(alpha)/a_g is exactly what decides whether a block enters rocking",
+        criterion=f"a ground acceleration a relative {STEP:.0e} above g tan(alpha) has a larger moment about the "
+        f"corner than the weight of the block, one below it has not; {angles.size} angles from "
+        f"{np.degrees(angles[0]):.0f} to {np.degrees(angles[-1]):.0f} degrees",
+        found=f"so at {int(exact.sum())} of them; with g alpha the condition would be off by {percent(slender)} "
+        f"at 20 degrees",
+        verdict=verdict_of(float(exact.mean())),
+        numbers={"angles": angles.size, "exact": int(exact.sum()), "slender_error_at_20_deg": slender},
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -44,20 +44,18 @@ def computed_table() -> tuple[str, ...]:
     return tuple("".join(product.symbol[1] for product in row) for row in multiplication_table())
 
 
-def table(found: Sequence[str]) -> list[Claim]:
+def table(found: Sequence[str]) -> Iterator[Claim]:
     """Table 1 against a computed one."""
     equal = [a == b for x, y in zip(found, PRINTED_TABLE_1, strict=True) for a, b in zip(x, y, strict=True)]
-    return [
-        Claim(
-            key="table-1",
-            place="section 4, table 1",
-            printed="products of the unit orientations",
-            criterion="all 16 follow from the rules (4.4) and (4.5)",
-            found=f"{sum(equal)} do",
-            verdict=verdict_of(float(np.mean(equal))),
-            numbers={"equal_entries": sum(equal)},
-        )
-    ]
+    yield Claim(
+        key="table-1",
+        place="section 4, table 1",
+        printed="products of the unit orientations",
+        criterion="all 16 follow from the rules (4.4) and (4.5)",
+        found=f"{sum(equal)} do",
+        verdict=verdict_of(float(np.mean(equal))),
+        numbers={"equal_entries": sum(equal)},
+    )
 
 
 def homogeneous_pairs() -> list[tuple[int, int]]:
@@ -66,23 +64,20 @@ def homogeneous_pairs() -> list[tuple[int, int]]:
     return [(found["a_g/g"], found["alpha"]) for found in admissible_exponents(Orientation.LZ, factors, largest=4)]
 
 
-def odd_exponents(pairs: Sequence[tuple[int, int]]) -> list[Claim]:
+def odd_exponents(pairs: Sequence[tuple[int, int]]) -> Iterator[Claim]:
     """(4.9): homogeneity of (4.8) is the same as an odd sum of exponents."""
     every = [(m, n) for m in range(-4, 5) for n in range(-4, 5)]
     agree = [((m + n) % 2 == 1) == ((m, n) in pairs) for m, n in every]
-    return [
-        Claim(
-            key="odd-exponents",
-            place="section 4, (4.9)",
-            printed="homogeneity of (4.8) requires epsilon_2 + epsilon_3 to be odd",
-            criterion=f"of the {len(every)} pairs of exponents from -4 to 4 those with an odd sum, and no others, "
-            f"give both "
-            "sides one orientation",
-            found=f"so for {sum(agree)} pairs; {len(pairs)} are homogeneous",
-            verdict=verdict_of(float(np.mean(agree))),
-            numbers={"pairs": len(every), "agree": sum(agree), "homogeneous": len(pairs)},
-        )
-    ]
+    yield Claim(
+        key="odd-exponents",
+        place="section 4, (4.9)",
+        printed="homogeneity of (4.8) requires epsilon_2 + epsilon_3 to be odd",
+        criterion=f"of the {len(every)} pairs of exponents from -4 to 4 those with an odd sum, and no others, give "
+        "both sides one orientation",
+        found=f"so for {sum(agree)} pairs; {len(pairs)} are homogeneous",
+        verdict=verdict_of(float(np.mean(agree))),
+        numbers={"pairs": len(every), "agree": sum(agree), "homogeneous": len(pairs)},
+    )
 
 
 def scalings() -> dict[str, Scaling]:
@@ -90,25 +85,22 @@ def scalings() -> dict[str, Scaling]:
     return {equation: scaling_of_exponents(exponents) for equation, exponents in PRINTED_EXPONENTS.items()}
 
 
-def exponents_give_groups(found: Mapping[str, Scaling]) -> list[Claim]:
+def exponents_give_groups(found: Mapping[str, Scaling]) -> Iterator[Claim]:
     """Whether the exponents that the paper chooses lead to the groups that it states."""
     equal = [found[equation] == printed for equation, printed in PRINTED_GROUPS.items()]
-    return [
-        Claim(
-            key="exponents-give-groups",
-            place="section 4, (4.10), (4.11)",
-            printed="epsilon = (1, -2) retrieves the groups of (3.4), epsilon = (-2, 1) those of (4.1)",
-            criterion="the product of (4.8) with these exponents is one oriented factor, by (4.4) the scale of the "
-            "rotation, "
-            "times the group that is printed",
-            found="; ".join(
-                f"{equation}: scale {one.scale}, group " + " ".join(f"({name})^{n}" for name, n in one.group.items())
-                for equation, one in found.items()
-            ),
-            verdict=verdict_of(float(np.mean(equal))),
-            numbers={"equal": sum(equal)},
-        )
-    ]
+    yield Claim(
+        key="exponents-give-groups",
+        place="section 4, (4.10), (4.11)",
+        printed="epsilon = (1, -2) retrieves the groups of (3.4), epsilon = (-2, 1) those of (4.1)",
+        criterion="the product of (4.8) with these exponents is one oriented factor, by (4.4) the scale of the "
+        "rotation, times the group that is printed",
+        found="; ".join(
+            f"{equation}: scale {one.scale}, group " + " ".join(f"({name})^{n}" for name, n in one.group.items())
+            for equation, one in found.items()
+        ),
+        verdict=verdict_of(float(np.mean(equal))),
+        numbers={"equal": sum(equal)},
+    )
 
 
 def group_tests() -> dict[str, bool]:
@@ -118,22 +110,20 @@ def group_tests() -> dict[str, bool]:
     }
 
 
-def groups(free: Mapping[str, bool]) -> list[Claim]:
+def groups(free: Mapping[str, bool]) -> Iterator[Claim]:
     """The groups of (4.10) and (4.11)."""
     failing = [group for group, good in free.items() if not good]
-    return [
-        Claim(
-            key="groups",
-            place="section 4, (4.10), (4.11)",
-            printed="the groups are dimensionless and orientationless",
-            criterion=f"each of {', '.join(free)} has no dimension and, by (4.4) and (4.5), no orientation",
-            found=f"{len(free) - len(failing)} of {len(free)}"
-            + (f", not {', '.join(failing)}" if failing else "")
-            + "; a necessary test only: alpha^2 and theta alpha^2 g/a_g pass it too",
-            verdict=verdict_of(float(np.mean(list(free.values())))),
-            numbers={"groups": len(free), "free": len(free) - len(failing)},
-        )
-    ]
+    yield Claim(
+        key="groups",
+        place="section 4, (4.10), (4.11)",
+        printed="the groups are dimensionless and orientationless",
+        criterion=f"each of {', '.join(free)} has no dimension and, by (4.4) and (4.5), no orientation",
+        found=f"{len(free) - len(failing)} of {len(free)}"
+        + (f", not {', '.join(failing)}" if failing else "")
+        + "; a necessary test only: alpha^2 and theta alpha^2 g/a_g pass it too",
+        verdict=verdict_of(float(np.mean(list(free.values())))),
+        numbers={"groups": len(free), "free": len(free) - len(failing)},
+    )
 
 
 def equation_tests() -> dict[str, bool]:
@@ -141,42 +131,37 @@ def equation_tests() -> dict[str, bool]:
     return {number: is_homogeneous_equation(equation) for number, equation in EQUATIONS.items()}
 
 
-def homogeneous_equations(homogeneous: Mapping[str, bool]) -> list[Claim]:
+def homogeneous_equations(homogeneous: Mapping[str, bool]) -> Iterator[Claim]:
     """The demand that physical equations be orientationally homogeneous, tested on those of the paper."""
     failing = [number for number, good in homogeneous.items() if not good]
-    return [
-        Claim(
-            key="homogeneous-equations",
-            place="section 4, below (4.3)",
-            printed="physical equations are both dimensionally and orientationally homogeneous",
-            criterion=f"all terms of {', '.join(homogeneous)} have one dimension and one orientation",
-            found="so in all" if not failing else f"not in {', '.join(failing)}",
-            verdict=verdict_of(float(np.mean(list(homogeneous.values())))),
-            numbers={"equations": len(homogeneous), "homogeneous": len(homogeneous) - len(failing)},
-        )
-    ]
+    yield Claim(
+        key="homogeneous-equations",
+        place="section 4, below (4.3)",
+        printed="physical equations are both dimensionally and orientationally homogeneous",
+        criterion=f"all terms of {', '.join(homogeneous)} have one dimension and one orientation",
+        found="so in all" if not failing else f"not in {', '.join(failing)}",
+        verdict=verdict_of(float(np.mean(list(homogeneous.values())))),
+        numbers={"equations": len(homogeneous), "homogeneous": len(homogeneous) - len(failing)},
+    )
 
 
-def collapse(figure: xr.Dataset) -> list[Claim]:
+def collapse(figure: xr.Dataset) -> Iterator[Claim]:
     """Figure 5 collapses to figure 6: two blocks, each integrated in SI units."""
     rotation = figure.rotation.values
     peak = float(np.abs(rotation).max())
     between = float(np.abs(rotation[0] - rotation[1]).max()) / peak
     master = np.interp(figure.tau[0], figure.tau_master, figure.master_rotation)  # all of these times are samples of it
     solver = float(np.abs(rotation - master).max()) / peak
-    return [
-        Claim(
-            key="collapse",
-            place="section 4, figures 5 and 6",
-            printed="two blocks of different size and shape with equal groups follow one master curve",
-            criterion="two integrations in SI units, scaled, and the solution from the groups alone differ by less "
-            "than "
-            f"{SAME:.0e} of the peak",
-            found=f"by {between:.0e} between the blocks and {solver:.0e} from the solution by groups",
-            verdict=verdict_of(max(between, solver) < SAME),
-            numbers={"between_blocks": between, "from_groups": solver},
-        )
-    ]
+    yield Claim(
+        key="collapse",
+        place="section 4, figures 5 and 6",
+        printed="two blocks of different size and shape with equal groups follow one master curve",
+        criterion="two integrations in SI units, scaled, and the solution from the groups alone differ by less than "
+        f"{SAME:.0e} of the peak",
+        found=f"by {between:.0e} between the blocks and {solver:.0e} from the solution by groups",
+        verdict=verdict_of(max(between, solver) < SAME),
+        numbers={"between_blocks": between, "from_groups": solver},
+    )
 
 
 GROUPS = {"slenderness": 0.55, "frequency_ratio": 3.5, "restitution": 0.85}
@@ -201,20 +186,17 @@ def _histories(pulse: str, blocks: Sequence[RectangularBlock]) -> Floats:
     return np.array([*rows, solved.rotation.values])
 
 
-def any_excitation(histories: Mapping[str, Floats]) -> list[Claim]:
+def any_excitation(histories: Mapping[str, Floats]) -> Iterator[Claim]:
     """Self-similarity for every pulse of the catalogue."""
     spreads = {pulse: float(np.ptp(rows, axis=0).max() / np.abs(rows).max()) for pulse, rows in histories.items()}
     equal = [spread < 1e-7 for spread in spreads.values()]
-    return [
-        Claim(
-            key="any-excitation",
-            place="section 4, below (4.11)",
-            printed="the response is self-similar for any excitation that can be described by a_g and omega_g",
-            criterion="two blocks of different size and shape with equal groups, integrated in SI units, and the "
-            "solution "
-            f"from the groups differ by less than 1e-07 of the peak; {len(spreads)} pulses",
-            found=f"so for {sum(equal)} of them; largest difference {max(spreads.values()):.0e}",
-            verdict=verdict_of(float(np.mean(equal))),
-            numbers=spreads,
-        )
-    ]
+    yield Claim(
+        key="any-excitation",
+        place="section 4, below (4.11)",
+        printed="the response is self-similar for any excitation that can be described by a_g and omega_g",
+        criterion="two blocks of different size and shape with equal groups, integrated in SI units, and the solution "
+        f"from the groups differ by less than 1e-07 of the peak; {len(spreads)} pulses",
+        found=f"so for {sum(equal)} of them; largest difference {max(spreads.values()):.0e}",
+        verdict=verdict_of(float(np.mean(equal))),
+        numbers=spreads,
+    )

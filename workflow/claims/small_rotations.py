@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -77,7 +77,7 @@ def _where(found: Mapping[str, Spread]) -> str:
     return f"alpha 0 to {np.degrees(ALPHA[-1]):.0f} degrees, omega {omega[0]:g} to {omega[-1]:g}"
 
 
-def practical_similarity(found: Mapping[str, Spread]) -> list[Claim]:
+def practical_similarity(found: Mapping[str, Spread]) -> Iterator[Claim]:
     """(6.1) for g tan(alpha)/a_g from 0.5 to 1, and for all values, compared with (4.11)."""
     within, closer, rows = {}, {}, []
     for pulse, spread in found.items():
@@ -91,33 +91,29 @@ def practical_similarity(found: Mapping[str, Spread]) -> list[Claim]:
                 f"{percent(float(np.median(spread.slender[band])))})"
             )
     near_one = [share for name, share in within.items() if name.endswith("0.5 to 1")]
-    return [
-        Claim(
-            key="practical-similarity",
-            place="section 6, below (6.1)",
-            printed="(6.1) makes the response practically self-similar for 0.5 < g tan(alpha)/a_g < 1",
-            criterion=f"the peaks in these groups vary with alpha by at most {percent(SMALL)} of that of the slender "
-            f"block, where "
-            f"all survive; {_where(found)}, {MEASURE}, for each pulse",
-            found="on " + "; ".join(rows),
-            verdict=verdict_of(min(near_one)),
-            numbers=within,
-        ),
-        Claim(
-            key="groups-for-all-cases",
-            place="section 6, end",
-            printed="the groups of (6.1) are proposed for all cases",
-            criterion="the peaks vary less with alpha than in the groups of (4.11), for 0.2 to 0.5 and for 0.5 to 1, "
-            "for each pulse; "
-            f"{_where(found)}, {MEASURE}",
-            found="on " + ", ".join(f"{percent(share, 3)} ({name})" for name, share in closer.items()),
-            verdict=verdict_of(min(closer.values())),
-            numbers=closer,
-        ),
-    ]
+    yield Claim(
+        key="practical-similarity",
+        place="section 6, below (6.1)",
+        printed="(6.1) makes the response practically self-similar for 0.5 < g tan(alpha)/a_g < 1",
+        criterion=f"the peaks in these groups vary with alpha by at most {percent(SMALL)} of that of the slender "
+        f"block, where all survive; {_where(found)}, {MEASURE}, for each pulse",
+        found="on " + "; ".join(rows),
+        verdict=verdict_of(min(near_one)),
+        numbers=within,
+    )
+    yield Claim(
+        key="groups-for-all-cases",
+        place="section 6, end",
+        printed="the groups of (6.1) are proposed for all cases",
+        criterion="the peaks vary less with alpha than in the groups of (4.11), for 0.2 to 0.5 and for 0.5 to 1, for "
+        f"each pulse; {_where(found)}, {MEASURE}",
+        found="on " + ", ".join(f"{percent(share, 3)} ({name})" for name, share in closer.items()),
+        verdict=verdict_of(min(closer.values())),
+        numbers=closer,
+    )
 
 
-def larger_slenderness(found: Mapping[str, Spread]) -> list[Claim]:
+def larger_slenderness(found: Mapping[str, Spread]) -> Iterator[Claim]:
     """Whether (6.1) is more accurate for large g tan(alpha)/a_g (figure 13) and for small rotations (figure 10)."""
     by_slenderness, by_rotation, halves = {}, {}, {}
     for pulse, spread in found.items():
@@ -144,37 +140,33 @@ def larger_slenderness(found: Mapping[str, Spread]) -> list[Claim]:
 
     falls = [upper < lower for lower, upper in halves.values()]
     rises = np.concatenate([np.diff(values) > 0 for values in by_rotation.values()])
-    return [
-        Claim(
-            key="larger-slenderness",
-            place="section 6, figure 13",
-            printed="the groups of (6.1) are most effective for larger g tan(alpha)/a_g",
-            criterion="the median variation of the peaks with alpha is smaller for g tan(alpha)/a_g from 0.5 to 1 "
-            "than from "
-            f"0.2 to 0.5; {_where(found)}; share of the pulses",
-            found=f"for {sum(falls)} of {len(falls)} pulses: "
-            + "; ".join(f"{pulse}: {percent(b)} against {percent(a)}" for pulse, (a, b) in halves.items())
-            + ". In narrower ranges: "
-            + rows(by_slenderness, BANDS),
-            verdict=verdict_of(float(np.mean(falls))),
-            numbers=numbers(by_slenderness, BANDS),
-        ),
-        Claim(
-            key="small-rotations",
-            place="section 5, end, and section 6",
-            printed="while rotations are small the dependence on alpha is weak",
-            criterion="the median variation of the peaks with alpha in the groups of (6.1) is at most "
-            f"{percent(SMALL)} for the smallest rotations and rises from each range of theta_max/alpha of the slender "
-            f"block to the "
-            f"next, for each pulse; {_where(found)}; share of the steps",
-            found=f"at {int(rises.sum())} of {rises.size} steps: " + rows(by_rotation, SIZES),
-            verdict=verdict_of(float(rises.mean()) * float(all(values[0] <= SMALL for values in by_rotation.values()))),
-            numbers=numbers(by_rotation, SIZES),
-        ),
-    ]
+    yield Claim(
+        key="larger-slenderness",
+        place="section 6, figure 13",
+        printed="the groups of (6.1) are most effective for larger g tan(alpha)/a_g",
+        criterion="the median variation of the peaks with alpha is smaller for g tan(alpha)/a_g from 0.5 to 1 than "
+        f"from 0.2 to 0.5; {_where(found)}; share of the pulses",
+        found=f"for {sum(falls)} of {len(falls)} pulses: "
+        + "; ".join(f"{pulse}: {percent(b)} against {percent(a)}" for pulse, (a, b) in halves.items())
+        + ". In narrower ranges: "
+        + rows(by_slenderness, BANDS),
+        verdict=verdict_of(float(np.mean(falls))),
+        numbers=numbers(by_slenderness, BANDS),
+    )
+    yield Claim(
+        key="small-rotations",
+        place="section 5, end, and section 6",
+        printed="while rotations are small the dependence on alpha is weak",
+        criterion=f"the median variation of the peaks with alpha in the groups of (6.1) is at most {percent(SMALL)} "
+        "for the smallest rotations and rises from each range of theta_max/alpha of the slender block to the next, for "
+        f"each pulse; {_where(found)}; share of the steps",
+        found=f"at {int(rises.sum())} of {rises.size} steps: " + rows(by_rotation, SIZES),
+        verdict=verdict_of(float(rises.mean()) * float(all(values[0] <= SMALL for values in by_rotation.values()))),
+        numbers=numbers(by_rotation, SIZES),
+    )
 
 
-def twofold_effect(one_restitution: xr.Dataset, momentum: xr.Dataset) -> list[Claim]:
+def twofold_effect(one_restitution: xr.Dataset, momentum: xr.Dataset) -> Iterator[Claim]:
     """The variation with alpha in the groups of (6.1), at one restitution and with that of (2.4)."""
     pulses = one_restitution.attrs["pulse_names"].split()
     median = {
@@ -183,33 +175,28 @@ def twofold_effect(one_restitution: xr.Dataset, momentum: xr.Dataset) -> list[Cl
     }
     met = [fixed <= SMALL < varied for fixed, varied in zip(median["one"], median["momentum"], strict=True)]
     angle, omega = float(np.degrees(one_restitution.alpha.max())), one_restitution.frequency_ratio.values
-    return [
-        Claim(
-            key="twofold-effect",
-            place="section 4a, end",
-            printed="with the restitution of (2.4) the slenderness alpha has a twofold effect, through g "
-            "tan(alpha)/a_g and "
-            "through the damping",
-            criterion="at equal g tan(alpha)/a_g and omega the median variation of the peaks with alpha, in the "
-            "groups of (6.1), is at "
-            f"most {percent(SMALL)} with one restitution and more with that of (2.4); alpha 0 to {angle:.0f} degrees, "
-            f"omega "
-            f"{omega[0]:g} to {omega[-1]:g}; share of the pulses",
-            found="; ".join(
-                f"{pulse}: {percent(fixed)} with one restitution, {percent(varied)} with (2.4)"
-                for pulse, fixed, varied in zip(pulses, median["one"], median["momentum"], strict=True)
-            ),
-            verdict=verdict_of(float(np.mean(met))),
-            numbers={
-                f"{pulse}, {name}": value
-                for name, values in median.items()
-                for pulse, value in zip(pulses, values, strict=True)
-            },
-        )
-    ]
+    yield Claim(
+        key="twofold-effect",
+        place="section 4a, end",
+        printed="with the restitution of (2.4) the slenderness alpha has a twofold effect, through g tan(alpha)/a_g "
+        "and through the damping",
+        criterion="at equal g tan(alpha)/a_g and omega the median variation of the peaks with alpha, in the groups of "
+        f"(6.1), is at most {percent(SMALL)} with one restitution and more with that of (2.4); alpha 0 to {angle:.0f} "
+        f"degrees, omega {omega[0]:g} to {omega[-1]:g}; share of the pulses",
+        found="; ".join(
+            f"{pulse}: {percent(fixed)} with one restitution, {percent(varied)} with (2.4)"
+            for pulse, fixed, varied in zip(pulses, median["one"], median["momentum"], strict=True)
+        ),
+        verdict=verdict_of(float(np.mean(met))),
+        numbers={
+            f"{pulse}, {name}": value
+            for name, values in median.items()
+            for pulse, value in zip(pulses, values, strict=True)
+        },
+    )
 
 
-def histories(figures: Sequence[xr.Dataset]) -> list[Claim]:
+def histories(figures: Sequence[xr.Dataset]) -> Iterator[Claim]:
     """Figures 11 and 12: largest distance between blocks in the slender groups and in those of (6.1)."""
     rows, numbers, ratios = [], {}, []
     for number, figure in zip((11, 12), figures, strict=True):
@@ -220,21 +207,17 @@ def histories(figures: Sequence[xr.Dataset]) -> list[Claim]:
             ratios.append(left / right)
     first = len(figures[0].spread)
     met = [min(ratios) > 2, min(ratios[first:]) > max(ratios[:first])]
-    return [
-        Claim(
-            key="histories",
-            place="section 6, figures 11 and 12",
-            printed="in the groups of (6.1) responses depend notably less on alpha, even more evidently so at 0.75",
-            criterion="the largest difference between histories of blocks of different alpha is less than half of "
-            "that in the groups "
-            "of (4.1) in each panel, and the reduction is larger in each panel of figure 12 than in those of figure "
-            "11; one of the "
-            "two: within range",
-            found="difference as a share of the peak of the slender block: " + "; ".join(rows),
-            verdict=verdict_of(float(np.mean(met)) if met[0] else 0.0),
-            numbers=numbers,
-        )
-    ]
+    yield Claim(
+        key="histories",
+        place="section 6, figures 11 and 12",
+        printed="in the groups of (6.1) responses depend notably less on alpha, even more evidently so at 0.75",
+        criterion="the largest difference between histories of blocks of different alpha is less than half of that in "
+        "the groups of (4.1) in each panel, and the reduction is larger in each panel of figure 12 than in those of "
+        "figure 11; one of the two: within range",
+        found="difference as a share of the peak of the slender block: " + "; ".join(rows),
+        verdict=verdict_of(float(np.mean(met)) if met[0] else 0.0),
+        numbers=numbers,
+    )
 
 
 CONTACT_ANGLES = (20, 30, 40)
@@ -260,7 +243,7 @@ def _contacts(pulse: str, angle: float, restitution: float) -> list[ContactExtre
     ]
 
 
-def pure_rocking(found: Mapping[int, Sequence[ContactExtremes]]) -> list[Claim]:
+def pure_rocking(found: Mapping[int, Sequence[ContactExtremes]]) -> Iterator[Claim]:
     """Whether pure rocking is doubtful for angles beyond those of figure 11."""
     doubtful = {
         angle: float(np.mean([one.largest_friction_demand > PRACTICAL_FRICTION or one.lifts_off for one in ones]))
@@ -269,21 +252,16 @@ def pure_rocking(found: Mapping[int, Sequence[ContactExtremes]]) -> list[Claim]:
     demand = {angle: float(np.median([one.largest_friction_demand for one in ones])) for angle, ones in found.items()}
     first, *larger = found
     met = [doubtful[angle] >= LIKELY for angle in larger]
-    return [
-        Claim(
-            key="pure-rocking",
-            place="section 6, below (6.1)",
-            printed="for larger alpha than in figure 11 pure rocking, without sliding or bouncing, would likely break "
-            "down",
-            criterion=f"beyond the largest angle of figure 11, {first} degrees, at {' and '.join(map(str, larger))} "
-            f"degrees, at least "
-            f"{percent(LIKELY)} of the blocks that survive need a friction coefficient above {PRACTICAL_FRICTION} or "
-            f"lose contact; a "
-            "grid of 144 blocks, sine and cosine; share of these angles",
-            found="share of such blocks and median friction coefficient: "
-            + ", ".join(f"{percent(doubtful[angle])}, {demand[angle]:.2f} ({angle} degrees)" for angle in found),
-            verdict=verdict_of(float(np.mean(met))),
-            numbers={f"doubtful_{angle}_deg": doubtful[angle] for angle in found}
-            | {f"median_friction_{angle}_deg": demand[angle] for angle in found},
-        )
-    ]
+    yield Claim(
+        key="pure-rocking",
+        place="section 6, below (6.1)",
+        printed="for larger alpha than in figure 11 pure rocking, without sliding or bouncing, would likely break down",
+        criterion=f"beyond the largest angle of figure 11, {first} degrees, at {' and '.join(map(str, larger))} "
+        f"degrees, at least {percent(LIKELY)} of the blocks that survive need a friction coefficient above "
+        f"{PRACTICAL_FRICTION} or lose contact; a grid of 144 blocks, sine and cosine; share of these angles",
+        found="share of such blocks and median friction coefficient: "
+        + ", ".join(f"{percent(doubtful[angle])}, {demand[angle]:.2f} ({angle} degrees)" for angle in found),
+        verdict=verdict_of(float(np.mean(met))),
+        numbers={f"doubtful_{angle}_deg": doubtful[angle] for angle in found}
+        | {f"median_friction_{angle}_deg": demand[angle] for angle in found},
+    )

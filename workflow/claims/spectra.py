@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -78,7 +78,7 @@ def spectra_of(cubes: Sequence[xr.Dataset]) -> Spectra:
     return Spectra(eta, s, omega, peak, outcome, mode, closed)
 
 
-def closed_form(spectra: Spectra) -> list[Claim]:
+def closed_form(spectra: Spectra) -> Iterator[Claim]:
     """(4.13) against the solver where the first impact follows the pulse."""
     with np.errstate(invalid="ignore"):
         error = np.abs(spectra.closed / spectra.peak - 1)
@@ -87,43 +87,38 @@ def closed_form(spectra: Spectra) -> list[Claim]:
     share = share_of_area(exact, region, spectra.areas)
     later = region & (spectra.mode == 3)  # the peak is reached in free rocking after one impact
     rest = region & ~exact
-    return [
-        Claim(
-            key="spectrum-exact",
-            place="section 4a, (4.13), figure 8",
-            printed="(4.13) is accurate where the first impact follows the pulse",
-            criterion=f"it is the peak of the whole response, within a relative {SAME:.0e}, where the first impact "
-            f"follows "
-            f"the pulse and the block survives; {MEASURE}, {spectra.range}",
-            found=f"on {percent(share)}; where the largest rotation comes after that impact the difference is at most "
-            f"{error[later].max(initial=0.0):.0e}; on the rest the block rotated further before it",
-            verdict=verdict_of(share),
-            numbers={"share": share, "share_peak_before_impact": share_of_area(rest & ~later, region, spectra.areas)},
-        )
-    ]
+    yield Claim(
+        key="spectrum-exact",
+        place="section 4a, (4.13), figure 8",
+        printed="(4.13) is accurate where the first impact follows the pulse",
+        criterion=f"it is the peak of the whole response, within a relative {SAME:.0e}, where the first impact follows "
+        f"the pulse and the block survives; {MEASURE}, {spectra.range}",
+        found=f"on {percent(share)}; where the largest rotation comes after that impact the difference is at most "
+        f"{error[later].max(initial=0.0):.0e}; on the rest the block rotated further before it",
+        verdict=verdict_of(share),
+        numbers={"share": share, "share_peak_before_impact": share_of_area(rest & ~later, region, spectra.areas)},
+    )
 
 
-def no_real_root(spectra: Spectra) -> list[Claim]:
+def no_real_root(spectra: Spectra) -> Iterator[Claim]:
     """Whether (4.13) has no real root exactly where the solver finds that the block overturns."""
     region = spectra.after_pulse
     overturns = spectra.outcome >= Outcome.OVERTURNED_DIRECTLY
     equal = np.isnan(spectra.closed) == overturns
     share = share_of_area(equal, region, spectra.areas)
-    return [
-        Claim(
-            key="no-real-root",
-            place="section 4a, below (4.13)",
-            printed="where the block overturns by case 1.2 (4.13) yields no real root",
-            criterion="it has no real root where the solver finds overturning, and one where it finds survival; first "
-            f"impact after the pulse, {MEASURE}, {spectra.range}",
-            found=f"on {percent(share)}: {int((region & ~equal).sum())} of {int(region.sum())} nodes differ",
-            verdict=verdict_of(share),
-            numbers={"share": share, "different": int((region & ~equal).sum()), "nodes": int(region.sum())},
-        )
-    ]
+    yield Claim(
+        key="no-real-root",
+        place="section 4a, below (4.13)",
+        printed="where the block overturns by case 1.2 (4.13) yields no real root",
+        criterion="it has no real root where the solver finds overturning, and one where it finds survival; first "
+        f"impact after the pulse, {MEASURE}, {spectra.range}",
+        found=f"on {percent(share)}: {int((region & ~equal).sum())} of {int(region.sum())} nodes differ",
+        verdict=verdict_of(share),
+        numbers={"share": share, "different": int((region & ~equal).sum()), "nodes": int(region.sum())},
+    )
 
 
-def peak_after_pulse(spectra: Spectra) -> list[Claim]:
+def peak_after_pulse(spectra: Spectra) -> Iterator[Claim]:
     """Whether the largest rotation comes after the pulse as omega grows."""
     region = spectra.after_pulse & spectra.survives
     free = spectra.mode % 2 == 1  # reached in free rocking
@@ -135,23 +130,20 @@ def peak_after_pulse(spectra: Spectra) -> list[Claim]:
             shares[f"{low:g} to {high:g}"] = share_of_area(free, band, spectra.areas)
     values = list(shares.values())
     met = bool(np.all(np.diff(values) >= 0)), bool(values[-1] > 0.5)
-    return [
-        Claim(
-            key="peak-after-pulse",
-            place="section 4a, above (4.12)",
-            printed="as omega becomes larger the maximum rotation appears after the end of the excitation",
-            criterion="where the first impact follows the pulse and the block survives, the share of blocks with their "
-            "peak after the pulse does not fall from one octave of omega to the next, and exceeds one half in the "
-            "last; "
-            f"{MEASURE}, {spectra.range}; one of the two: within range",
-            found="share by omega: " + ", ".join(f"{percent(share)} ({band})" for band, share in shares.items()),
-            verdict=verdict_of(float(np.mean(met))),
-            numbers={f"share, omega {band}": share for band, share in shares.items()},
-        )
-    ]
+    yield Claim(
+        key="peak-after-pulse",
+        place="section 4a, above (4.12)",
+        printed="as omega becomes larger the maximum rotation appears after the end of the excitation",
+        criterion="where the first impact follows the pulse and the block survives, the share of blocks with their "
+        "peak after the pulse does not fall from one octave of omega to the next, and exceeds one half in the last; "
+        f"{MEASURE}, {spectra.range}; one of the two: within range",
+        found="share by omega: " + ", ".join(f"{percent(share)} ({band})" for band, share in shares.items()),
+        verdict=verdict_of(float(np.mean(met))),
+        numbers={f"share, omega {band}": share for band, share in shares.items()},
+    )
 
 
-def approximation_near_limit(spectra: Spectra) -> list[Claim]:
+def approximation_near_limit(spectra: Spectra) -> Iterator[Claim]:
     """Below (3.31) the error of (4.13) by distance from that curve."""
     omega = spectra.frequency_ratio
     distance = np.broadcast_to(spectra.slenderness[:, None] - 1 / limit_amplitude(omega), spectra.peak.shape)
@@ -163,19 +155,16 @@ def approximation_near_limit(spectra: Spectra) -> list[Claim]:
         for low, high in DISTANCES
     }
     rises = np.diff(list(medians.values())) > 0
-    return [
-        Claim(
-            key="approximation-near-limit",
-            place="section 4a, below (4.13)",
-            printed="below the curve (3.31) the approximation gets better near the curve",
-            criterion="the median error of (4.13) rises from each range of distance in 1/a to the next; omega from 2, "
-            f"eta {spectra.restitution[0]:.2f} to {spectra.restitution[-1]:.2f}",
-            found="median error by distance: "
-            + ", ".join(f"{percent(value)} ({band})" for band, value in medians.items()),
-            verdict=verdict_of(float(rises.mean())),
-            numbers={f"median {band}": value for band, value in medians.items()},
-        )
-    ]
+    yield Claim(
+        key="approximation-near-limit",
+        place="section 4a, below (4.13)",
+        printed="below the curve (3.31) the approximation gets better near the curve",
+        criterion="the median error of (4.13) rises from each range of distance in 1/a to the next; omega from 2, "
+        f"eta {spectra.restitution[0]:.2f} to {spectra.restitution[-1]:.2f}",
+        found="median error by distance: " + ", ".join(f"{percent(value)} ({band})" for band, value in medians.items()),
+        verdict=verdict_of(float(rises.mean())),
+        numbers={f"median {band}": value for band, value in medians.items()},
+    )
 
 
 class SlowImpacts(NamedTuple):
@@ -197,25 +186,23 @@ def slow_impacts() -> SlowImpacts:
     return SlowImpacts(speed[chosen], found.peak_rotation[chosen], small_peak(a, omega, eta)[chosen])
 
 
-def leading_term(slow: SlowImpacts) -> list[Claim]:
+def leading_term(slow: SlowImpacts) -> Iterator[Claim]:
     """(4.14), corrected, against the peaks of the solver for small velocities after the impact."""
     error = np.abs(slow.leading / slow.peak - 1)
     share = float((error <= SMALL).mean()) if error.size else np.nan
-    return [
-        Claim(
-            key="leading-term",
-            place="section 4a, (4.14), corrected",
-            printed="for small eta v_i2 (4.13) simplifies to (eta^2/2)(1 - D0*)",
-            criterion=f"within {percent(SMALL)} of the peak that the solver finds for eta v up to {SLOW_IMPACT:g}; "
-            f"{error.size} blocks, omega 15 to 150, eta 0.80 to 0.96; share of blocks",
-            found=f"for {percent(share)}; largest error {percent(float(error.max(initial=0.0)))}",
-            verdict=verdict_of(share),
-            numbers={"share": share, "largest": float(error.max(initial=0.0)), "blocks": error.size},
-        )
-    ]
+    yield Claim(
+        key="leading-term",
+        place="section 4a, (4.14), corrected",
+        printed="for small eta v_i2 (4.13) simplifies to (eta^2/2)(1 - D0*)",
+        criterion=f"within {percent(SMALL)} of the peak that the solver finds for eta v up to {SLOW_IMPACT:g}; "
+        f"{error.size} blocks, omega 15 to 150, eta 0.80 to 0.96; share of blocks",
+        found=f"for {percent(share)}; largest error {percent(float(error.max(initial=0.0)))}",
+        verdict=verdict_of(share),
+        numbers={"share": share, "largest": float(error.max(initial=0.0)), "blocks": error.size},
+    )
 
 
-def scale_law(spectra: Spectra) -> list[Claim]:
+def scale_law(spectra: Spectra) -> Iterator[Claim]:
     """(4.16): deviation of the peaks from proportionality to eta squared."""
     eta, s = spectra.restitution, spectra.slenderness[:, None]
     reference = float(eta[np.argmin(np.abs(eta - 0.9))])
@@ -233,25 +220,23 @@ def scale_law(spectra: Spectra) -> list[Claim]:
     share = share_of_area(good, survives, areas)
     shares = {name: share_of_area(good, part, areas) for name, part in parts.items()}
     exponents = {name: float(np.nanmedian(exponent[part])) if part.any() else np.nan for name, part in parts.items()}
-    return [
-        Claim(
-            key="scale-law",
-            place="section 4a, (4.16)",
-            printed="spectra can be approximated by a scaling with eta squared",
-            criterion=f"the peak at eta = {reference:.2f} and the law give the peaks at all other eta within "
-            f"{percent(LAW)}, where the block survives for all of them; {MEASURE}, {spectra.range}",
-            found=f"on {percent(share)}; "
-            + "; ".join(f"{name}: {percent(shares[name])}, median exponent {exponents[name]:.2f}" for name in parts)
-            + " (map: figure-scale-law)",
-            verdict=verdict_of(share),
-            numbers={"share": share}
-            | {f"share, {name}": value for name, value in shares.items()}
-            | {f"median exponent, {name}": value for name, value in exponents.items()},
-        )
-    ]
+    yield Claim(
+        key="scale-law",
+        place="section 4a, (4.16)",
+        printed="spectra can be approximated by a scaling with eta squared",
+        criterion=f"the peak at eta = {reference:.2f} and the law give the peaks at all other eta within "
+        f"{percent(LAW)}, where the block survives for all of them; {MEASURE}, {spectra.range}",
+        found=f"on {percent(share)}; "
+        + "; ".join(f"{name}: {percent(shares[name])}, median exponent {exponents[name]:.2f}" for name in parts)
+        + " (map: figure-scale-law)",
+        verdict=verdict_of(share),
+        numbers={"share": share}
+        | {f"share, {name}": value for name, value in shares.items()}
+        | {f"median exponent, {name}": value for name, value in exponents.items()},
+    )
 
 
-def damping(spectra: Spectra) -> list[Claim]:
+def damping(spectra: Spectra) -> Iterator[Claim]:
     """Whether the peak never rises as restitution falls."""
     s = spectra.slenderness[:, None]
     survives = np.isfinite(spectra.peak).all(axis=0) & spectra.survives.all(axis=0)
@@ -259,20 +244,17 @@ def damping(spectra: Spectra) -> list[Claim]:
     falls = survives & (steps.min(axis=0, initial=np.inf) >= -SAME)
     areas = spectra.areas[0]
     share, below = (share_of_area(falls, part, areas) for part in (survives, survives & (s < 0.85)))
-    return [
-        Claim(
-            key="damping",
-            place="section 4a, figures 7 and 8",
-            printed="as the coefficient of restitution decreases the maximum rotation decreases",
-            criterion="the peak does not rise with any step down in eta, where the block survives for all eta; "
-            f"{MEASURE}, {spectra.range}",
-            found=f"on {percent(share)}; on {percent(below)} of what lies below 1/a = 0.85, above which a block has "
-            f"many "
-            "impacts and restarts",
-            verdict=verdict_of(share),
-            numbers={"share": share, "share_below_0.85": below},
-        )
-    ]
+    yield Claim(
+        key="damping",
+        place="section 4a, figures 7 and 8",
+        printed="as the coefficient of restitution decreases the maximum rotation decreases",
+        criterion="the peak does not rise with any step down in eta, where the block survives for all eta; "
+        f"{MEASURE}, {spectra.range}",
+        found=f"on {percent(share)}; on {percent(below)} of what lies below 1/a = 0.85, above which a block has many "
+        "impacts and restarts",
+        verdict=verdict_of(share),
+        numbers={"share": share, "share_below_0.85": below},
+    )
 
 
 class Swings(NamedTuple):
@@ -303,31 +285,29 @@ def _swing(slenderness: float, omega: float, restitution: float) -> tuple[float,
     return float(free[1] - free[0]), float(later), float(velocity.max())
 
 
-def period(swing: Swings) -> list[Claim]:
+def period(swing: Swings) -> Iterator[Claim]:
     """The effective period and the largest velocity of free rocking by restitution."""
     shorter = np.all(np.diff(swing.swing, axis=1) > 0, axis=1)
     slower = np.all(np.diff(swing.velocity, axis=1) > 0, axis=1)
     whole = np.all(np.diff(swing.whole_velocity, axis=1) > 0, axis=1)
     low, high = swing.restitution[0], swing.restitution[-1]
     blocks = f"{shorter.size} blocks under the sine, 1/a 0.3 to 0.6, omega 6 to 12, eta {high} down to {low}"
-    return [
-        Claim(
-            key="period",
-            place="section 4a, figure 7",
-            printed="as the coefficient of restitution decreases the effective period becomes shorter",
-            criterion=f"the time between the first two impacts after the pulse shortens with every step; {blocks}",
-            found=f"for {int(shorter.sum())} of them",
-            verdict=verdict_of(float(shorter.mean())),
-            numbers={"share": float(shorter.mean())},
-        ),
-        Claim(
-            key="velocity-peaks",
-            place="section 4a, figure 7",
-            printed="as the coefficient of restitution decreases the maximum angular velocity becomes lower",
-            criterion=f"the largest velocity after the first impact falls with every step; {blocks}",
-            found=f"for {int(slower.sum())} of them; the largest velocity of the whole response does so for "
-            f"{int(whole.sum())}, as it can be that before the first impact, which does not depend on eta",
-            verdict=verdict_of(float(slower.mean())),
-            numbers={"share": float(slower.mean()), "share_whole_response": float(whole.mean())},
-        ),
-    ]
+    yield Claim(
+        key="period",
+        place="section 4a, figure 7",
+        printed="as the coefficient of restitution decreases the effective period becomes shorter",
+        criterion=f"the time between the first two impacts after the pulse shortens with every step; {blocks}",
+        found=f"for {int(shorter.sum())} of them",
+        verdict=verdict_of(float(shorter.mean())),
+        numbers={"share": float(shorter.mean())},
+    )
+    yield Claim(
+        key="velocity-peaks",
+        place="section 4a, figure 7",
+        printed="as the coefficient of restitution decreases the maximum angular velocity becomes lower",
+        criterion=f"the largest velocity after the first impact falls with every step; {blocks}",
+        found=f"for {int(slower.sum())} of them; the largest velocity of the whole response does so for "
+        f"{int(whole.sum())}, as it can be that before the first impact, which does not depend on eta",
+        verdict=verdict_of(float(slower.mean())),
+        numbers={"share": float(slower.mean()), "share_whole_response": float(whole.mean())},
+    )

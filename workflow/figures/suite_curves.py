@@ -50,8 +50,7 @@ def data(*, fragility: Path) -> xr.Dataset:
     ).assign_attrs(
         title=f"Fragility curves of the suite {given.attrs['suite']}, limit state {given.demand.item()}",
         summary="Fraction of records with binomial interval at each level, curves fitted by maximum likelihood, and "
-        "the "
-        "curve of first exceedance for comparison.",
+        "the curve of first exceedance for comparison.",
         measure=given.attrs["measure"],
         confidence=given.attrs["confidence"],
     )

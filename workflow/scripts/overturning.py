@@ -82,13 +82,12 @@ def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float)
         curves.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Overturning boundaries of the rigid block under the {name} pulse, restitution {restitution:.2f}",
         summary="Curves on the plane of frequency ratio and dimensionless slenderness that separate blocks which "
-        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}. "
-        "Largest distance of a chord from its curve: chord_error, and uncounted_chord_error where blocks overturn "
-        "after many impacts; width in 1/a below which regions are not resolved: "
-        "thinnest_region, and thinnest_uncounted_region where blocks overturn after many impacts; distance in log "
-        "omega within which the ends of the latter are known: end_distance; largest distance of the nodes in 1/a, "
-        "below which a region can be missed: node_distance; ends of regions that are known to a step of the grid "
-        "only: open_ends.",
+        f"overturn from blocks which survive, each point found with the solver to {RESOLUTION:g}. Largest distance of "
+        "a chord from its curve: chord_error, and uncounted_chord_error where blocks overturn after many impacts; "
+        "width in 1/a below which regions are not resolved: thinnest_region, and thinnest_uncounted_region where "
+        "blocks overturn after many impacts; distance in log omega within which the ends of the latter are known: "
+        "end_distance; largest distance of the nodes in 1/a, below which a region can be missed: node_distance; ends "
+        "of regions that are known to a step of the grid only: open_ends.",
         history="rocking._boundary.tracing.overturning_boundary",
         id=f"overturning/{name}/eta-{restitution:.2f}",
     )
