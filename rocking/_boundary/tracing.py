@@ -21,6 +21,7 @@ from rocking._boundary.search import Floats, Solve, Work, block_solver, classifi
 from rocking._boundary.tracer import CHORD, END, Tracer
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.checks import check_number, check_one_alpha, check_window
+from rocking._model.labelled import variable
 from rocking._model.outcome_code import decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
@@ -145,7 +146,7 @@ def _as_dataset(chains: Chains) -> xr.Dataset:
     import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
     def curve(values: NDArray[np.integer[Any]], long_name: str) -> tuple[object, ...]:
-        return ("curve", values, {"long_name": long_name, "units": "1"})
+        return variable("curve", values, "1", long_name)
 
     size = chains.chain.size
     new = np.ones(size, dtype=bool)
@@ -159,21 +160,11 @@ def _as_dataset(chains: Chains) -> xr.Dataset:
     outcomes, impacts = zip(*(decode_outcomes(code) for code in (own, neighbour)), strict=True)
     return xr.Dataset(
         {
-            "slenderness": (
-                "point",
-                chains.slenderness[points],
-                {"long_name": "g tan(alpha)/a_g (3.6)", "units": "1"},
+            "slenderness": variable("point", chains.slenderness[points], "1", "g tan(alpha)/a_g (3.6)"),
+            "frequency_ratio": variable(
+                "point", np.exp(chains.log_omega[points]), "1", "frequency ratio omega_g/p (3.6)"
             ),
-            "frequency_ratio": (
-                "point",
-                np.exp(chains.log_omega[points]),
-                {"long_name": "frequency ratio omega_g/p (3.6)", "units": "1"},
-            ),
-            "row_size": (
-                "curve",
-                sizes.astype(np.int32),
-                {"long_name": "points", "units": "1", "sample_dimension": "point"},
-            ),
+            "row_size": variable("curve", sizes.astype(np.int32), "1", "points", sample_dimension="point"),
             "outline": curve(chains.chain[starts].astype(np.int32), "number of the outline that holds the curve"),
             "outcome": curve(outcomes[0], "outcome in the region that the curve bounds"),
             "impacts": curve(impacts[0], "impacts before overturning there"),

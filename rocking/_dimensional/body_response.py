@@ -31,7 +31,7 @@ from rocking._model.fields import (
     ResponseField,
 )
 from rocking._model.outcome import Outcome
-from rocking._model.response import axis_names
+from rocking._model.response import along_own_axes, axis_names
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -210,15 +210,11 @@ class BodyResponse(EqualByValue):
         import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
         names = axis_names(len(self.shape), self.arguments, ())
-        variables: dict[str, Any] = {
-            one.name: (names, getattr(self, one.name), {"units": one.unit} | one.attributes) for one in BODY_FIELDS
+        variables: dict[str, Any] = {one.name: one.variable(names, getattr(self, one.name)) for one in BODY_FIELDS}
+        coordinates: dict[str, Any] = {
+            name: (*along_own_axes(value, names), {"units": _UNITS.get(name, "1")})
+            for name, value in self.arguments.items()
         }
-        coordinates: dict[str, Any] = {}
-        for name, value in self.arguments.items():
-            shape = (1,) * (len(self.shape) - value.ndim) + value.shape
-            axes = [axis for axis, size in enumerate(shape) if size != 1]
-            own = tuple(names[axis] for axis in axes)
-            coordinates[name] = own, value.reshape([shape[axis] for axis in axes]), {"units": _UNITS.get(name, "1")}
         return xr.Dataset(variables, coordinates, {"motion": self.problem.motion.name})
 
     def to_pandas(self) -> pd.DataFrame:

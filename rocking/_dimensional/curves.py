@@ -21,6 +21,7 @@ from rocking._history.motion import SamplesMotion
 from rocking._history.time_history import DEFAULT_SAMPLES, MAX_SAMPLES, default_times, time_history
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._model.labelled import variable
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import solve_with_bound
@@ -59,10 +60,10 @@ def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
     if isinstance(problem.motion, Record):
         return _in_radians(found, problem.block).assign_attrs(about | {"scale": problem.scale})
     p = problem.block.frequency_parameter
-    time = "time", found["tau"].values / p, {"units": "s", "long_name": "time from pulse start"}
+    time = variable("time", found["tau"].values / p, "s", "time from pulse start")
     impacts = found["impact_time"]
     history = found.rename({"tau": "time"}).assign_coords(time=time)
-    history["impact_time"] = impacts.dims, impacts.values / p, {"units": "s", "long_name": "time of impact"}
+    history["impact_time"] = variable(impacts.dims, impacts.values / p, "s", "time of impact")
     times = {"period": problem.period, "pulse_end": float(found.attrs["pulse_end"]) / p}
     return _in_radians(history, problem.block).assign_attrs(about | times)
 
@@ -76,12 +77,12 @@ def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
         "vertical_acceleration": (block.gravity, "m s-2", "vertical ground acceleration, upwards"),
     }
     scaled = {
-        name: (history[name].dims, scale * history[name].values, {"units": unit, "long_name": meaning})
+        name: variable(history[name].dims, scale * history[name].values, unit, meaning)
         for name, (scale, unit, meaning) in scales.items()
         if name in history
     }
     moved = block.top_height * np.sin(scaled["rotation"][1])
-    scaled["top_displacement"] = history["rotation"].dims, moved, {"units": "m", "long_name": "top corner displacement"}
+    scaled["top_displacement"] = variable(history["rotation"].dims, moved, "m", "top corner displacement")
     return history.assign(scaled)
 
 
@@ -150,9 +151,9 @@ def body_history(
         attributes |= {name: getattr(most, name) for name in names}
         attributes |= {"lifts_off": int(most.lifts_off), "warnings": "; ".join(most.warnings)}
     return xr.Dataset(
-        {name: ("time", values, {"units": unit, "long_name": text}) for name, (values, unit, text) in columns.items()}
-        | {"impact_time": ("impact", impacts / p, {"units": "s", "long_name": "time of impact"})},
-        {"time": ("time", tau / p, {"units": "s", "long_name": "time from the start of the motion"})},
+        {name: variable("time", values, unit, text) for name, (values, unit, text) in columns.items()}
+        | {"impact_time": variable("impact", impacts / p, "s", "time of impact")},
+        {"time": variable("time", tau / p, "s", "time from the start of the motion")},
         attributes,
     )
 
@@ -182,20 +183,16 @@ def block_spectrum(problem: BlockProblem, period: NDArray[np.float64], stop: Sto
     found = solve_with_bound(problem.pulse, **problem.groups | {"frequency_ratio": ratio}, stop=stop)
     rotation = found.peak_rotation * block.alpha
     variables = {
-        "rotation": ("period", rotation, {"units": "rad", "long_name": "peak rotation"}),
-        "top_displacement": (
-            "period",
-            block.top_height * np.sin(rotation),
-            {"units": "m", "long_name": "largest top displacement"},
-        ),
+        "rotation": variable("period", rotation, "rad", "peak rotation"),
+        "top_displacement": variable("period", block.top_height * np.sin(rotation), "m", "largest top displacement"),
     }
     variables |= {
-        field.name: ("period", getattr(found, field.name), {"units": field.unit} | field.attributes)
+        field.name: field.variable("period", getattr(found, field.name))
         for field in (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, ERROR_BOUND)
     }
     coordinates = {
-        "period": ("period", period, {"units": "s", "long_name": "period of the pulse"}),
-        "frequency_ratio": ("period", ratio, {"units": "1", "long_name": "frequency ratio omega_g/p"}),
+        "period": variable("period", period, "s", "period of the pulse"),
+        "frequency_ratio": variable("period", ratio, "1", "frequency ratio omega_g/p"),
     }
     return xr.Dataset(
         variables, coordinates, _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
@@ -261,16 +258,10 @@ def add_si_axes(curves: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
 def with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: float) -> xr.Dataset:
     """The same, from the acceleration at slenderness 1 [m/s2] and the period at frequency ratio 1 [s]."""
     return curves.assign(
-        peak_acceleration=(
-            "point",
-            uplift_acceleration / curves["slenderness"].values,
-            {"units": "m s-2", "long_name": "peak acceleration a_g"},
+        peak_acceleration=variable(
+            "point", uplift_acceleration / curves["slenderness"].values, "m s-2", "peak acceleration a_g"
         ),
-        period=(
-            "point",
-            unit_period / curves["frequency_ratio"].values,
-            {"units": "s", "long_name": "period of the pulse"},
-        ),
+        period=variable("point", unit_period / curves["frequency_ratio"].values, "s", "period of the pulse"),
     )
 
 

@@ -236,8 +236,9 @@ class BlockResponse(EqualByValue):
         import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
         values = self.to_dict() | {OUTCOME.name: int(self.outcome)}
-        variables = {one.name: ((), values[one.name], {"units": one.unit} | one.attributes) for one in self.fields}
-        return xr.Dataset(variables, attrs=dict(self.motion))
+        return xr.Dataset(
+            {one.name: one.variable((), values[one.name]) for one in self.fields}, attrs=dict(self.motion)
+        )
 
     def to_pandas(self) -> pd.Series:
         """The fields as a series; units are those of `to_xarray`."""

@@ -33,6 +33,7 @@ from scipy.stats import t as student
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
 from rocking._base.units import Scalar
+from rocking._model.labelled import variable
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag  # numba takes longer to load than the fit
@@ -278,16 +279,16 @@ def _described(
     fitted[used] = model
     found = xr.Dataset(
         {
-            "rotation": ("time", theta, {"units": "rad", "long_name": "measured rotation"}),
-            "fitted": ("time", fitted, {"units": "rad", "long_name": "rotation of the fitted body"}),
-            "residual": ("time", theta - fitted, {"units": "rad", "long_name": "measured less fitted rotation"}),
-            "impact_time": ("impact", impacts, {"units": "s", "long_name": "times of the impacts"}),
-            "offset": ((), fit.x[0], {"units": "rad", "long_name": "rotation of the body at rest"}),
-            "noise": ((), math.sqrt(variance), {"units": "rad", "long_name": "standard deviation of the residual"}),
+            "rotation": variable("time", theta, "rad", "measured rotation"),
+            "fitted": variable("time", fitted, "rad", "rotation of the fitted body"),
+            "residual": variable("time", theta - fitted, "rad", "measured less fitted rotation"),
+            "impact_time": variable("impact", impacts, "s", "times of the impacts"),
+            "offset": variable((), fit.x[0], "rad", "rotation of the body at rest"),
+            "noise": variable((), math.sqrt(variance), "rad", "standard deviation of the residual"),
         },
         {
-            "time": ("time", t, {"units": "s", "long_name": "time"}),
-            "edge": ("edge", ["both"] if sides == 1 else ["right", "left"], {"long_name": "edge of rotation"}),
+            "time": variable("time", t, "s", "time"),
+            "edge": variable("edge", ["both"] if sides == 1 else ["right", "left"], "", "edge of rotation"),
         },
         {"confidence": level, "samples": int(used.sum())},
     )

@@ -14,6 +14,7 @@ from rocking._base.units import Scalar
 from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
+from rocking._model.labelled import variable
 from rocking.suites.hazard import annual_rate as rate_of
 
 MAX_YEARS = 1e9
@@ -128,7 +129,7 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         "unexceeded_velocity": ("m s-1", level * pgv / pga, "PGV that overturns with the probability"),
     }
     return xr.Dataset(
-        {name: ("record", values, {"units": unit, "long_name": text}) for name, (unit, values, text) in names.items()}
+        {name: variable("record", values, unit, text) for name, (unit, values, text) in names.items()}
         | {"intercept": ((), intercept), "slope": ((), slope), "dispersion": ((), dispersion)},
         {"record": ("record", [one.name for one in motions])},
         {"probability": share},

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking._history.motion import BodyMotion, overturned
+from rocking._model.labelled import variable
 from rocking._model.reactions import Floats, Reactions, impulse_ratio, reactions
 from rocking._model.response import Outcome
 from rocking._numba.compilation import Record
@@ -190,7 +191,7 @@ def add_contact(history: xr.Dataset, motion: BodyMotion, impact_times: Floats) -
     columns = (slope * found.horizontal, found.normal, slope * demand if slope > 0.0 else np.zeros_like(demand), demand)
     return history.assign(
         {
-            name: ("tau", column, {"long_name": meaning, "units": "1"})
+            name: variable("tau", column, "1", meaning)
             for (name, meaning), column in zip(COLUMNS.items(), columns, strict=True)
         }
     ).assign_attrs(

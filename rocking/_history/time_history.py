@@ -20,6 +20,7 @@ from rocking._history.motion import (
     overturned,
 )
 from rocking._model.checks import check_number
+from rocking._model.labelled import variable
 from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
@@ -107,8 +108,8 @@ def time_history(
     moving = build_motion(made, **of_pulse, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
     history, tau, impact_times = _sampled(moving, grid, (" (3.4)", "a f = ", " (3.2)"))
-    history["impact_time"] = "impact", impact_times, {"long_name": "time of impact p t", "units": "1"}
-    history = history.assign_coords(tau=("tau", tau, {"long_name": "time p t from pulse start", "units": "1"}))
+    history["impact_time"] = variable("impact", impact_times, "1", "time of impact p t")
+    history = history.assign_coords(tau=variable("tau", tau, "1", "time p t from pulse start"))
     history.attrs |= {"pulse": made.name, "frequency_ratio": omega, "pulse_end": moving.pulse_end}
     return add_contact(history, moving, impact_times) if contact else history
 
@@ -125,10 +126,10 @@ def _under_record(
     grid = default_times(moving) if samples is None else np.linspace(0.0, moving.horizon, samples)
     history, tau, impact_times = _sampled(moving, grid)
     p = number("frequency_parameter", groups["frequency_parameter"], *frequency_parameter_range(record), unit="rad/s")
-    history["impact_time"] = "impact", impact_times / p, {"long_name": "time of impact", "units": "s"}
+    history["impact_time"] = variable("impact", impact_times / p, "s", "time of impact")
     history = history.assign_coords(
-        tau=("tau", tau, {"long_name": "p t from the first sample", "units": "1"}),
-        time=("tau", tau / p, {"long_name": "time from the first sample", "units": "s"}),
+        tau=variable("tau", tau, "1", "p t from the first sample"),
+        time=variable("tau", tau / p, "s", "time from the first sample"),
     )
     history.attrs |= {
         "record": record.name,
@@ -179,5 +180,5 @@ def _sampled(
         "peak_rotation": float(record["peak_rotation"]),
         "impacts": int(record["impacts"]),
     }
-    variables = {name: ("tau", values, {"long_name": text, "units": "1"}) for name, (values, text) in named.items()}
+    variables = {name: variable("tau", values, "1", text) for name, (values, text) in named.items()}
     return xr.Dataset(variables, attrs=attributes), tau, impact_times

@@ -82,6 +82,10 @@ class ResponseField:
             self.flags
         )
 
+    def variable(self, dims: Any, values: Any) -> tuple[Any, Any, dict[str, Any]]:
+        """The variable of a data set."""
+        return dims, values, {"units": self.unit} | self.attributes
+
     def description(self, missing: str = "null") -> str:
         """One line with meaning, unit, and what stands for a missing number."""
         unit = "" if self.flags or self.dtype in ("?", "U") else f" [{'-' if self.unit == '1' else self.unit}]"

@@ -14,6 +14,12 @@ if TYPE_CHECKING:
 FIELDS = (*RESPONSE_FIELDS, OVERTURNED)
 
 
+def variable(dims: Any, values: Any, unit: str, meaning: str, **attributes: Any) -> tuple[Any, Any, dict[str, Any]]:
+    """A variable of a data set with unit, as CF writes it, "" for none, meaning and further attributes."""
+    units = {"units": unit} if unit else {}
+    return dims, values, units | {"long_name": meaning} | attributes
+
+
 def is_labelled(*arguments: Any) -> bool:
     """Whether one of the arguments is an `xarray.DataArray`; xarray is not loaded to find out."""
     return any(type(argument).__name__ == "DataArray" and hasattr(argument, "dims") for argument in arguments)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Quantity
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
+from rocking._model.labelled import variable
 from rocking._model.outcome import Outcome
 from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
 
@@ -107,18 +108,14 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
         if len(names) != len(self.shape):
             raise InvalidArgumentError("dims", dims, f"{len(self.shape)} names")
         variables: dict[str, Any] = {
-            one.name: (names, getattr(self, one.name), {"units": one.unit} | one.attributes)
-            for one in (*RESPONSE_FIELDS, OVERTURNED)
+            one.name: one.variable(names, getattr(self, one.name)) for one in (*RESPONSE_FIELDS, OVERTURNED)
         }
         coordinates: dict[str, Any] = {}
         for group in (*GROUPS, FREQUENCY_PARAMETER):
             value = self.groups.get(group.name)
             if value is not None:
-                shape = (1,) * (len(self.shape) - value.ndim) + value.shape
-                axes = [axis for axis, size in enumerate(shape) if size != 1]
-                about = {"units": "1" if group.unit == "-" else group.unit, "long_name": group.label}
-                own = tuple(names[axis] for axis in axes)
-                coordinates[group.name] = (own, value.reshape([shape[axis] for axis in axes]), about)
+                unit = "1" if group.unit == "-" else group.unit
+                coordinates[group.name] = variable(*along_own_axes(value, names), unit, group.label)
         attributes = {"pulse": self.pulse} if self.pulse else {}
         return xr.Dataset(variables, coordinates, attributes)
 
@@ -144,6 +141,15 @@ def axis_names(
             # an argument that varies along several axes is no coordinate of either
             varying[count - value.ndim + axis] += [name] if len(axes) == 1 else [name, name]
     return tuple(names[0] if len(names) == 1 else f"dim_{axis}" for axis, names in enumerate(varying))
+
+
+def along_own_axes(
+    value: NDArray[np.float64], names: Sequence[Hashable]
+) -> tuple[tuple[Hashable, ...], NDArray[np.float64]]:
+    """The `names` of the axes along which an argument of a response varies, of those of all axes, and its values."""
+    first = len(names) - value.ndim
+    axes = [axis for axis, size in enumerate(value.shape) if size != 1]
+    return tuple(names[first + axis] for axis in axes), value.reshape([value.shape[axis] for axis in axes])
 
 
 def dimensions_of(*arguments: ArrayLike | Quantity | None) -> tuple[Hashable, ...]:

@@ -19,6 +19,7 @@ from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
+from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
@@ -136,32 +137,28 @@ def fragility_of_outcomes(
     by_level, by_model = ("demand", "block", "intensity"), ("demand", "block", "model")
     found = xr.Dataset(
         {
-            "survives_above_first": (
+            "survives_above_first": variable(
                 ("demand", "block", "record"),
                 survives.astype(np.int8),
-                {
-                    "units": "1",
-                    "long_name": "the limit state is not reached at a level above the first at which it is",
-                    "flag_values": np.array([0, 1], dtype=np.int8),
-                    "flag_meanings": "no yes",
-                },
+                "1",
+                "the limit state is not reached at a level above the first at which it is",
+                flag_values=np.array([0, 1], dtype=np.int8),
+                flag_meanings="no yes",
             ),
-            "records_surviving_above_first": (
-                ("demand", "block"),
-                np.array(named, dtype=str),
-                {"long_name": "names of the records with survives_above_first"},
+            "records_surviving_above_first": variable(
+                ("demand", "block"), np.array(named, dtype=str), "", "names of the records with survives_above_first"
             ),
         },
         {
-            "demand": ("demand", np.array([label(limit) for limit in limits]), {"long_name": "limit state"}),
-            "model": ("model", np.array([*LINKS]), {"long_name": "kind of fitted curve"}),
+            "demand": variable("demand", np.array([label(limit) for limit in limits]), "", "limit state"),
+            "model": variable("model", np.array([*LINKS]), "", "kind of fitted curve"),
             **outcomes.coords,
         },
         {"measure": outcomes.attrs["measure"]},
     )
     for prefix, outcome, remark in (("", reached, {}), ("first_", first, {"comment": COMPARISON})):
         for name, (unit, meaning, values) in _counted(outcome, confidence).items():
-            found[prefix + name] = (by_level, values, {"units": unit, "long_name": meaning, **remark})
+            found[prefix + name] = variable(by_level, values, unit, meaning, **remark)
         fits = _fits(outcome, levels, confidence, falling)
         found[f"{prefix}fit_status"] = (by_model, _each(fits, "status").astype(np.int8), _STATUS_ATTRIBUTES | remark)
         for name, (unit, meaning) in _MODEL_VARIABLES.items():
@@ -176,10 +173,8 @@ def fragility_of_outcomes(
         )
         for model in LINKS
     ]
-    found["fitted"] = (
-        (*by_model, "intensity"),
-        np.stack(curves, axis=2),
-        {"units": "1", "long_name": "probability of the fitted curve"},
+    found["fitted"] = variable(
+        (*by_model, "intensity"), np.stack(curves, axis=2), "1", "probability of the fitted curve"
     )
     return found
 

@@ -20,6 +20,7 @@ from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import flight_text
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._model.labelled import variable
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.amplification import record_amplification as record_amplification  # noqa: PLC0414  # public
@@ -147,10 +148,8 @@ def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag |
     ----------
     suite : Suite
         Checked arguments.
-    threads : int, optional
-        Number of threads; by default all cores.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
+    threads, stop
+        As for `rocking.fragility`.
 
     Returns
     -------
@@ -221,24 +220,23 @@ def described_outcomes(suite: Suite, values: dict[str, NDArray[Any]]) -> xr.Data
     measure = suite.measure
     names = different_names([record.name for record in suite.records])
     coordinates: dict[str, Any] = {
-        "intensity": ("intensity", suite.levels, {"units": measure.unit, "long_name": measure.meaning}),
-        "record": ("record", np.array(names), {"long_name": "name of the record"}),
-        "restitution": (
-            "block", suite.restitution, {"units": "1", "long_name": "coefficient of restitution eta", "equation": "2.3"}
-        ),
-        "digest": (
+        "intensity": variable("intensity", suite.levels, measure.unit, measure.meaning),
+        "record": variable("record", np.array(names), "", "name of the record"),
+        "restitution": variable("block", suite.restitution, "1", "coefficient of restitution eta", equation="2.3"),
+        "digest": variable(
             "record",
             np.array([record.digest for record in suite.records]),
-            {"long_name": "sha256 of the time step and the samples in m/s2"},
+            "",
+            "sha256 of the time step and the samples in m/s2",
         ),
-    }  # fmt: skip
+    }
     for dimension, items, properties in (
         ("block", suite.blocks, BLOCK_COORDINATES),
         ("record", suite.records, RECORD_COORDINATES),
     ):
         for name, (unit, meaning) in properties.items():
             column = np.array([getattr(item, name) for item in items])
-            coordinates[name] = (dimension, column, {"units": unit, "long_name": meaning})
+            coordinates[name] = variable(dimension, column, unit, meaning)
     return xr.Dataset(
         {name: (DIMENSIONS, array, attributes[name]) for name, array in values.items()},
         coordinates,

@@ -25,6 +25,7 @@ from rocking._history.contact import contact_extremes
 from rocking._history.motion import build_record_motion
 from rocking._model.block import AbstractBlock
 from rocking._model.fields import OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.fits import binomial_interval
 from rocking.suites.outcomes import (
@@ -136,13 +137,13 @@ def sensitivity_outcomes(
     for name, meaning in VARIANTS.items():
         attributes = overturned | {"long_name": f"{overturned['long_name']}, {meaning}"}
         found[f"overturned_{name}"] = (DIMENSIONS, changed[name], attributes)
-    found["friction_demand"] = (DIMENSIONS, friction, {"units": "1", "long_name": FRICTION_DEMAND})
+    found["friction_demand"] = variable(DIMENSIONS, friction, "1", FRICTION_DEMAND)
     eta = {"units": "1", "equation": "2.3"}
     steps = np.array([record.time_step / REFINEMENT for record in suite.records])
     return found.assign_coords(
         restitution_low=("block", low, eta | {"long_name": "smaller coefficient of restitution"}),
         restitution_high=("block", high, eta | {"long_name": "larger coefficient of restitution"}),
-        resampled_time_step=("record", steps, {"units": "s", "long_name": "time step of the interpolated record"}),
+        resampled_time_step=variable("record", steps, "s", "time step of the interpolated record"),
     )
 
 
@@ -170,14 +171,14 @@ def sensitivity_of_outcomes(outcomes: xr.Dataset, confidence: float) -> xr.Datas
     columns["friction_demand_median"] = median, f"not exceeded under half of the records: {FRICTION_DEMAND}"
     columns["friction_demand_largest"] = demand.max(axis=-1), f"largest of all records: {FRICTION_DEMAND}"
     found = xr.Dataset(
-        {name: (by_level, values, {"units": "1", "long_name": meaning}) for name, (values, meaning) in columns.items()},
+        {name: variable(by_level, values, "1", meaning) for name, (values, meaning) in columns.items()},
         outcomes.coords,
         {"measure": outcomes.attrs["measure"]},
     )
     named = [["; ".join(names[own]) for own in block] for block in changed["resampled"]]
-    found["records_changed_by_sampling"] = (
-        by_level, np.array(named, dtype=str), {"long_name": "names of the records with changed_resampled"}
-    )  # fmt: skip
+    found["records_changed_by_sampling"] = variable(
+        by_level, np.array(named, dtype=str), "", "names of the records with changed_resampled"
+    )
     return found
 
 

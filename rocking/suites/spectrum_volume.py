@@ -11,6 +11,7 @@ from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 from rocking._model.checks import check_number
+from rocking._model.labelled import variable
 from rocking._model.parameters import RESTITUTION
 from rocking._solver.records.record_response import record_response
 
@@ -79,7 +80,7 @@ def spectrum_volume(
         "overturned": (float(np.mean(found.overturned)), "1", "share of the blocks that overturn"),
     }
     return xr.Dataset(
-        {name: ((), value, {"units": unit, "long_name": text}) for name, (value, unit, text) in values.items()},
+        {name: variable((), value, unit, text) for name, (value, unit, text) in values.items()},
         attrs={"record": record.name},
     )
 
