@@ -17,7 +17,15 @@ from typing import Any, ClassVar, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError, integer, number, one_of
+from rocking._base.errors import (
+    DatasetError,
+    InvalidArgumentError,
+    OutsideCubeError,
+    broadcast,
+    integer,
+    number,
+    one_of,
+)
 from rocking._excitation.pulses import AbstractPulse
 from rocking._interpolation.kernel import (
     BLOCK,
@@ -32,7 +40,7 @@ from rocking._interpolation.kernel import (
 from rocking._interpolation.slices import slice_index, slice_window
 from rocking._interpolation.windows import SLICE_WINDOW, group_points
 from rocking._lookup.cube_slice import CubeSlice, fetch_slice, open_slice
-from rocking._model.checks import broadcast_groups
+from rocking._model.checks import check_groups
 from rocking._model.fields import DERIVED_FIELDS
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
@@ -53,17 +61,16 @@ class Points:
     alpha: Array
 
     @classmethod
-    def of(
-        cls, slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
-    ) -> tuple[Points, tuple[int, ...]]:
-        """The checked, broadcast and flattened arguments, and the broadcast shape.
+    def of(cls, *groups: ArrayLike | None) -> tuple[Points, tuple[int, ...]]:
+        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape.
 
         Raises
         ------
         InvalidArgumentError
             If a value is out of range, or the shapes do not broadcast.
         """
-        full = broadcast_groups(slenderness, frequency_ratio, restitution, alpha)
+        given = dict(zip(cls.__dataclass_fields__, groups, strict=True))
+        full = broadcast(given, [*check_groups(**given).values()])
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
     def __getitem__(self, index: Any) -> Points:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import broadcast, in_range, number
+from rocking._base.errors import in_range, number
 from rocking._base.units import Quantity, Scalar
 from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA, Parameter
 
 Array = NDArray[np.float64]
 
+_GROUPS = {parameter.name: parameter for parameter in (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION)}
 
-def check(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = None) -> Array:
+
+def check(parameter: Parameter, value: ArrayLike | Quantity) -> Array:
     """The value as a float64 array, shape kept.
 
     Parameters
@@ -21,8 +25,6 @@ def check(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = 
         The declaration.
     value : array_like of real numbers, any shape
         None of them masked.
-    name : str, optional
-        Name for the error message, where it is not that of the parameter.
 
     Raises
     ------
@@ -30,12 +32,12 @@ def check(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = 
         If an entry is not a finite real number in the range.
     """
     return in_range(
-        name or parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit
+        parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit
     )
 
 
 def check_number(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = None) -> float:
-    """As `check`, for one number.
+    """As `check`, for one number; `name` is that of the error message, where it is not that of the parameter.
 
     Raises
     ------
@@ -88,35 +90,14 @@ def check_one_alpha(alpha: ArrayLike | Quantity | None) -> float:
     return float(check_alpha(alpha))
 
 
-def check_groups(
-    slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
-) -> tuple[Array, Array, Array, Array]:
-    """The dimensionless groups of a response as float64 arrays of their own shapes; alpha = None is 0.
+def check_groups(**given: Any) -> dict[str, Array]:
+    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays.
+
+    They keep their shapes; alpha = None is 0.
 
     Raises
     ------
     InvalidArgumentError
         If a value is out of range.
     """
-    return (
-        check(SLENDERNESS, slenderness),
-        check(FREQUENCY_RATIO, frequency_ratio),
-        check(RESTITUTION, restitution),
-        check_alpha(alpha),
-    )
-
-
-def broadcast_groups(
-    slenderness: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike, alpha: ArrayLike | None
-) -> list[Array]:
-    """`check_groups`, broadcast against each other.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, the shapes do not broadcast, or labelled arguments (xarray, pandas) differ in their
-        dimensions or indexes.
-    """
-    checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
-    given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
-    return broadcast(given, checked)
+    return {name: check_alpha(one) if name == "alpha" else check(_GROUPS[name], one) for name, one in given.items()}

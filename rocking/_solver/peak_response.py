@@ -115,7 +115,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         is linear between its samples and zero after the last.
     slenderness : array_like
         g tan(alpha)/a_g = 1/a [-], [1e-12, inf): depends on the motion, unlike h/b. It is the acceleration of uplift
-        over the peak acceleration of the motion; no uplift from 1 on.
+        over the peak acceleration of the motion; without a vertical component no uplift from 1 on.
     frequency_ratio : array_like
         omega = omega_g/p [-], [1e-9, 1e9]; of a pulse.
     frequency_parameter : array_like
@@ -180,9 +180,9 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     if threads is not None:
         threads = integer("threads", threads, 1, math.inf)
     given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
-    checked = check_groups(slenderness, frequency_ratio, restitution, alpha)
-    slender = not checked[3].any()
-    groups = broadcast(given, checked[:3] if alpha is None else checked)
+    checked = check_groups(**given)
+    slender = not checked["alpha"].any()
+    groups = broadcast(given, [*checked.values()][: 3 if alpha is None else 4])
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
     accepted = 0.0 if tolerance is None else check_number(TOLERANCE, tolerance)
@@ -195,12 +195,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
-    return Response(
-        **found,
-        pulse=made.name,
-        groups=dict(zip(given, checked, strict=True)),
-        dims=dimensions_of(*given.values()),
-    )
+    return Response(**found, pulse=made.name, groups=checked, dims=dimensions_of(*given.values()))
 
 
 def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:

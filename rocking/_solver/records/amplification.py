@@ -57,10 +57,7 @@ def record_amplification(
         "alpha": alpha,
         "vertical_scale": vertical_scale,
     }
-    groups = broadcast(
-        given, check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale)
-    )
-    p, s, eta, angle, vertical = groups
+    p, s, eta, angle, vertical = broadcast(given, [*check_record_groups(motion, **given).values()])
     less, more = (
         record_response(
             motion,

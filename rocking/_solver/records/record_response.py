@@ -12,9 +12,9 @@ from rocking._base.errors import InvalidArgumentError, broadcast, in_range, inte
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import check_vertical_scale
 from rocking._excitation.shapes import AbstractPulse
-from rocking._model.checks import check, check_alpha
+from rocking._model.checks import check_groups
 from rocking._model.fields import SOLVED_FIELDS
-from rocking._model.parameters import FREQUENCY_PARAMETER, RESTITUTION, SLENDERNESS
+from rocking._model.parameters import FREQUENCY_PARAMETER
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
@@ -49,46 +49,10 @@ def record_response(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response:
-    """Peak rotation and final outcome of blocks under a recorded motion, exact to rounding. The arguments broadcast.
+    """`rocking.peak_response` under a record, whose arguments and errors it has, for arguments that are not labelled.
 
-    The motion is linear between its samples and zero after the last; the block rests at the first. A vertical component
-    adds to gravity: (2.2) or (3.1) with g + w for g in the restoring moment.
-
-    Parameters
-    ----------
-    motion : Record
-        The ground motion.
-    frequency_parameter : array_like
-        p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step of the motion.
-    slenderness : array_like
-        g tan(alpha)/PGA [-], [1e-12, inf): depends on the motion, unlike h/b, through its peak acceleration PGA.
-        Without a vertical component no uplift from 1 on. To scale the horizontal component by a factor, divide by it.
-    restitution : array_like
-        Coefficient of restitution eta [-], [0, 1].
-    alpha : array_like, optional
-        Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
-    vertical_scale : array_like, optional
-        Factor of the vertical component [-], [0, 1e6]. In units of g = 9.80665 m/s2: under another gravity, multiply by
-        the ratio. 1 or None for a record without one.
-    threads : int, optional
-        Number of threads, >= 1; by default all cores.
-    stop : StopFlag, optional
-        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
-
-    Returns
-    -------
-    Response
-        Arrays of the broadcast shape. Times are p t from the first sample; "pulse" in the descriptions stands for the
-        motion. Impacts are counted until the outcome and the peak are certain.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `motion` is not a record; for an argument that is out of range, not finite, not a real number or masked;
-        where the vertical acceleration reaches -g, with the time; shapes that do not broadcast; labelled arguments
-        (xarray, pandas) whose dimensions or indexes differ.
-    StoppedError
-        If `stop` was set.
+    "pulse" in the descriptions of the fields stands for the motion. Impacts are counted until the outcome and the peak
+    are certain.
     """
     cores = AVAILABLE_CORES if threads is None else integer("threads", threads, 1, math.inf)
     given = {
@@ -98,33 +62,20 @@ def record_response(
         "alpha": alpha,
         "vertical_scale": vertical_scale,
     }
-    checked = check_record_groups(motion, frequency_parameter, slenderness, restitution, alpha, vertical_scale)
-    groups = broadcast(given, checked)
+    named = check_record_groups(motion, **given)
+    groups = broadcast(given, [*named.values()])
     shape = groups[0].shape
     p, s, eta, angle, vertical = (contiguous_array(group).ravel() for group in groups)
     cells = block_cells(p * motion.time_step, s, eta, angle, vertical)
     records, _ = solve_bodies(motion_samples(motion), cells, cores, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
-    named = dict(zip(given, checked, strict=True))
     if motion.vertical is None:
         del named["vertical_scale"]
-    return Response(
-        **found,
-        pulse=motion.name,
-        groups=named,
-        dims=dimensions_of(*given.values()),
-    )
+    return Response(**found, pulse=motion.name, groups=named, dims=dimensions_of(*given.values()))
 
 
-def check_record_groups(
-    motion: Record,
-    frequency_parameter: ArrayLike,
-    slenderness: ArrayLike,
-    restitution: ArrayLike,
-    alpha: ArrayLike | None,
-    vertical_scale: ArrayLike | None,
-) -> tuple[Array, Array, Array, Array, Array]:
-    """The groups of a response under a record as float64 arrays of their own shapes; alpha = None is 0.
+def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
+    """The groups of a response under a record by name, as `check_groups`, beside it frequency parameter and factor.
 
     The factor of the vertical component is 0 for a record without one.
 
@@ -133,14 +84,12 @@ def check_record_groups(
     InvalidArgumentError
         If `motion` is not a record, or a value is out of range.
     """
-    limits = frequency_parameter_range(motion)
-    return (
-        in_range("frequency_parameter", frequency_parameter, *limits, unit="rad/s"),
-        check(SLENDERNESS, slenderness),
-        check(RESTITUTION, restitution),
-        check_alpha(alpha),
-        check_vertical_scale(motion, vertical_scale),
-    )
+    p, vertical = given.pop("frequency_parameter"), given.pop("vertical_scale")
+    return {
+        "frequency_parameter": in_range("frequency_parameter", p, *frequency_parameter_range(motion), unit="rad/s"),
+        **check_groups(**given),
+        "vertical_scale": check_vertical_scale(motion, vertical),
+    }
 
 
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
@@ -213,18 +162,11 @@ def solve_bodies(
         Of `sample_rows`.
     cells : array (size,) of `BODY_CELL`
         The bodies.
-    threads : int or None
-        Number of threads, None: all cores.
-    stop : StopFlag or None
-        Cancels the work.
+    threads, stop
+        As for `rocking._solver.peak_response.solve_cells`, which raises the same errors.
     each_side : bool
         Whether the peaks of each edge are wanted, as they must be where the edges differ: float array
         (size, EDGE_COLUMNS); else the second result has no rows.
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
