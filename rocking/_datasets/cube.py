@@ -255,15 +255,6 @@ def read_dataset(path: Path | str) -> xr.Dataset:
     return decode_dataset(read_content(path), path)
 
 
-def read_slice(path: Path | str, **indexers: int) -> xr.Dataset:
-    """Read the slice at an index of some dimensions from a file that `check_file` has accepted.
-
-    The file is closed again: the library keeps up to some megabytes of each variable of an open file.
-    """
-    with open_netcdf(path, cache=False) as opened:
-        return opened.isel(indexers).load()
-
-
 def check_file(path: Path | str) -> None:
     """Check the digest at the end of a file written by `write_dataset`.
 

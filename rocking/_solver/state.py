@@ -274,6 +274,14 @@ def pulse_state(pulse: AbstractPulse) -> Record:
     return record
 
 
+def aligned_record(layout: np.dtype[np.void]) -> Record:
+    """A record of zeros that starts at a multiple of the size of a vector."""
+    memory = np.zeros(layout.itemsize + VECTOR_BYTES, np.uint8)
+    start = -memory.ctypes.data % VECTOR_BYTES
+    record: Record = memory[start : start + layout.itemsize].view(layout)[0]
+    return record
+
+
 def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
     """Taylor steps for the pulse of a record of `pulse_state`.
 
@@ -285,9 +293,7 @@ def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
         Largest ratio of the last terms of a step's series to the motion during the step [-], `FULL_PRECISION` to 1e-4.
         It sets the degree: 1 - log(precision)/2 gives the longest steps for the work, Jorba and Zou (2005).
     """
-    memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
-    start = -memory.ctypes.data % VECTOR_BYTES
-    steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
+    steps = aligned_record(STEP_STATE)
     for name, *_ in EXCITATION_FIELDS:
         steps[name] = flight[name]
     steps["order"] = min(MAX_ORDER, math.ceil(2.0 - 0.5 * math.log(precision)))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._numba.compilation import Record
-from rocking._numba.simd import LANES, VECTOR_BYTES
+from rocking._numba.simd import LANES
 from rocking._solver.records.samples import TIME
 from rocking._solver.state import (
     AT_REST,
@@ -17,6 +17,7 @@ from rocking._solver.state import (
     FULL_PRECISION,
     MAX_ORDER,
     PROGRESS_FIELDS,
+    aligned_record,
 )
 
 MIN_ORDER = 6
@@ -105,9 +106,7 @@ def taylor_order(interval: float) -> int:
 
 def step_state(samples: NDArray[np.float64], cells: NDArray[np.void]) -> Record:
     """Taylor steps for the motion `samples` of `sample_rows` and cells `BODY_CELL`."""
-    memory = np.zeros(STEP_STATE.itemsize + VECTOR_BYTES, np.uint8)
-    start = -memory.ctypes.data % VECTOR_BYTES
-    steps: Record = memory[start : start + STEP_STATE.itemsize].view(STEP_STATE)[0]
+    steps = aligned_record(STEP_STATE)
     steps["order"] = taylor_order(float(cells["rate"].max()) * float(np.diff(samples[TIME]).max()))
     steps["log_precision"] = math.log2(FULL_PRECISION)
     steps["has_vertical"] = int(cells["vertical"].any())

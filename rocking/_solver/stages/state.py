@@ -10,9 +10,9 @@ from rocking._excitation.shapes import MAX_PIECES
 from rocking._excitation.sinusoids import MAX_SINUSOIDS
 from rocking._excitation.wavelets import MAX_POLYNOMIAL
 from rocking._numba.compilation import Record
-from rocking._numba.simd import LANES, VECTOR_BYTES
+from rocking._numba.simd import LANES
 from rocking._solver.families.wavelets import WAVELET_SERIES_LENGTH
-from rocking._solver.state import RESPONSE_RECORD
+from rocking._solver.state import RESPONSE_RECORD, aligned_record
 
 BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
@@ -162,11 +162,4 @@ class StageState(NamedTuple):
 
 def stage_state() -> StageState:
     """A new state."""
-    return StageState(_aligned_record(GROUP_STATE), _aligned_record(CELLS_STATE))
-
-
-def _aligned_record(layout: np.dtype[np.void]) -> Record:
-    """A record of zeros that starts at a multiple of the size of a vector."""
-    memory = np.zeros(layout.itemsize + VECTOR_BYTES, np.uint8)
-    start = -memory.ctypes.data % VECTOR_BYTES
-    return memory[start : start + layout.itemsize].view(layout)[0]
+    return StageState(aligned_record(GROUP_STATE), aligned_record(CELLS_STATE))
