@@ -160,25 +160,13 @@ class CubeCollection:
         ----------
         pulse : str or AbstractPulse
             The pulse, by its name if cubes are to be used.
-        slenderness, frequency_ratio, restitution : array_like, broadcasting
-            1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
-        alpha : array_like, optional
-            Slenderness angle [rad]; None or 0 for the slender limit.
-        tolerance : float
-            Largest error of an interpolated peak_rotation [-], >= 0.
-        method : {"auto", "cube", "solver"}
-            As `Cube.response`; "auto" also uses the solver where a cube is missing or damaged.
-        threads : int, optional
-            Number of threads for large arrays, >= 1; by default all cores.
-        stop : StopFlag, optional
-            The computation ends with `StoppedError` soon after another thread sets it.
+        slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop
+            As for `Cube.response`; the method "auto" also uses the solver where a cube is missing or damaged.
 
         Raises
         ------
-        InvalidArgumentError
-            If a value is out of range.
-        OutsideCubeError
-            With `method="cube"`, for a point where the cubes give no response.
+        InvalidArgumentError, OutsideCubeError
+            As for `Cube.response`.
         DatasetError
             With `method="cube"`, for a damaged cube.
         """

@@ -31,15 +31,8 @@ def solve_motion(
         The ground motion.
     cells : array (size,) of `BODY_CELL`
         The bodies. `rate` is the frequency ratio under a pulse, and p times the time step under a record.
-    threads : int or None
-        Number of threads, None: all cores.
-    stop : StopFlag or None
-        Cancels the work.
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
+    threads, stop
+        As for `rocking._solver.peak_response.solve_cells`, which raises the same errors.
     """
     if isinstance(motion, Record):
         return solve_bodies(motion_samples(motion), cells, threads, stop, each_side=True)

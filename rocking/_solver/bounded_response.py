@@ -106,23 +106,7 @@ def solve_with_bound(
     ratio and restitution decrease together by the fraction `SOLVER_ERROR`. Rounding errors act like such a change and
     are amplified near an outcome boundary. The bound is infinite where a block reached `IMPACT_LIMIT` impacts.
 
-    Parameters
-    ----------
-    pulse : str or AbstractPulse
-        The pulse, or its name.
-    slenderness, frequency_ratio, restitution : array_like, broadcasting
-        1/a > 0 [-], omega > 0 [-], eta in [0, 1] [-].
-    alpha : array_like or None
-        Slenderness angle [rad]; None or 0 for the slender limit.
-    threads : int, optional
-        Number of threads for large arrays, >= 1; by default all cores.
-    stop : StopFlag, optional
-        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    Arguments and errors are those of `rocking.peak_response` under a pulse.
     """
     given = (slenderness, frequency_ratio, restitution, 0.0 if alpha is None else alpha)
     s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))

@@ -56,14 +56,8 @@ def largest_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, refer
 
     Parameters
     ----------
-    peak_rotation : array_like
-        Peak rotations with any scaling [-], nan where overturned; one axis corresponds to `restitution`.
-    restitution : array_like, shape (n,)
-        eta [-], (0, 1].
-    reference : float
-        The eta from which the law predicts [-].
-    axis : int
-        Axis of `peak_rotation` that corresponds to restitution; the result does not have it.
+    peak_rotation, restitution, reference, axis
+        As for `scale_law_deviation`; the result does not have the axis.
     """
     deviation = np.abs(scale_law_deviation(peak_rotation, restitution, reference=reference, axis=axis))
     # the deviation of the reference itself is zero: at least one other peak is needed
@@ -76,12 +70,8 @@ def restitution_exponent(peak_rotation: ArrayLike, restitution: ArrayLike, *, ax
 
     Parameters
     ----------
-    peak_rotation : array_like
-        Peak rotations with any scaling [-], nan where overturned; one axis corresponds to `restitution`.
-    restitution : array_like, shape (n,)
-        eta [-], (0, 1].
-    axis : int
-        Axis of `peak_rotation` that corresponds to restitution; the result does not have it.
+    peak_rotation, restitution, axis
+        As for `scale_law_deviation`; the result does not have the axis.
 
     Returns
     -------

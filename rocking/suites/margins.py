@@ -31,10 +31,8 @@ def with_margins(
         Result of `rocking.suites.outcomes.suite_outcomes` for this suite.
     suite : Suite
         Checked arguments.
-    threads : int, optional
-        Number of threads; by default all cores.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
+    threads, stop
+        As for `rocking.fragility`.
 
     Returns
     -------

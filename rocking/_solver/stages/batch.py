@@ -227,12 +227,8 @@ def solve_remainder(
 
     Parameters
     ----------
-    slenderness, omega, eta : float arrays (cells,)
-        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-].
-    pulse
-        Solver state: a record of `pulse_state`.
-    stop : uint8 array (1,)
-        Once another thread sets it to 1, the function returns within a flight; responses are missing.
+    slenderness, omega, eta, pulse, stop
+        As for `solve_by_arcs`.
     responses : array (cells,) of `rocking._solver.state.RESPONSE_RECORD`
         As `solve_by_arcs` has filled it; those with the outcome `LEFT` are replaced.
     """
