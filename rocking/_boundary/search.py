@@ -167,9 +167,8 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
     """A solver as a `Classify`, which notes its work in `work`."""
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
-        omega = np.clip(
-            np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
-        )  # rounding must not lead out of the range
+        # rounding must not lead out of the range
+        omega = np.clip(np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
         groups = np.broadcast_arrays(slenderness, omega, eta)
         cells = [contiguous_array(group).ravel() for group in groups]
         records, margin = solve(*cells)

@@ -181,10 +181,8 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
 
     none = np.empty(0, dtype=np.intp)
     nodes = solved(none, none)
-    first, end = (
-        start.copy(),
-        np.where(count > 0, count + COARSE - 1, 0),
-    )  # the last one may lie closer to the one before
+    # the last one may lie closer to the one before
+    first, end = start.copy(), np.where(count > 0, count + COARSE - 1, 0)
     while (left := np.flatnonzero(first < end)).size:
         line, place = np.broadcast_arrays(left[:, None], first[left, None] + COARSE * np.arange(AT_ONCE))
         inside = place < end[left, None]

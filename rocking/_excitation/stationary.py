@@ -60,7 +60,6 @@ def sign_changes(
         beyond = (slope(middle)[0] > 0.0) == rises
         left, right = np.where(beyond, left, middle), np.where(beyond, middle, right)
     found = np.where(np.abs(slope(left)[0]) < np.abs(slope(right)[0]), left, right)
-    inside = (found - start > 1e-12 * length) & (
-        end - found > 1e-12 * length
-    )  # otherwise an end of the window displaced by rounding
+    # otherwise an end of the window displaced by rounding
+    inside = (found - start > 1e-12 * length) & (end - found > 1e-12 * length)
     return tuple(found[inside].tolist())

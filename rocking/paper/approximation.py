@@ -112,9 +112,8 @@ def semi_analytical_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLik
     steps = np.linspace(0.0, 1.0, _GRID).reshape(-1, *(1,) * omega.ndim)
     grid = 1 + np.exp(_LOG_START + (top - _LOG_START) * steps)
     margin = ad_hoc_margin(grid, omega, eta)
-    rises = (margin[:-1] < 0) & (
-        margin[1:] >= 0
-    )  # comparisons with nan are false: the limits of existence of (3.29) are not counted
+    # comparisons with nan are false: the limits of existence of (3.29) are not counted
+    rises = (margin[:-1] < 0) & (margin[1:] >= 0)
     after = np.cumsum(rises, axis=0) > 0
     falls = after & (margin[:-1] >= 0) & (margin[1:] < 0)
     return AmplitudeInterval(*(_refined(crossing, grid, omega, eta) for crossing in (rises, falls)))

@@ -47,9 +47,8 @@ def uplift_phase(amplitude: ArrayLike) -> Array:
         psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
     """
     a = check(AMPLITUDE, amplitude)
-    return np.asarray(
-        np.arctan2(1.0, cot_psi(a))
-    )  # (3.3), accurate near a = 1, where arcsin(1/a) loses half the digits
+    # accurate near a = 1, where arcsin(1/a) loses half the digits
+    return np.asarray(np.arctan2(1.0, cot_psi(a)))  # (3.3)
 
 
 def pulse_end(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:

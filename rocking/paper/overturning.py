@@ -358,9 +358,8 @@ def impact_velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike) ->
     y, v = state_at_pulse_end(a, omega)
     with np.errstate(over="ignore", invalid="ignore"):
         energy = v * v - y * (y + 2)
-        return np.asarray(
-            np.where(pulse_end(a, omega) < _PRODUCT_FROM, energy, 1 - d0_star(a, omega))
-        )  # (3.15), squared
+        # (3.15), the square of the velocity
+        return np.asarray(np.where(pulse_end(a, omega) < _PRODUCT_FROM, energy, 1 - d0_star(a, omega)))
 
 
 def case_1_2_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:

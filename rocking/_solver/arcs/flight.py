@@ -32,9 +32,8 @@ def start_arc(flight: Record) -> None:
     """Set the coefficients of the flight that starts at `phase`; `cosine0` and `sine0` must be set."""
     for k in range(flight.terms):
         flight.force[k] = flight.sign * flight.a[0] * flight.amplitude[k]
-    flight.q0 = (
-        0.0 if flight.starts_at_uplift == 1 else restoring_acceleration(flight, flight.cosine0)
-    )  # exactly 0 at uplift through |a f| = 1
+    # exactly 0 at uplift through |a f| = 1
+    flight.q0 = 0.0 if flight.starts_at_uplift == 1 else restoring_acceleration(flight, flight.cosine0)
     init_arc(flight)
 
 
