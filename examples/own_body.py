@@ -2,39 +2,26 @@
 A body of one's own
 ===================
 
-A kind of body states its two edges, and has all responses. Here a block that turns about points inside its base.
+Any rigid body that rocks on two edges is a ``RigidBody``: where they are below its centre of mass, and its radius of
+gyration. Here a block with crushed corners, which turns about points inside its base.
 """
-
-from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from rocking._dimensional.body import RespondingBody
-from rocking._model.body import Edge, rigid_edge
+import rocking
 
+width, height = 0.5, 2.0  # m
+gyration = np.hypot(width, height) / np.sqrt(12.0)  # of the whole rectangle
+periods = np.linspace(0.5, 2.0, 60)  # s
 
-@dataclass(frozen=True)
-class CrushedBlock(RespondingBody):
-    b: float  # half width [m]
-    h: float  # half height [m]
-    crushed: float  # distance of the pivots from the corners [m]
-    gravity: float = 9.80665
-    top_height: float = 2.0
-    description: str = "block with crushed corners"
-
-    @property
-    def right(self) -> Edge:
-        gyration = np.hypot(self.b, self.h) / np.sqrt(3.0)
-        return rigid_edge(self.b - self.crushed, self.b - self.crushed, self.h, gyration, self.gravity, 0.0)
-
-    left = right
-
-
-for crushed in (0.0, 0.03, 0.06):
-    block = CrushedBlock(0.25, 1.0, crushed)
-    periods = np.linspace(0.5, 2.0, 60)
-    plt.plot(periods, block.thresholds("sine", period=periods).lowest, label=f"crushed by {100 * crushed:g} cm")
-plt.gca().set(xlabel="period of the sine [s]", ylabel="lowest acceleration that overturns [m/s²]")
-plt.legend()
+figure, ax = plt.subplots(layout="constrained")
+for crushed, colour in ((0.0, "#000000"), (0.03, "#0072B2"), (0.06, "#D55E00")):
+    edge = width / 2.0 - crushed
+    block = rocking.RigidBody(left=edge, right=edge, height=height / 2.0, gyration=gyration)
+    print(f"crushed by {100 * crushed:g} cm: restitution {block.right.restitution:.3f}")
+    lowest = block.thresholds("sine", period=periods).lowest
+    ax.plot(periods, lowest, color=colour, label=f"{100 * crushed:g} cm")
+ax.set(xlabel="period of the sine [s]", ylabel="lowest peak acceleration that overturns [m/s²]")
+ax.legend(title="crushed by")
 plt.show()

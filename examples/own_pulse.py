@@ -12,13 +12,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import rocking
-from rocking._excitation.pulses import SinusoidalPulse
 
 cycles = 2.5
 end = 2.0 * math.pi * cycles
 # sin(phi) sin(phi/5) is half the difference of two cosines
 terms = ((0.5, 1.0 - 1.0 / (2.0 * cycles), 0.0), (-0.5, 1.0 + 1.0 / (2.0 * cycles), 0.0))
-burst = SinusoidalPulse.of_unit_peak("burst", 0.0, end, terms)
+burst = rocking.SinusoidalPulse.of_unit_peak("burst", 0.0, end, terms)
 
 phi = np.linspace(0.0, end, 400)
 figure, axes = plt.subplots(2, 1, layout="constrained")
@@ -30,6 +29,6 @@ rocking.plot.history(history, axes[1])
 plt.show()
 
 # %%
-# ``rocking._excitation.pulses.register(burst)`` makes it known by its name, also to a service of this process.
+# The amplitudes a_g/(g tan(alpha)) at which the outcome changes.
 
 print(rocking.thresholds(burst, frequency_ratio=3.0, restitution=0.85).amplitude)

@@ -41,7 +41,7 @@ PRINTED = {
     "free_rocking": ["restitution 0.9197"],
     "large_rotations": ["6.06624767 7.45218141"],
     "map_with_boundaries": ["400 never uplift"],
-    "own_body": [],
+    "own_body": ["crushed by 6 cm: restitution 0.948"],
     "own_family": ["3.08448126"],
     "own_pulse": ["2.02417318"],
     "record": ["45 changes of the outcome", "overturns above 1.13384"],
@@ -68,6 +68,16 @@ def figures():
 
 def test_every_example_has_an_expected_output():
     assert {path.stem for path in (ROOT / "examples").glob("*.py")} == PRINTED.keys()
+
+
+def test_examples_and_pages_import_public_names_only():
+    """The page for contributors, tasks.md, changes the package itself."""
+    sources = {path.name: path.read_text() for path in (ROOT / "examples").glob("*.py")}
+    for page in [*PAGES, ROOT / "README.md"]:
+        sources[page.name] = "".join(re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL))
+    private = re.compile(r"\brocking(?:_api)?(?:\.\w+)*\._[a-z]\w*|from rocking[\w.]* import [^\n]*\b_\w+")
+    assert len(sources) > 20
+    assert {name: found for name, text in sources.items() if (found := private.findall(text))} == {}
 
 
 @pytest.mark.slow
