@@ -1,7 +1,24 @@
-"""Response spectra and overturning of the rocking rigid block under pulse ground motion.
+"""Rocking and overturning of free-standing rigid bodies under pulses and recorded ground motions.
 
-The public names are listed in `__init__.pyi` and loaded at first use, so that a command or a worker of the service
-imports only what it needs.
+Bodies, one or arrays of them: `Block`, `RigidBody`, `EquivalentBlock`, each with `response`, `history`, `spectrum`,
+    `thresholds` and `boundary`.
+Motions: a name of `PULSE_NAMES`, or `pulse` of it; `SampledPulse`, `SinusoidalPulse`, `WaveletPulse`, `SmoothPulse` of
+    one's own; `Record` and `read_record`; `floor_motion` and `isolated_motion` of a structure under a record.
+Objects at a site: `Object`, `read_objects`, `Site`, `assess`, `overturning_probability`.
+Suites of records: `fragility`, and the package `rocking.suites`.
+Measurements and old rocks: `identify_free_rocking`, `calibrate`, `survival`, `unexceeded`.
+Blocks in the groups of the paper: `peak_response`, `time_history`, `thresholds`, `overturning_boundary`, `open_cube`,
+    and the formulas of `rocking.paper`.
+Pictures: `rocking.plot`.
+
+>>> import rocking
+>>> block = rocking.Block(width="40 cm", height="160 cm")
+>>> block.response("sine", peak_acceleration="0.6 g", period="0.5 s")
+<rocking.BlockResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m under sine of 5.884 m/s2 and 0.5 s>
+
+Numbers are in SI units and radians, lengths are full sizes; texts such as "40 cm" and quantities of pint are converted.
+Every error is a `RockingError`, of an argument also a `ValueError`. The public names are listed in `__init__.pyi` and
+loaded at first use, so that a command or a worker of the service imports only what it needs.
 """
 
 import lazy_loader

@@ -140,7 +140,7 @@ def precision(side: int, rounds: int) -> Ablation:
     groups = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": RESTITUTION, "alpha": ANGLES[1]}
 
     def ask(tolerance: float | None = 1e-3) -> NDArray[np.float64]:
-        return peak_response(PULSE, **groups, tolerance=tolerance, threads=1).peak_rotation
+        return peak_response(PULSE, **groups, relative_tolerance=tolerance, threads=1).peak_rotation
 
     def all_again() -> NDArray[np.float64]:
         return with_settings(solve, ask, NEAR_BOUNDARY_MARGIN=math.inf)

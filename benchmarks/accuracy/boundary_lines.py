@@ -63,7 +63,7 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
     groups = {"restitution": restitution, "alpha": alpha}
     for y in np.random.default_rng(1).uniform(np.log(0.2), np.log(15.0), lines):
         omega = float(np.exp(y))
-        on_line = rocking.thresholds(pulse, frequency_ratio=omega, **groups, highest_amplitude=50.0)
+        on_line = rocking.thresholds(pulse, frequency_ratio=omega, **groups, highest=50.0)
         found = 1.0 / on_line.amplitude
         thresholds += found.size
         for k, (x, impacts) in enumerate(zip(found, on_line.impacts, strict=True)):

@@ -35,7 +35,7 @@ def peaks(cells: Cells, tolerance: float | None) -> NDArray[np.float64]:
             frequency_ratio=cells.frequency_ratio[here],
             restitution=cells.restitution[here],
             alpha=cells.alpha[here],
-            tolerance=tolerance,
+            relative_tolerance=tolerance,
         ).peak_rotation
     return found
 

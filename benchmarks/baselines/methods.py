@@ -43,7 +43,7 @@ def package_peaks(tolerance: float | None, cells: Cells) -> Peaks:
         restitution=cells.restitution,
         alpha=cells.alpha,
         threads=1,
-        tolerance=tolerance,
+        relative_tolerance=tolerance,
     ).peak_rotation
 
 

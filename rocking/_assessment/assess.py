@@ -79,7 +79,7 @@ def assess(
     Returns
     -------
     Assessment
-        One row for each object and direction, the worst first; `rocking._assessment.columns.OUTPUTS` has the columns.
+        One row for each object and direction, the worst first; `to_xarray` has the meaning and unit of each column.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def assess(
         "share_upper": high,
         "rotation": -least(-rotation),
         "displacement": -least(-displacement),
-        "yearly_rate": _yearly_rate(body, site, stop),
+        "annual_rate": _annual_rate(body, site, stop),
         "friction_needed": uplift / STANDARD_GRAVITY,
     }
     columns |= _sliding(given, body, motions, sensitivity, stop)
@@ -161,7 +161,7 @@ def _by_event(overturned: Bools, motions: Sequence[Motion]) -> Bools:
     return np.stack([overturned[..., groups == group].any(axis=-1) for group in range(groups.max() + 1)], axis=-1)
 
 
-def _yearly_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> Array:
+def _annual_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> Array:
     """Annual rate of overturning from outcomes at levels of the hazard curve, by a lognormal fragility curve."""
     rate = np.full(body.shape, np.nan)
     hazard: Any = site.hazard  # checked arrays, see `Site`

@@ -98,7 +98,7 @@ OUTPUTS = (
     Column("share_upper", "-", "upper end of it"),
     Column("rotation", "rad", "largest rotation under the motions that do not overturn it"),
     Column("displacement", "m", "largest movement of its top under them"),
-    Column("yearly_rate", "1/year", "annual rate of overturning, where a hazard curve is given"),
+    Column("annual_rate", "1/year", "annual rate of overturning, where a hazard curve is given"),
     Column("friction_needed", "-", "coefficient of friction that uplift needs"),
     Column("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
     Column(

@@ -14,7 +14,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import BadRow, Schema, Table, read_bytes, read_csv, read_file, text_of
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ObjectTable:
     """Objects of a table, and the rows that could not be read.
 
@@ -31,6 +31,11 @@ class ObjectTable:
     objects: list[Object]
     bad_rows: list[BadRow] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        """How many objects were read, and what was not."""
+        skipped = f"; columns not used: {', '.join(self.skipped)}" if self.skipped else ""
+        return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{skipped}>"
 
 
 def read_objects(source: str | PathLike[str]) -> ObjectTable:

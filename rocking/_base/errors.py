@@ -23,6 +23,9 @@ from rocking._base.units import EXAMPLES, UNITS, USUAL, Quantity, split_quantity
 
 _MAX_FLOAT = sys.float_info.max
 
+MAX_TEXT = 300
+"""Longest text of a value in a message [characters]."""
+
 
 class RockingError(Exception):
     """Any error that this package raises on purpose."""
@@ -49,7 +52,7 @@ class InvalidArgumentError(RockingError, ValueError):
         self.allowed = allowed
         self.index = index
         place = f" at index {index if len(index) > 1 else index[0]}" if index else ""
-        super().__init__(f"`{parameter}` = {value!r}{place} is not allowed; allowed: {allowed}")
+        super().__init__(f"`{parameter}` = {_short(value)}{place} is not allowed; allowed: {allowed}")
 
     def __reduce__(self) -> tuple[type[InvalidArgumentError], tuple[Any, ...]]:
         return type(self), (self.parameter, self.value, self.allowed, self.index)
@@ -100,6 +103,12 @@ class OutsideCubeError(InvalidArgumentError, LookupError):
     """A point for which a cube gives no response with an error bound: outside its axes, or in a mixed cell."""
 
 
+def _short(value: Any) -> str:
+    """A value as text; of a long one, such as an array, its beginning."""
+    text = repr(value)
+    return text if len(text) <= MAX_TEXT else f"{' '.join(text[: MAX_TEXT // 2].split())} ... ({type(value).__name__})"
+
+
 def in_range(
     parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> NDArray[np.float64]:
@@ -110,7 +119,7 @@ def in_range(
     parameter : str
         Name for the error message.
     value : array_like of real numbers, any shape; a quantity; or a text with a unit
-        Numbers without a unit are in `unit`. Quantities (pint, astropy), also in lists, and a text such as "40 cm" are
+        Numbers without a unit are in `unit`. Quantities (pint, astropy) and texts such as "40 cm", also in lists, are
         converted to it. Boolean, complex, date and other text values, which numpy would convert, are rejected, and so
         are masked entries.
     low, high : float
@@ -215,8 +224,6 @@ def float_array(
     unit: str = "-",
 ) -> NDArray[np.float64]:
     """Return `value` as a float64 array, as `in_range` but not compared with the range, nan and infinity included."""
-    if isinstance(value, str) and unit in UNITS:
-        return np.asarray(si_value(parameter, value, unit))
     given = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
     if not _is_real(given):
         allowed = f"real numbers, none of them masked, in {_interval(low, high, closed, unit)}"
@@ -230,12 +237,14 @@ def float_array(
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
 
 
-_PLAIN_TYPES = {float, int, np.float64, str, bytes, bool, NoneType}
+_PLAIN_TYPES = {float, int, np.float64, bytes, bool, NoneType}
 """Types without a unit."""
 
 
 def _without_unit(parameter: str, value: Any, unit: str) -> Any:
-    """The value of a quantity of any library, or of a list with some, in `unit`; other values as they are."""
+    """The value of a quantity of any library or a text, or of a list with some, in `unit`; other values as they are."""
+    if isinstance(value, str) and unit in UNITS:
+        return si_value(parameter, value, unit)
     if isinstance(value, np.ndarray) and value.dtype.kind != "O" and not hasattr(value, "unit"):
         return value
     if isinstance(value, list | tuple):

@@ -85,10 +85,10 @@ def thresholds(
     restitution: Scalar,
     alpha: Scalar | None = None,
     vertical_scale: Scalar | None = None,
-    highest_amplitude: Scalar | None = None,
+    highest: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> Thresholds:
-    """Every amplitude from that of uplift to `highest_amplitude` at which the outcome changes.
+    """Every amplitude from that of uplift to `highest` at which the outcome changes.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def thresholds(
     vertical_scale : float, optional
         Factor of the vertical component of a record at the amplitude 1 [-], [0, 1e6]; 1 by default. Both components are
         scaled, and the search ends where the vertical acceleration reaches -g.
-    highest_amplitude : float, optional
+    highest : float, optional
         Largest a = a_g/(g tan alpha) considered [-], (1, 1e6]; by default 100 under a pulse and 10 under a record.
     stop : StopFlag, optional
         Once another thread sets it, this ends soon with `StoppedError`.
@@ -118,20 +118,20 @@ def thresholds(
     StoppedError
         If `stop` was set.
     """
-    highest = 10.0 if isinstance(motion, Record) else 100.0
-    if highest_amplitude is not None:
-        highest = number("highest_amplitude", highest_amplitude, 1.0, 1e6, closed="right")
+    if highest is None:
+        highest = 10.0 if isinstance(motion, Record) else 100.0
+    top = number("highest", highest, 1.0, 1e6, closed="right")
     eta = check_number(RESTITUTION, restitution)
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         given = needed("a record", frequency_parameter=frequency_parameter)
         p = number("frequency_parameter", given, *frequency_parameter_range(motion), unit="rad/s")
         groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha)}
-        return _record_changes(motion, groups, vertical_scale, highest, stop)
+        return _record_changes(motion, groups, vertical_scale, top, stop)
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
-    return amplitude_changes(block_solver(made, alpha, stop), omega, eta, highest)
+    return amplitude_changes(block_solver(made, alpha, stop), omega, eta, top)
 
 
 def _record_changes(

@@ -75,10 +75,10 @@ def _print_version(given: bool) -> None:
 @app.callback()
 def main(
     version: Annotated[  # noqa: ARG001  # its callback prints
-        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
+        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True, metavar="")
     ] = False,
 ) -> None:
-    """Rocking of free-standing rigid blocks under pulse ground motion."""
+    """Rocking and overturning of free-standing rigid blocks under pulses and recorded ground motions."""
     # What a short command imports remains until its end: to look for garbage among it, by default more than a thousand
     # times and once more at the end, takes a quarter of its time.
     gc.set_threshold(100_000)
@@ -95,7 +95,8 @@ def response(
         str | None,
         typer.Argument(
             help="Table of many blocks: CSV, XLSX or ODS, - for standard input; columns width, height, "
-            "peak_acceleration, period and optionally name and restitution, with units in the header or in the cells."
+            "peak_acceleration, period and optionally name and restitution, with units in the header or in the cells.",
+            metavar="FILE",
         ),
     ] = None,
 ) -> None:
@@ -131,9 +132,9 @@ def history(
         str | None,
         typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
     ] = None,
-    samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.")] = 400,
+    samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.", metavar="[NUMBER]")] = 400,
     contact: Annotated[
-        bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.")
+        bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.", metavar="")
     ] = False,
 ) -> None:
     """Rotation and angular velocity of one block against time."""
@@ -155,7 +156,7 @@ def spectrum(
     output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
-    points: Annotated[int, typer.Option(help="Points, spaced evenly in the logarithm.")] = 24,
+    points: Annotated[int, typer.Option(help="Points, spaced evenly in the logarithm.", metavar="[NUMBER]")] = 24,
 ) -> None:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
@@ -225,13 +226,17 @@ app.add_typer(plot, name="plot")
 
 @app.command()
 def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on.", min=0, max=65535)] = 8000,
+    host: Annotated[str, typer.Option(help="Address to listen on.", metavar="[ADDRESS]")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port to listen on.", min=0, max=65535, metavar="[NUMBER]")] = 8000,
     results: Annotated[
         str | None,
-        typer.Option(help="Folder that the workflow filled; ROCKING_RESULTS, or results.", show_default=False),
+        typer.Option(
+            help="Folder that the workflow filled; by default ROCKING_RESULTS, or results.",
+            show_default=False,
+            metavar="[FOLDER]",
+        ),
     ] = None,
-    workers: Annotated[int, typer.Option(help="Number of processes that serve.", min=1, max=256)] = 1,
+    workers: Annotated[int, typer.Option(help="Processes that serve.", min=1, max=256, metavar="[NUMBER]")] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
     from importlib.metadata import entry_points

@@ -41,66 +41,117 @@ HINTS = {
 
 Objects = Annotated[
     str | None,
-    typer.Argument(help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells."),
+    typer.Argument(
+        help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells; columns name, "
+        "height, width or diameter, and optionally depth, mass_height, offset_width, offset_depth, mass, friction, "
+        "restitution, tolerance, pedestal, notes.",
+        metavar="OBJECTS",
+    ),
 ]
 Mesh = Annotated[
     list[str] | None,
-    typer.Option(help="Closed surface of an object (STL, PLY, OBJ, ...), z upwards, from all sides; may be repeated."),
+    typer.Option(
+        help="Closed surface of an object (STL, PLY, OBJ, ...), z upwards, from all sides; may be repeated.",
+        metavar="[FILE]",
+    ),
 ]
-MeshUnit = Annotated[str, typer.Option(help="Unit of the lengths of the meshes.")]
-Friction = Annotated[float | None, typer.Option(help="Coefficient of friction of the meshes.")]
-Pga = Annotated[str | None, typer.Option(help="Peak ground acceleration, such as 0.3g; records are scaled to it.")]
-Pgv = Annotated[str | None, typer.Option(help="Peak ground velocity, such as '0.3 m/s': each pulse has this one.")]
-PeriodMin = Annotated[str | None, typer.Option(help="In place of PGV: shortest period of the pulses, such as 0.2s.")]
-PeriodMax = Annotated[str | None, typer.Option(help="Longest period of the pulses, such as 1s.")]
-Records = Annotated[list[str] | None, typer.Option("--record", help="Accelerogram of the suite; may be repeated.")]
+MeshUnit = Annotated[str, typer.Option(help="Unit of the lengths of the meshes: m, cm, mm, in, ft.", metavar="[UNIT]")]
+Friction = Annotated[
+    float | None,
+    typer.Option(help="Coefficient of friction of the meshes; none by default: sliding is not judged.", metavar="[-]"),
+]
+Pga = Annotated[
+    str | None, typer.Option(help="Peak ground acceleration, such as 0.3g; records are scaled to it.", metavar="[m/s2]")
+]
+Pgv = Annotated[
+    str | None, typer.Option(help="Peak ground velocity, such as '0.3 m/s': each pulse has this one.", metavar="[m/s]")
+]
+PeriodMin = Annotated[
+    str | None, typer.Option(help="In place of PGV: shortest period of the pulses, such as 0.2s.", metavar="[s]")
+]
+PeriodMax = Annotated[str | None, typer.Option(help="Longest period of the pulses, such as 1s.", metavar="[s]")]
+Records = Annotated[
+    list[str] | None, typer.Option("--record", help="Accelerogram of the suite; may be repeated.", metavar="[FILE]")
+]
 Pair = Annotated[
     list[str] | None,
-    typer.Option(help="Two horizontal components, FILE,FILE: one record at all angles; may be repeated."),
+    typer.Option(help="Two horizontal components: one record at all angles; may be repeated.", metavar="[FILE,FILE]"),
 ]
 Vertical = Annotated[
     list[str] | None,
-    typer.Option(help="Vertical component: one for each --record, then one for each --pair, or none."),
+    typer.Option(
+        help="Vertical component: one for each --record, then one for each --pair, or none.", metavar="[FILE]"
+    ),
 ]
-Hazard = Annotated[str | None, typer.Option(help="Hazard curve of PGA of the site, as of OpenQuake or the USGS.")]
+Hazard = Annotated[
+    str | None, typer.Option(help="Hazard curve of PGA of the site, as of OpenQuake or the USGS.", metavar="[FILE]")
+]
 FloorPeriods = Annotated[
     str | None,
     typer.Option(
-        "--floor-periods", "--floor", help="Periods of a building of which the objects are on a floor: 0.5s,0.2s."
+        "--floor-periods",
+        "--floor",
+        help="Periods of a building of which the objects are on a floor: 0.5s,0.2s.",
+        metavar="[s,s,...]",
     ),
 ]
-FloorDamping = Annotated[str, typer.Option(help="Damping ratios of these modes, one or one for each.")]
+FloorDamping = Annotated[
+    str, typer.Option(help="Damping ratios of these modes, one or one for each.", metavar="[-,-,...]")
+]
 FloorParticipation = Annotated[
-    str, typer.Option(help="Participation factors times mode shapes at the floor, one or one for each.")
+    str,
+    typer.Option(
+        help="Participation factors times mode shapes at the floor, one or one for each.", metavar="[-,-,...]"
+    ),
 ]
 Samples = Annotated[
-    int, typer.Option(help="Variants of each object within its tolerance that are tried, such as 10000.")
+    int,
+    typer.Option(
+        help="Variants of each object within its tolerance that are tried, such as 10000.", metavar="[NUMBER]"
+    ),
 ]
-Seed = Annotated[int, typer.Option(help="Seed of these variants.")]
-Unit = Annotated[str | None, typer.Option(help="Unit of the records if their files state none.")]
-TimeStep = Annotated[str | None, typer.Option(help="Time step of the records if their files state none.")]
+Seed = Annotated[int, typer.Option(help="Seed of these variants.", metavar="[NUMBER]")]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of the records if their files state none, such as g.", metavar="[UNIT]")
+]
+TimeStep = Annotated[
+    str | None, typer.Option(help="Time step of the records if their files state none, such as 0.01s.", metavar="[s]")
+]
 Shapes = Annotated[
     str | None,
-    typer.Option(help="Pulses, such as sine,ricker; by default all by name that leave the ground at rest."),
+    typer.Option(
+        help="Pulses, such as sine,ricker; by default all by name that leave the ground at rest.",
+        metavar="[NAME,NAME,...]",
+    ),
 ]
 MovingGround = Annotated[
-    bool, typer.Option("--moving-ground", help="Also pulses that leave the ground moving: half sine, rectangular.")
+    bool,
+    typer.Option(
+        "--moving-ground", help="Also pulses that leave the ground moving: half sine, rectangular.", metavar=""
+    ),
 ]
 Sensitivity = Annotated[
     bool,
     typer.Option(
         "--sensitivity/--no-sensitivity",
         help="Whether to find the factors of changed objects and the sizes that are not overturned.",
+        metavar="",
     ),
 ]
-Output = Annotated[str | None, typer.Option("--output", "-o", help="CSV file to write, with all columns.")]
+Output = Annotated[
+    str | None, typer.Option("--output", "-o", help="CSV file to write, with all columns.", metavar="[FILE]")
+]
 
 
-Report = Annotated[str | None, typer.Option(help="HTML file to write: verdicts, drawings, inputs; prints on A4.")]
-Author = Annotated[str, typer.Option(help="Author of the report.")]
-Title = Annotated[str, typer.Option(help="Title of the report.")]
-Place = Annotated[str, typer.Option("--site", help="Name of the site in the report.")]
-Date = Annotated[str | None, typer.Option(help="Date of the report; by default today.")]
+Report = Annotated[
+    str | None, typer.Option(help="HTML file to write: verdicts, drawings, inputs; prints on A4.", metavar="[FILE]")
+]
+Author = Annotated[str, typer.Option(help="Author of the report.", metavar="[TEXT]")]
+Title = Annotated[str, typer.Option(help="Title of the report.", metavar="[TEXT]")]
+Place = Annotated[str, typer.Option("--site", help="Name of the site in the report.", metavar="[TEXT]")]
+Date = Annotated[
+    str | None, typer.Option(help="Date of the report, such as 2026-11-25; by default today.", metavar="[DATE]")
+]
 
 
 @with_options

@@ -11,15 +11,25 @@ from rocking._cli.record import File, file_errors
 if TYPE_CHECKING:
     from rocking._excitation.records.record import Record
 
-Periods = Annotated[list[str], typer.Option("--period", help="Period of a mode, such as 0.5s; once for each mode.")]
-Damping = Annotated[list[float], typer.Option(help="Damping ratio, of all modes or once for each.")]
-Participation = Annotated[
-    list[float], typer.Option(help="Participation factor times mode shape at the floor, of all modes or once for each.")
+Periods = Annotated[
+    list[str], typer.Option("--period", help="Period of a mode, such as 0.5s; once for each mode.", metavar="[s]")
 ]
-Unit = Annotated[str | None, typer.Option(help="Unit of the samples if the file states none.")]
-TimeStep = Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.")]
-Component = Annotated[str | None, typer.Option(help="Column or trace of a file with several.")]
-Vertical = Annotated[str | None, typer.Option(help="Vertical component, a file or a column; the floor has the same.")]
+Damping = Annotated[list[float], typer.Option(help="Damping ratio, of all modes or once for each.", metavar="[-]")]
+Participation = Annotated[
+    list[float],
+    typer.Option(
+        help="Participation factor times mode shape at the floor, of all modes or once for each.", metavar="[-]"
+    ),
+]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of the samples if the file states none, such as g.", metavar="[UNIT]")
+]
+TimeStep = Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.", metavar="[s]")]
+Component = Annotated[str | None, typer.Option(help="Column or trace of a file with several.", metavar="[NAME]")]
+Vertical = Annotated[
+    str | None,
+    typer.Option(help="Vertical component, a file or a column; the floor has the same.", metavar="[FILE|NAME]"),
+]
 
 
 def floor(

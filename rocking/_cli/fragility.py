@@ -23,7 +23,11 @@ if TYPE_CHECKING:
     from rocking.suites.configuration import SuiteConfiguration
 
 Configuration = Annotated[
-    str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
+    str,
+    typer.Argument(
+        help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.",
+        metavar="CONFIGURATION",
+    ),
 ]
 
 MAX_NESTING = 100
@@ -43,13 +47,20 @@ TableOption = Annotated[
 
 HazardOption = Annotated[
     str | None,
-    typer.Option("--hazard", help="Hazard curve of OpenQuake or the USGS, in place of that of the configuration."),
+    typer.Option(
+        "--hazard",
+        help="Hazard curve of OpenQuake or the USGS, in place of that of the configuration.",
+        metavar="[FILE]",
+    ),
 ]
 
 FileOption = Annotated[
     str | None,
     typer.Option(
-        "--output", "-o", help="File to write in place of printing: .csv, .json, or .xml (NRML of OpenQuake)."
+        "--output",
+        "-o",
+        help="File to write in place of printing: .csv, .json, or .xml (NRML of OpenQuake).",
+        metavar="[FILE]",
     ),
 ]
 

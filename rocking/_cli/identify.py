@@ -15,13 +15,17 @@ if TYPE_CHECKING:
 MAX_SAMPLES = 1_000_000
 """Most rows of a file that are read."""
 
-Degrees = Annotated[bool, typer.Option("--degrees", help="The rotations are in degrees, not in radians.")]
-Edges = Annotated[int, typer.Option(help="1 for a body with equal edges, 2 for one with a right and a left edge.")]
+Degrees = Annotated[bool, typer.Option("--degrees", help="The rotations are in degrees, not in radians.", metavar="")]
+Edges = Annotated[
+    int, typer.Option(help="1 for a body with equal edges, 2 for one with a right and a left edge.", metavar="[1|2]")
+]
 
 
 @with_options
 def identify(
-    file: Annotated[str, typer.Argument(help="Two columns of numbers: time in s, rotation in radians.")],
+    file: Annotated[
+        str, typer.Argument(help="Two columns of numbers: time in s, rotation in radians.", metavar="FILE")
+    ],
     output: OutputOptions,
     degrees: Degrees = False,
     edges: Edges = 1,

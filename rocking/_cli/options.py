@@ -118,7 +118,9 @@ class RecordOptions(SizeOptions):
     restitution: Annotated[
         str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).", metavar="[-]")
     ] = "momentum"
-    scale: Annotated[float, typer.Option(help="Factor of the record.", metavar="[-]")] = 1.0
+    scale: Annotated[
+        float, typer.Option(help="Factor of the record, of its vertical component too.", metavar="[-]")
+    ] = 1.0
     unit: Annotated[
         str | None,
         typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", metavar="[UNIT]"),
@@ -136,7 +138,10 @@ class RecordOptions(SizeOptions):
         ),
     ] = None
     baseline_order: Annotated[
-        int | None, typer.Option(help="Remove a baseline of this degree from the acceleration; none by default.")
+        int | None,
+        typer.Option(
+            help="Remove a baseline of this degree, 0 to 6, from the acceleration; none by default.", metavar="[NUMBER]"
+        ),
     ] = None
 
 
@@ -148,7 +153,9 @@ class OutputOptions:
         Literal["table", "csv", "json"],
         typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
     ] = "table"
-    all: Annotated[bool, typer.Option("--all", help="All values in the table; CSV and JSON always have them.")] = False
+    all: Annotated[
+        bool, typer.Option("--all", help="All values in the table; CSV and JSON always have them.", metavar="")
+    ] = False
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,8 @@ def history(
     block: ProblemOptions,
     picture: PictureOptions,
     duration: Annotated[
-        str | None, typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.")
+        str | None,
+        typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
     ] = None,
 ) -> None:
     """Rotation and ground acceleration of one block against time."""
@@ -89,7 +90,10 @@ def record(
     block: RecordOptions,
     picture: PictureOptions,
     duration: Annotated[
-        str | None, typer.Option(help="Length of time that is drawn, such as 20s; by default the record and some more.")
+        str | None,
+        typer.Option(
+            help="Length of time that is drawn, such as 20s; by default the record and some more.", metavar="[s]"
+        ),
     ] = None,
 ) -> None:
     """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
@@ -162,7 +166,9 @@ def control_map(
 @plot.command()
 @with_options
 def cube(
-    file: Annotated[str, typer.Argument(help="Spectrum cube, such as results/spectra/sine/eta-0.85.nc.")],
+    file: Annotated[
+        str, typer.Argument(help="Spectrum cube, such as results/spectra/sine/eta-0.85.nc.", metavar="FILE")
+    ],
     picture: PictureOptions,
 ) -> None:
     """Maps of a spectrum cube, one for each slenderness angle."""
@@ -193,7 +199,11 @@ def cube(
 @with_options
 def fragility(
     configuration: Annotated[
-        str, typer.Argument(help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.")
+        str,
+        typer.Argument(
+            help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.",
+            metavar="CONFIGURATION",
+        ),
     ],
     picture: PictureOptions,
 ) -> None:

@@ -18,11 +18,17 @@ if TYPE_CHECKING:
     from rocking._dimensional.thresholds import BodyThresholds
     from rocking._excitation.records.record import Record
 
-File = Annotated[str, typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.")]
-Thresholds = Annotated[
-    bool, typer.Option("--thresholds/--no-thresholds", help="Whether to find all scales at which the outcome changes.")
+File = Annotated[
+    str,
+    typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.", metavar="FILE"),
 ]
-Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.")]
+Thresholds = Annotated[
+    bool,
+    typer.Option(
+        "--thresholds/--no-thresholds", help="Whether to find all scales at which the outcome changes.", metavar=""
+    ),
+]
+Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.", metavar="")]
 
 
 @with_options

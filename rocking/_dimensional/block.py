@@ -108,7 +108,9 @@ class RespondingBlock(AbstractBlock, RespondingBody):
 
 @final
 class Block(RectangularBlock, RespondingBlock):
-    """A free-standing rigid rectangular block of uniform density (figure 1), and what pulses do to it.
+    """A free-standing rigid rectangular block of uniform density (figure 1), and what ground motions do to it.
+
+    Many blocks of different sizes are a `RigidBody.from_size(width, height)` of arrays.
 
     Parameters
     ----------

@@ -135,6 +135,11 @@ class BodyResponse(EqualByValue):
         return found if np.isfinite(found.smallest_normal_reaction) else found.without_forces()
 
     @property
+    def sentence(self) -> str:
+        """The outcome for one body in words; the same errors as `contact`."""
+        return self.contact.sentence
+
+    @property
     def margin(self) -> str:
         """From which peak acceleration or factor one body overturns, in words; the same errors as `contact`."""
         self._need_one("margin")
@@ -179,7 +184,7 @@ class BodyResponse(EqualByValue):
         """
         contact, body = self.contact, self.problem.body
         values = {
-            "meaning": contact.sentence,
+            "meaning": self.sentence,
             "margin": self.margin if thresholds else None,
             "outcome": Outcome(int(self.outcome)).name,
             "overturned": bool(self.overturned),

@@ -246,7 +246,7 @@ class RigidBody(RespondingBody):
         """
         lengths: dict[str, Any] = {"width": width, "height": height, "offset": offset, "mass_height": mass_height}
         given = {name: value for name, value in lengths.items() if value is not None}
-        given |= broadcast_by_name({name: value for name, value in given.items() if is_labelled(value)})
+        broadcast_by_name({name: value for name, value in given.items() if is_labelled(value)})  # equal indexes
         for name, value in given.items():
             low = -math.inf if name == "offset" else 0.0
             checked = in_range(name, value, low, math.inf, closed="neither", unit="m")

@@ -265,7 +265,7 @@ def block_thresholds(
     if above_uplift <= 1.0:
         return BodyThresholds(np.empty(0), np.empty(0, np.bool_), np.array([uplift, uplift]), "peak_acceleration")
     top = min(above_uplift, 1e6)
-    found = thresholds(motion, **groups, highest_amplitude=top, stop=stop)
+    found = thresholds(motion, **groups, highest=top, stop=stop)
     searched = np.array([uplift, top * uplift])
     return BodyThresholds(found.amplitude * uplift, found.overturns_above, searched, "peak_acceleration")
 

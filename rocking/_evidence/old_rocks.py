@@ -9,19 +9,19 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
-from rocking._base.errors import InvalidArgumentError, in_range, number
+from rocking._base.errors import InvalidArgumentError, float_array, number
 from rocking._base.units import Scalar
 from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
-from rocking.suites.hazard import annual_rate as rate_of
+from rocking.suites.hazard import annual_rate
 
 MAX_YEARS = 1e9
 """Longest age of a rock [year]."""
 
 
-def survival(fragility: xr.Dataset, *, intensity: ArrayLike, annual_rate: ArrayLike, years: Scalar) -> xr.Dataset:
+def survival(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, ArrayLike], *, years: Scalar) -> xr.Dataset:
     """Probability that a rock has stood for some years, under each branch of a hazard model.
 
     Overturning by earthquakes is a Poisson process of the rate nu = integral of P(x) abs(dH(x)), as
@@ -32,10 +32,9 @@ def survival(fragility: xr.Dataset, *, intensity: ArrayLike, annual_rate: ArrayL
     ----------
     fragility : xarray.Dataset
         Result of `rocking.fragility`; its fitted curves are used.
-    intensity : array_like (levels,)
-        Intensities of the hazard curves, at least two, > 0, ascending, in the measure and unit of the fragility.
-    annual_rate : array_like (levels,) or (branches, levels)
-        Annual rates of exceedance [1/year], > 0, not increasing, of one branch or of several.
+    hazard : xarray.DataArray, or pair of arrays
+        As for `rocking.suites.annual_rate`; the second array of a pair may be (branches, levels), annual rates of
+        exceedance [1/year] under several branches.
     years : float
         Age of the rock in its present form [year], [0, 1e9].
 
@@ -58,10 +57,10 @@ def survival(fragility: xr.Dataset, *, intensity: ArrayLike, annual_rate: ArrayL
     on probabilistic seismic hazard analysis, Bulletin of the Seismological Society of America 103(3), 1898-1911.
     """
     time = number("years", years, 0.0, MAX_YEARS, unit="year")
-    rates = np.atleast_2d(in_range("annual_rate", annual_rate, 0.0, np.inf, closed="neither", unit="1/year"))
-    if rates.ndim != 2:
-        raise InvalidArgumentError("annual_rate", rates.shape, "shape (levels,) or (branches, levels)")
-    found = xr.concat([rate_of(fragility, (intensity, branch)) for branch in rates], "branch")
+    pair = () if isinstance(hazard, xr.DataArray) else tuple(hazard)
+    several = len(pair) == 2 and float_array("hazard rate", pair[1], unit="1/year").ndim == 2
+    branches = [(pair[0], rates) for rates in pair[1]] if several else [hazard]
+    found = xr.concat([annual_rate(fragility, one) for one in branches], "branch")
     result = xr.Dataset(
         {
             "annual_rate": found["annual_rate"],
@@ -72,7 +71,7 @@ def survival(fragility: xr.Dataset, *, intensity: ArrayLike, annual_rate: ArrayL
     )
     for name in ("survival", "survival_lower"):
         result[name].attrs = {"units": "1", "long_name": "probability that the rock has not been overturned"}
-    return result if np.ndim(annual_rate) > 1 else result.isel(branch=0)
+    return result if several else result.isel(branch=0)
 
 
 def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: Scalar = 0.95) -> xr.Dataset:

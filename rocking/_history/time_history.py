@@ -69,7 +69,7 @@ def time_history(
         its end by at most as many or 10,000, at a larger step if they would be more. The uplift, impacts and the end of
         the motion are added.
     contact : bool
-        Whether to add the reactions of the ground and the friction demand (docs/contact.md).
+        Whether to add the reactions of the ground and the friction demand.
     stop : StopFlag, optional
         Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -80,7 +80,9 @@ def time_history(
         tau(time) [-]: rotation: theta/alpha [-]; angular_velocity: theta'/(p alpha) [-], after the impact at an impact;
         ground_acceleration: a f = u/(g tan alpha) [-]; vertical_acceleration over g and upwards [-], for a record that
         has it; impact_time(impact), [-] or [s]. Attributes: the arguments, outcome, overturned, peak_rotation, impacts.
-        With `contact`, the variables and attributes of `rocking._history.contact.add_contact`.
+        With `contact`, horizontal_reaction(time) and normal_reaction(time) over the weight [-], friction_demand(time)
+        [-] and that over tan(alpha) [-]; attributes largest_friction_demand, smallest_normal_reaction, impulse_ratio,
+        lifts_off and warnings.
 
     Raises
     ------

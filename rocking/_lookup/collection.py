@@ -149,7 +149,7 @@ class CubeCollection:
         frequency_ratio: ArrayLike,
         restitution: ArrayLike,
         alpha: ArrayLike | None = None,
-        tolerance: float = 1e-4,
+        absolute_tolerance: float = 1e-4,
         method: str = "auto",
         threads: int | None = None,
         stop: StopFlag | None = None,
@@ -160,7 +160,7 @@ class CubeCollection:
         ----------
         pulse : str or AbstractPulse
             The pulse, by its name if cubes are to be used.
-        slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop
+        slenderness, frequency_ratio, restitution, alpha, absolute_tolerance, method, threads, stop
             As for `Cube.response`; the method "auto" also uses the solver where a cube is missing or damaged.
 
         Raises
@@ -172,7 +172,9 @@ class CubeCollection:
         """
         as_pulse(pulse)
         cube = self.cube(pulse, method) if isinstance(pulse, str) else Cube(pulse, np.empty(0), lambda _: None)
-        result, used = cube.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop)
+        result, used = cube.evaluate(
+            slenderness, frequency_ratio, restitution, alpha, absolute_tolerance, method, threads, stop
+        )
         return result, tuple(one.sha256 for one in used)
 
     def problem(self, name: str) -> str | None:

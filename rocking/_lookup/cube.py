@@ -130,12 +130,12 @@ class Cube:
         frequency_ratio: ArrayLike,
         restitution: ArrayLike | None = None,
         alpha: ArrayLike | None = None,
-        tolerance: float = 1e-4,
+        absolute_tolerance: float = 1e-4,
         method: str = "auto",
         threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BoundedResponse:
-        """Outcome and peak rotation with an error bound not above `tolerance`; the arguments broadcast.
+        """Outcome and peak rotation with an error bound not above `absolute_tolerance`; the arguments broadcast.
 
         Parameters
         ----------
@@ -148,7 +148,7 @@ class Cube:
             eta [-], [0, 1]; optional if there is one cube only.
         alpha : array_like, optional
             Slenderness angle [rad]; None or 0 for the slender limit.
-        tolerance : float
+        absolute_tolerance : float
             Largest error of an interpolated peak_rotation [-], >= 0.
         method : {"auto", "cube", "solver"}
             "auto" uses the solver where the cubes do not meet the tolerance, "cube" raises an error there.
@@ -164,7 +164,9 @@ class Cube:
         OutsideCubeError
             With `method="cube"`: outside the axes, where kinds of response meet, or if the bound exceeds the tolerance.
         """
-        return self.evaluate(slenderness, frequency_ratio, restitution, alpha, tolerance, method, threads, stop)[0]
+        return self.evaluate(
+            slenderness, frequency_ratio, restitution, alpha, absolute_tolerance, method, threads, stop
+        )[0]
 
     def evaluate(
         self,
@@ -172,14 +174,14 @@ class Cube:
         frequency_ratio: ArrayLike,
         restitution: ArrayLike | None,
         alpha: ArrayLike | None,
-        tolerance: float,
+        absolute_tolerance: float,
         method: str,
         threads: int | None,
         stop: StopFlag | None,
     ) -> tuple[BoundedResponse, list[CubeSlice]]:
         """`response`, and the cubes from which points were interpolated, in the order of `used`."""
         one_of("method", method, METHODS)
-        limit = number("tolerance", tolerance, 0.0, np.inf, closed="left")
+        limit = number("absolute_tolerance", absolute_tolerance, 0.0, np.inf, closed="left")
         if threads is not None:
             threads = integer("threads", threads, 1, np.inf)
         if restitution is None:
@@ -291,7 +293,9 @@ class Cube:
         known, part = self.interpolate(point, np.inf)
         if known[0] and part.error_bound[0] > limit:
             bound = float(part.error_bound[0])
-            raise OutsideCubeError("tolerance", limit, f"at least {bound:.3g} {where} in this cube, or method auto")
+            raise OutsideCubeError(
+                "absolute_tolerance", limit, f"at least {bound:.3g} {where} in this cube, or method auto"
+            )
         why = "where outcomes or modes of response meet, or the slices of restitution or alpha are too far apart"
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 

@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import number, positive
+from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.units import Scalar
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.reactions import INERTIA_RATIO
@@ -40,6 +40,8 @@ class AbstractBlock(AbstractBody):
     gravity: float = STANDARD_GRAVITY
 
     def __init__(self, width: Scalar, height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
+        if any(getattr(one, "shape", ()) or isinstance(one, list | tuple) for one in (width, height)):
+            raise InvalidArgumentError("width, height", "arrays", "one number each; RigidBody.from_size takes arrays")
         object.__setattr__(self, "width", positive("width", width, "m"))  # a frozen dataclass
         object.__setattr__(self, "height", positive("height", height, "m"))
         object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))

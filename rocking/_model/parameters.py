@@ -102,8 +102,10 @@ ALPHA = Parameter("alpha", "alpha", "rad", 0.0, 1.57, "both", "slenderness angle
 SMALLEST_ALPHA = 1e-12
 """Smallest slenderness angle of (2.2) [rad]."""
 
-TOLERANCE = Parameter("tolerance", "", "-", 1e-13, 1e-3, "both", "relative error of the peak allowed for speed")
-"""Of `peak_response`. The tolerance of an interpolated response is absolute, see `rocking._lookup.cube`."""
+RELATIVE_TOLERANCE = Parameter(
+    "relative_tolerance", "", "-", 1e-13, 1e-3, "both", "relative error of the peak allowed for speed"
+)
+"""Of `peak_response`. `absolute_tolerance` is of an interpolated response, see `rocking._lookup.cube`."""
 
 GROUPS = (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION, ALPHA)
 """The dimensionless groups of a response, in the order of the arguments."""

@@ -17,7 +17,7 @@ from rocking._model.checks import check_groups, check_number
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import is_labelled, labelled_response
-from rocking._model.parameters import TOLERANCE
+from rocking._model.parameters import RELATIVE_TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
@@ -85,7 +85,7 @@ def peak_response(
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
     vertical_scale: ArrayLike | None = None,
-    tolerance: float | None = None,
+    relative_tolerance: float | None = None,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response: ...
@@ -100,7 +100,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
     vertical_scale: ArrayLike | None = None,
-    tolerance: float | None = None,
+    relative_tolerance: float | None = None,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response | xr.Dataset:
@@ -127,7 +127,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     vertical_scale : array_like, optional
         Factor of the vertical component of a record [-], [0, 1e6]; 1 by default. It adds to gravity, g + w for g in the
         restoring moment, in units of 9.80665 m/s2: under another gravity, multiply by the ratio.
-    tolerance : float, optional
+    relative_tolerance : float, optional
         Relative error of the peak under a pulse allowed for speed [-], [1e-13, 1e-3]; by default rounding error only.
         Slender blocks and records are exact in any case, Ricker wavelets from a frequency ratio of 0.8 or 0.98 on. No
         tolerance can be kept where the rounding of the arguments decides on the outcome.
@@ -160,10 +160,10 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         "vertical_scale": vertical_scale,
     }
     if is_labelled(*arguments.values()):
-        options = {"tolerance": tolerance, "threads": threads, "stop": stop}
+        options = {"relative_tolerance": relative_tolerance, "threads": threads, "stop": stop}
         return labelled_response(partial(peak_response, motion), arguments, options)
     if isinstance(motion, Recording):
-        reject_given("a record", frequency_ratio=frequency_ratio, tolerance=tolerance)
+        reject_given("a record", frequency_ratio=frequency_ratio, relative_tolerance=relative_tolerance)
         return record_response(
             motion,
             frequency_parameter=needed("a record", frequency_parameter=frequency_parameter),
@@ -185,7 +185,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     groups = broadcast(given, [*checked.values()][: 3 if alpha is None else 4])
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
-    accepted = 0.0 if tolerance is None else check_number(TOLERANCE, tolerance)
+    accepted = 0.0 if relative_tolerance is None else check_number(RELATIVE_TOLERANCE, relative_tolerance)
     exact = made.samples is not None or (made.series.has_exact_arcs and slender)  # no terms to truncate
     precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)

@@ -359,7 +359,7 @@ class _Grid:
             frequency_ratio=frequency_ratio[..., None],
             restitution=etas,
             alpha=float(angle) or None,
-            tolerance=tolerance,
+            relative_tolerance=tolerance,
             threads=self.threads,
             stop=self.stop,
         )

@@ -65,7 +65,7 @@ def fragility(
     blocks : Block or sequence of Block
         Rigid blocks (2.2). One block, not in a sequence, gives a result without the dimension `block`.
     intensity : array_like, (levels,)
-        Levels, > 0, ascending, in the unit of the measure.
+        Levels, > 0, ascending, in the unit of the measure; texts such as "0.3 g" and quantities are converted to it.
     measure : str
         "pga" [m/s2], "pgv" [m/s], "pga_ratio" PGA/(g tan alpha), "pgv_ratio" p PGV/(g tan alpha) or "frequency_ratio"
         omega_p/p: see `rocking.suites.intensity`.

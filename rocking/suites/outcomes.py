@@ -101,7 +101,8 @@ def check_suite(
         raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
     if not bodies or not all(isinstance(body, AbstractBlock) for body in bodies):
         raise InvalidArgumentError("blocks", blocks, "one or more objects of rocking.Block")
-    levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=chosen.unit))
+    unit = {"m s-2": "m/s2", "m s-1": "m/s"}.get(chosen.unit, "-")
+    levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=unit))
     if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):
         raise InvalidArgumentError("intensity", intensity, "one or more levels, ascending")
     for motion in motions:

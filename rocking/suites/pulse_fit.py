@@ -86,7 +86,7 @@ class PulseFit(EqualByValue):
         )
         return (
             f"<rocking.suites.PulseFit {self.velocity.family}: "
-            f"T  {self.period:.4g} s, a_g {self.peak_acceleration:.3g} m/s2, "
+            f"period {self.period:.4g} s, a_g {self.peak_acceleration:.3g} m/s2, "
             f"{100.0 * self.explained:.0f} % of the velocity; overturns at {ratios} times the record>"
         )
 
@@ -153,7 +153,7 @@ def _overturning_acceleration(
         frequency_ratio=2.0 * math.pi / period / block.frequency_parameter,
         restitution=block.inelastic_restitution,
         alpha=block.equation_alpha,
-        highest_amplitude=HIGHEST_AMPLITUDE,
+        highest=HIGHEST_AMPLITUDE,
         stop=stop,
     )
     return block.uplift_acceleration * float(found.amplitude[0]) if found.amplitude.size else math.nan

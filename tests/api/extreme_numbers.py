@@ -60,15 +60,16 @@ INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
 """Values that replace an integer as well."""
 
 NUMBERS: dict[str, Any] = {
-    "slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85, "alpha": 0.3, "tolerance": 1e-6, "threads": 1,
-    "highest_amplitude": 10.0, "highest": 10.0,
+    "slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85, "alpha": 0.3,
+    "relative_tolerance": 1e-6, "threads": 1,
+    "highest": 10.0,
     "nodes": 16, "duration": 5.0, "samples": 20, "scale": 1.2, "period": 0.6,
     "width": 0.5, "height": 2.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,
     "frequency_parameter": 2.0, "pulse_frequency": 10.0, "cycles": 2.0, "phase": 0.5,
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
     "vertical_scale": 1.0, "periods": [0.5, 0.1], "damping": 0.1, "participation": [1.3, -0.3], "tail": 1.0,
     "intensity": [3.0, 9.0], "demand": 0.5, "confidence": 0.9, "restitution_step": 0.05,
-    "years": 100.0, "annual_rate": [1e-2, 1e-4], "probability": 0.9,
+    "years": 100.0, "probability": 0.9,
     "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,
     "stiffness": 500.0, "restoring": 100.0, "load": 200.0,
     "uplift_acceleration": 2.0, "radius": 4.0, "thickness": 0.6, "embrace": 2.7, "voussoirs": 8,
@@ -110,7 +111,7 @@ OBJECTS: dict[str, Any] = {
 }  # fmt: skip
 """Arguments that are no numbers."""
 
-OF_PULSES = ("peak_acceleration", "period", "frequency_ratio", "tolerance")
+OF_PULSES = ("peak_acceleration", "period", "frequency_ratio", "relative_tolerance")
 OF_RECORDS = ("scale", "frequency_parameter", "vertical_scale")
 """Numbers that belong to one kind of motion."""
 
@@ -210,14 +211,14 @@ BODIES: dict[str, dict[str, Any]] = {
     },
     "/v1/identify": {"application/json": EXAMPLE},
     "/v1/response": {
-        "application/json": {"pulse": "sine", **GROUPS, "alpha_deg": 5.0, "tolerance": 1e-4},
+        "application/json": {"pulse": "sine", **GROUPS, "alpha_deg": 5.0, "absolute_tolerance": 1e-4},
         "text/csv": GROUPS,
     },
     "/v1/spectrum": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "points": 20}},
     "/v1/history": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "frequency_ratio": 3.0, "duration": 20.0}},
     "/v1/map": {"application/json": UNDER_SAMPLES | {"columns": 4, "rows": 4, "slenderness_min": 0.3}},
     "/v1/overturning": {"application/json": UNDER_SAMPLES},
-    "/v1/thresholds": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest_amplitude": 10.0}},
+    "/v1/thresholds": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest": 10.0}},
     "/v1/blocks/response": {
         "application/json": {"blocks": [BLOCK_COLUMNS | {"restitution": 0.85}]},
         "text/csv": {

@@ -50,8 +50,8 @@ NUMBERS = {
     "slenderness_max": (0.5, 1.5),
     "restitution": (0.5, 1.0),
     "alpha_deg": (1e-6, 89.9),
-    "tolerance": (1e-9, 1.0),
-    "highest_amplitude": (1.1, 100.0),
+    "absolute_tolerance": (1e-9, 1.0),
+    "highest": (1.1, 100.0),
     "duration": (0.1, 200.0),
     "width": (1e-2, 10.0),
     "height": (1e-2, 10.0),
@@ -70,15 +70,15 @@ WORDS = {
 }
 GROUPS = ["pulse", "slenderness", "frequency_ratio", "restitution"]
 ROUTES = {
-    "/v1/response": (GROUPS, ["alpha_deg", "method", "tolerance"]),
+    "/v1/response": (GROUPS, ["alpha_deg", "method", "absolute_tolerance"]),
     "/v1/blocks/response": (
         ["pulse", "width", "height", "peak_acceleration", "period"],
-        ["restitution", "gravity", "method", "tolerance", "offset", "mass_height"],
+        ["restitution", "gravity", "method", "absolute_tolerance", "offset", "mass_height"],
     ),
-    "/v1/thresholds": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest_amplitude"]),
+    "/v1/thresholds": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest"]),
     "/v1/spectrum": (
         ["pulse", "slenderness", "restitution", "points"],
-        ["alpha_deg", "method", "tolerance", "frequency_ratio_min", "frequency_ratio_max", "format"],
+        ["alpha_deg", "method", "absolute_tolerance", "frequency_ratio_min", "frequency_ratio_max", "format"],
     ),
     "/v1/map": (
         ["pulse", "restitution", "columns", "rows"],
@@ -258,7 +258,7 @@ def _body(draw: random.Random) -> tuple[bytes, str, str]:
     size = draw.choice([0, 1, 3, 300])
     columns = {name: [_number(draw, name) for _ in range(size)] for name in GROUPS[1:]}
     options = {"pulse": _value(draw, "pulse")} | {
-        name: _value(draw, name) for name in ("method", "alpha_deg", "tolerance") if draw.random() < 0.2
+        name: _value(draw, name) for name in ("method", "alpha_deg", "absolute_tolerance") if draw.random() < 0.2
     }
     form = draw.choice(["json", "csv", "nc"])
     if form == "json":

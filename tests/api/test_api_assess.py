@@ -61,7 +61,7 @@ def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
     assert answer.json()["rows"] == expected.rows
     assert len(answer.json()["motions"]) == 13
     without = client.post("/v1/assess?sensitivity=false", json=body | {"hazard": None})
-    assert without.json()["rows"][0]["yearly_rate"] is None
+    assert without.json()["rows"][0]["annual_rate"] is None
 
 
 @pytest.mark.parametrize(

@@ -138,7 +138,7 @@ HEAVY = {
     "/v1/history": POINT,
 }  # fmt: skip
 WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ratio": -1.0, "slenderness": -1.0,
-         "width": -2.0, "tolerance": -1.0, "highest_amplitude": 0.5, "points": 1, "samples": 1, "columns": 1,
+         "width": -2.0, "absolute_tolerance": -1.0, "highest": 0.5, "points": 1, "samples": 1, "columns": 1,
          "rows": 1, "duration": -1.0, "frequency_ratio_min": -1.0, "slenderness_max": 0.0}  # fmt: skip
 
 
@@ -174,7 +174,7 @@ def test_an_invalid_batch_is_refused_before_queueing(results, form):
 
         try:
             assert_problem(post(), 503)
-            for name in ("pulse", "alpha_deg", "tolerance", "restitution", "frequency_ratio", "slenderness"):
+            for name in ("pulse", "alpha_deg", "absolute_tolerance", "restitution", "frequency_ratio", "slenderness"):
                 assert_problem(post(**{name: WRONG[name]}), 422, name)
         finally:
             gate.open.set()
@@ -256,7 +256,7 @@ def test_batches_in_chunks_are_equal(client, monkeypatch):
 def test_batched_requests_have_the_results_of_single_requests(results):
     queries = [POINT | {"slenderness": 0.05 + 0.03 * k} for k in range(30)]
     queries += [POINT | {"method": "cube", "slenderness": s} for s in (0.01, 0.6, 0.02)]
-    queries += [POINT | {"slenderness": -1.0}, POINT | {"tolerance": -1.0}, POINT | {"pulse": "sinus"}]
+    queries += [POINT | {"slenderness": -1.0}, POINT | {"absolute_tolerance": -1.0}, POINT | {"pulse": "sinus"}]
     with client_of(results) as client:
         alone = [client.get("/v1/response", params=query) for query in queries]
         calls = _count_calls(client.app.state.service.cubes)

@@ -28,7 +28,7 @@ def test_a_response_from_a_cube(client):
     assert result["outcome"] == Outcome(expected.outcome).name == "SAFE"
     assert result["impacts"] == expected.impacts
     assert not result["overturned"]
-    assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "tolerance": 1e-4}
+    assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
     stored = client.get("/v1/datasets/spectra/sine/eta-0.85").json()
     assert result["data_version"] == stored["sha256"]
 
@@ -57,13 +57,13 @@ def test_a_response_from_the_solver_equals_the_solver(client):
 
 @pytest.mark.parametrize(
     "changes",
-    [{"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}, {"tolerance": 1e-13}],
+    [{"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}, {"absolute_tolerance": 1e-13}],
     ids=["no cube of this restitution", "outside the cube", "no cube of this pulse", "too coarse"],
 )
 def test_auto_uses_the_solver_where_no_cube_applies(client, changes):
     result = get_response(client, **changes).json()
     assert result["source"] == "solver"
-    requested = {key: value for key, value in (QUERY | changes).items() if key not in ("pulse", "tolerance")}
+    requested = {key: value for key, value in (QUERY | changes).items() if key not in ("pulse", "absolute_tolerance")}
     assert result["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **requested).peak_rotation
 
 
@@ -115,15 +115,15 @@ def test_a_mirrored_pulse_has_the_same_response(client):
         ({"slenderness": "much"}, "slenderness"),
         ({"frequency_ratio": "-inf"}, "frequency_ratio"),
         ({"frequency_ratio": 0}, "frequency_ratio"),
-        ({"tolerance": -1}, "tolerance"),
-        ({"tolerance": "nan"}, "tolerance"),
+        ({"absolute_tolerance": -1}, "absolute_tolerance"),
+        ({"absolute_tolerance": "nan"}, "absolute_tolerance"),
         ({"method": "guess"}, "method"),
         ({"alpha_deg": 95}, "alpha_deg"),
         ({"tolerence": 1e-6}, "tolerence"),
         ({"frequency_ratio": 40, "method": "cube"}, "frequency_ratio"),
         ({"slenderness": 0.01, "method": "cube"}, "slenderness"),
         ({"restitution": 0.7, "method": "cube"}, "restitution"),
-        ({"tolerance": 1e-13, "method": "cube"}, "tolerance"),
+        ({"absolute_tolerance": 1e-13, "method": "cube"}, "absolute_tolerance"),
     ],
 )
 def test_bad_input_names_parameter_value_and_range(client, changes, parameter):
@@ -167,7 +167,9 @@ def test_several_missing_or_wrong_parameters_are_all_named(client):
     first, missing, unknown, _, above = problem["errors"]
     assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
     assert missing == {"name": "frequency_ratio", "allowed": "required in the query"}
-    assert unknown["allowed"].startswith("one of pulse, alpha_deg, method, tolerance, slenderness, frequency_ratio")
+    assert unknown["allowed"].startswith(
+        "one of pulse, alpha_deg, method, absolute_tolerance, slenderness, frequency_ratio"
+    )
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
     assert (problem["parameter"], problem["value"], problem["allowed"]) == ("slenderness", "x", "a number")
     assert problem["detail"].startswith("5 parameters are missing or wrong: `slenderness` = 'x' is not allowed")
@@ -217,7 +219,7 @@ def test_csv_batch(client):
     lines = [",".join(BATCH), *(",".join(map(repr, map(float, row))) for row in zip(*BATCH.values(), strict=True))]
     result = client.post(
         "/v1/response",
-        params={"pulse": "sine", "tolerance": 1e-3},
+        params={"pulse": "sine", "absolute_tolerance": 1e-3},
         content="\r\n".join(lines),
         headers={"content-type": "text/csv"},
     )

@@ -103,8 +103,8 @@ def test_suite_of_records_with_hazard() -> None:
     worst, best = found.rows
     assert (worst["object"], best["object"]) == ("slender", "stocky")
     assert worst["share_lower"] < worst["share"] <= worst["share_upper"]
-    assert 1e-4 < worst["yearly_rate"] < 0.1
-    assert best["yearly_rate"] < worst["yearly_rate"]
+    assert 1e-4 < worst["annual_rate"] < 0.1
+    assert best["annual_rate"] < worst["annual_rate"]
     body = Bodies.of([slender]).scaled().rigid
     outcomes = [body.response(one, scale=4.0 / one.peak_acceleration).overturned[0] for one in records]
     assert {one.name for one, hit in zip(records, outcomes, strict=True) if hit} <= {

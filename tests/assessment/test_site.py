@@ -101,7 +101,7 @@ def test_hazard_is_of_the_ground_on_a_floor() -> None:
         rocking.assess(lamp, rocking.Site(records=records, hazard=curve, **floor), sensitivity=False)
         for floor in ({}, {"floor_periods": 0.3, "floor_damping": 0.2, "floor_participation": 2.0})
     )
-    assert 1e-5 < plain.columns["yearly_rate"][0] < weak.columns["yearly_rate"][0] < 1e-2
+    assert 1e-5 < plain.columns["annual_rate"][0] < weak.columns["annual_rate"][0] < 1e-2
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ AMBIGUOUS = {
     "flag": True,
     "complex": np.array([0.4 + 0.1j]),
     "text": np.array(["0.4"]),
-    "list-of-text": ["0.4"],
     "bytes": b"0.4",
     "instants": TIME,
     "spans": TIME - TIME[0],
@@ -48,6 +47,25 @@ def test_values_that_are_not_real_numbers_are_rejected(name, value):
         rocking.peak_response("sine", **GROUPS | {name: value})
     assert e.value.parameter == name
     assert e.value.value is value or e.value.value is value.data  # of a labelled array
+
+
+def test_texts_with_units_are_accepted_in_lists():
+    block = rocking.Block("40 cm", "1.6 m")
+    found = block.response("sine", peak_acceleration=["0.4 g", "400 gal", 4.0], period="500 ms")
+    expected = block.response("sine", peak_acceleration=[0.4 * 9.80665, 4.0, 4.0], period=0.5)
+    np.testing.assert_array_equal(found.rotation, expected.rotation)
+    with pytest.raises(InvalidArgumentError, match=r"`peak_acceleration` = '0.4 s'.*such as 4 m/s\^2"):
+        block.response("sine", peak_acceleration=["0.4 g", "0.4 s"], period=0.5)
+    with pytest.raises(InvalidArgumentError, match="percentage"):
+        rocking.peak_response("sine", **GROUPS | {"slenderness": ["0.4"]})
+
+
+def test_messages_are_short_and_say_what_takes_arrays():
+    with pytest.raises(InvalidArgumentError, match=r"RigidBody\.from_size takes arrays"):
+        rocking.Block(np.linspace(0.2, 0.4, 1000), 1.6)
+    with pytest.raises(InvalidArgumentError, match=r"\(DataArray\) is not allowed") as caught:
+        rocking.Record(np.ones(3), xr.DataArray(np.linspace(0.1, 0.2, 1000)), "g")
+    assert len(str(caught.value)) < 500
 
 
 def test_real_numbers_of_any_type_are_accepted():

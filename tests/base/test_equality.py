@@ -136,7 +136,7 @@ def test_cubes_are_equal_if_their_files_are(tmp_path):
     for eta in (0.85, 0.9):
         write_dataset(spectrum("sine", restitution=eta, **GRID), tmp_path / f"eta-{eta:.2f}.nc")
     one, other = (rocking.open_cube(tmp_path / "eta-0.85.nc") for _ in range(2))
-    points = {"slenderness": [0.3, 0.5], "frequency_ratio": 5.0, "tolerance": 1.0}
+    points = {"slenderness": [0.3, 0.5], "frequency_ratio": 5.0, "absolute_tolerance": 1.0}
     expected = one.response(**points)  # fills the tables that hold addresses
     copy = pickle.loads(pickle.dumps(one))
     assert isinstance(copy, Cube)

@@ -123,11 +123,13 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     ),
     "thresholds": (
         rocking.thresholds,
-        [{"motion": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "alpha": 0.2, "highest_amplitude": 20.0},
-         {"motion": UPWARDS, "vertical_scale": 1.0, "highest_amplitude": 20.0}
+        [{"motion": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "alpha": 0.2, "highest": 20.0},
+         {"motion": UPWARDS, "vertical_scale": 1.0, "highest": 20.0}
          | {key: value for key, value in OF_RECORD.items() if key != "slenderness"}],
     ),
-    "floor_motion": (rocking.floor_motion, [{"record": RECORD, "periods": 0.5, "tolerance": 0.01, "tail": 1.0}]),
+    "floor_motion": (
+        rocking.floor_motion, [{"record": RECORD, "periods": 0.5, "relative_tolerance": 0.01, "tail": 1.0}],
+    ),
     "fragility": (rocking.fragility, [SUITE]),
     "pulse": (
         lambda **given: rocking.pulse("mavroeidis_papageorgiou", **given), [{"cycles": 2.0}, {"phase": 0.5}],
@@ -154,14 +156,14 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         rocking.identify_free_rocking, [{"time": TRACE[0], "rotation": TRACE[1], "edges": 1, "confidence": 0.9}],
     ),
     "isolated_motion": (
-        rocking.isolated_motion, [{"record": RECORD, "period": 0.5, "damping": 0.1, "tolerance": 0.01}],
+        rocking.isolated_motion, [{"record": RECORD, "period": 0.5, "damping": 0.1, "relative_tolerance": 0.01}],
     ),
     "overturning_boundary": (
         rocking.overturning_boundary, [{"motion": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32}],
     ),
     "peak_response": (
         rocking.peak_response,
-        [{"motion": "sine", "tolerance": 1e-6, "threads": 1} | PROBLEM,
+        [{"motion": "sine", "relative_tolerance": 1e-6, "threads": 1} | PROBLEM,
          {"motion": UPWARDS, "vertical_scale": 1.0, "threads": 1} | OF_RECORD],
     ),
     "SinusoidalPulse": (
@@ -192,7 +194,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     ),
     "survival": (
         rocking.survival,
-        [{"fragility": None, "intensity": [1.0, 2.0], "annual_rate": [1e-2, 1e-3], "years": 10.0}],
+        [{"fragility": None, "hazard": ([1.0, 2.0], [1e-2, 1e-3]), "years": 10.0}],
     ),
     "unexceeded": (rocking.unexceeded, [{"body": BLOCK, "motions": [RECORD], "probability": 0.9}]),
 }  # fmt: skip
@@ -233,9 +235,9 @@ RESULTS = {"suites.PulseFit", "paper.Quantity", "Block.top_displacement", "Equiv
 """What the package makes itself, and functions of its results, which may be nan."""
 
 OPTIONAL = {
-    "alpha", "threads", "tolerance", "time_step", "duration", "samples", "uplift_acceleration", "top_height",
-    "restitution", "scale", "vertical_scale", "highest", "highest_amplitude", "size", "peak_acceleration", "period",
-    "depth", "diameter", "mass_height", "mass", "friction", "pgv",
+    "alpha", "threads", "relative_tolerance", "absolute_tolerance", "time_step", "duration", "samples",
+    "uplift_acceleration", "top_height", "restitution", "scale", "vertical_scale", "highest", "size",
+    "peak_acceleration", "period", "depth", "diameter", "mass_height", "mass", "friction", "pgv",
     "tail",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
@@ -319,12 +321,12 @@ def test_whole_numbers_are_whole(argument):
             assert caught.value.parameter == argument
 
 
-@pytest.mark.parametrize("argument", ["tolerance", "threads"])
+@pytest.mark.parametrize("argument", ["absolute_tolerance", "threads"])
 @pytest.mark.parametrize("wrong", WRONG.values(), ids=WRONG)
 def test_of_cubes_too(argument, wrong, cube):
-    given = {"slenderness": 0.4, "frequency_ratio": 5.0, "tolerance": 1.0, "threads": 1}
+    given = {"slenderness": 0.4, "frequency_ratio": 5.0, "absolute_tolerance": 1.0, "threads": 1}
     value = wrong(given[argument])
-    if value is not None or argument == "tolerance":
+    if value is not None or argument == "absolute_tolerance":
         with pytest.raises(InvalidArgumentError, match=rf"^`{argument}` = "):
             cube.response(**given | {argument: value})
 

@@ -128,7 +128,7 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
     rng = np.random.default_rng(4)
     unlisted = crossings = wrong = 0
     for omega in np.exp(rng.uniform(np.log(0.3), np.log(10.0), 25)):
-        found = rocking.thresholds(pulse, frequency_ratio=omega, **case, highest_amplitude=45.0)
+        found = rocking.thresholds(pulse, frequency_ratio=omega, **case, highest=45.0)
         thresholds = 1 / found.amplitude
         y = np.log(omega)
         for x, impacts in zip(thresholds, found.impacts, strict=True):
@@ -235,7 +235,7 @@ def test_thresholds_separate_the_outcomes(pulse, alpha):
 
 @pytest.mark.parametrize(("pulse", "omega"), [("sine", 4.0), ("half_sine", 3.0), ("rectangular", 3.0)])
 def test_thresholds_and_curves_agree(pulse, omega):
-    found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.85, highest_amplitude=20.0)
+    found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.85, highest=20.0)
     boundary = rocking.overturning_boundary(
         pulse, restitution=0.85, frequency_ratio=(omega / 1.001, omega * 1.001), slenderness=(0.05, 1.0), nodes=33
     )
@@ -258,11 +258,11 @@ def test_thresholds_of_a_block_that_strikes_thousands_of_times():
     assert not outside.overturned.any()
 
 
-def test_thresholds_up_to_the_highest_amplitude_only():
+def test_thresholds_up_to_the_highest_only():
     all_of_them = rocking.thresholds("sine", frequency_ratio=4.0, restitution=0.85)
-    some = rocking.thresholds("sine", frequency_ratio=4.0, restitution=0.85, highest_amplitude=5.0)
+    some = rocking.thresholds("sine", frequency_ratio=4.0, restitution=0.85, highest=5.0)
     np.testing.assert_allclose(some.amplitude, all_of_them.amplitude[:2], rtol=1e-11)
-    none = rocking.thresholds("sine", frequency_ratio=100.0, restitution=0.85, highest_amplitude=2.0)
+    none = rocking.thresholds("sine", frequency_ratio=100.0, restitution=0.85, highest=2.0)
     assert none.amplitude.size == none.overturns_above.size == none.impacts.size == 0
 
 
@@ -294,7 +294,7 @@ def test_wrong_windows(argument, value):
 
 @pytest.mark.parametrize(
     ("argument", "value"),
-    [("frequency_ratio", 0.0), ("restitution", -0.1), ("highest_amplitude", 1.0), ("highest_amplitude", math.inf)],
+    [("frequency_ratio", 0.0), ("restitution", -0.1), ("highest", 1.0), ("highest", math.inf)],
 )
 def test_wrong_thresholds(argument, value):
     with pytest.raises(rocking.InvalidArgumentError, match=argument):

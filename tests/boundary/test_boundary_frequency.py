@@ -87,7 +87,7 @@ def test_thresholds_in_words_and_tables():
     )
     assert found.to_pandas().outcome.tolist() == ["OVERTURNED_AFTER_IMPACT"] * 2 + ["OVERTURNED_DIRECTLY"]
     assert found.to_xarray().amplitude.values.tolist() == found.amplitude.tolist()
-    none = rocking.thresholds("sine", frequency_ratio=9.0, restitution=0.9, highest_amplitude=1.5)
+    none = rocking.thresholds("sine", frequency_ratio=9.0, restitution=0.9, highest=1.5)
     assert repr(none) == "<rocking.Thresholds: no amplitude was found that overturns the block>"
     assert none.to_pandas().empty
 

@@ -86,7 +86,7 @@ def test_pairs_with_vertical_on_a_floor_with_a_hazard_curve(table, tmp_path):
         floor_participation=1.3,
     )
     expected = rocking.assess(rocking.read_objects(table).objects, site, sensitivity=False)
-    for name in ("factor", "share", "yearly_rate"):
+    for name in ("factor", "share", "annual_rate"):
         assert found[name] == [row[name] for row in expected.rows], name
     assert len(found["motions"]) == 12
     assert "--vertical" in refused("assess", str(table), *options, "--vertical", files["z"])

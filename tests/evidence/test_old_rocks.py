@@ -18,13 +18,13 @@ def test_a_rock_that_falls_above_an_intensity_worked_by_hand():
     """H = 1e-3 (2/x)^2 a year: of x > 4 there are 2.5e-4 a year, and none in 10,000 years with exp(-2.5)."""
     x = np.array([1.0, 2.0, 5.0, 20.0])
     rate = 1e-3 * (2.0 / x) ** 2
-    found = survival(STEP, intensity=x, annual_rate=np.stack([rate, 0.1 * rate]), years=1e4)
+    found = survival(STEP, (x, np.stack([rate, 0.1 * rate])), years=1e4)
     np.testing.assert_allclose(found["annual_rate"].sel(model="lognormal"), [2.5e-4, 2.5e-5], rtol=6e-3)
     np.testing.assert_allclose(found["survival"].sel(model="lognormal"), [math.exp(-2.5), math.exp(-0.25)], rtol=2e-2)
-    alone = survival(STEP, intensity=x, annual_rate=rate, years=1e4)
+    alone = survival(STEP, (x, rate), years=1e4)
     assert "branch" not in alone.dims
     xr.testing.assert_allclose(alone["survival"], found["survival"].isel(branch=0))
-    assert survival(STEP, intensity=x, annual_rate=rate, years=0.0)["survival"].item() == 1.0
+    assert survival(STEP, xr.DataArray(rate, {"intensity": x}), years=0.0)["survival"].item() == 1.0
 
 
 def test_pairs_that_overturn_are_those_of_the_thresholds():
@@ -43,8 +43,8 @@ def test_pairs_that_overturn_are_those_of_the_thresholds():
 
 def test_refusals():
     with pytest.raises(InvalidArgumentError, match="years"):
-        survival(STEP, intensity=[1.0, 2.0], annual_rate=[1e-2, 1e-3], years=-1.0)
-    with pytest.raises(InvalidArgumentError, match="annual_rate"):
-        survival(STEP, intensity=[1.0, 2.0], annual_rate=[1e-2, math.nan], years=1.0)
+        survival(STEP, ([1.0, 2.0], [1e-2, 1e-3]), years=-1.0)
+    with pytest.raises(InvalidArgumentError, match="hazard rate"):
+        survival(STEP, ([1.0, 2.0], [1e-2, math.nan]), years=1.0)
     with pytest.raises(InvalidArgumentError, match="four records"):
         unexceeded(rocking.Block(0.4, 1.6), [noise(1), noise(2)])

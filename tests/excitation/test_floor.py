@@ -43,8 +43,8 @@ def test_a_step_of_the_ground_gives_the_closed_form_and_rings_out_after_it():
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
 def test_the_interpolation_error_is_within_the_tolerance(tolerance):
-    floor = floor_motion(GROUND, periods=0.15, tolerance=tolerance, tail=0.5)
-    finest = floor_motion(GROUND, periods=0.15, tolerance=1e-6, tail=0.5)
+    floor = floor_motion(GROUND, periods=0.15, relative_tolerance=tolerance, tail=0.5)
+    finest = floor_motion(GROUND, periods=0.15, relative_tolerance=1e-6, tail=0.5)
     between = np.interp(finest.times, floor.times, floor.acceleration)
     error = np.abs(between - finest.acceleration).max()
     assert error <= 1.05 * tolerance * floor.peak_acceleration
@@ -52,7 +52,7 @@ def test_the_interpolation_error_is_within_the_tolerance(tolerance):
 
 
 def test_a_stiff_structure_follows_the_ground_and_a_soft_one_does_not():
-    stiff = floor_motion(GROUND, periods=1e-3, damping=0.7, tolerance=0.1)
+    stiff = floor_motion(GROUND, periods=1e-3, damping=0.7, relative_tolerance=0.1)
     at_samples = stiff.acceleration[:: round(GROUND.time_step / stiff.time_step)][: GROUND.samples]
     np.testing.assert_allclose(at_samples, GROUND.acceleration, atol=0.02)
     assert isolated_motion(GROUND, period=50.0, damping=0.05).peak_acceleration < 0.02 * GROUND.peak_acceleration
@@ -63,7 +63,7 @@ def test_the_vertical_component_is_passed_through_or_filtered():
     each = round(GROUND.time_step / passed.time_step)
     np.testing.assert_allclose(passed.vertical[::each][: GROUND.samples], GROUND.vertical, rtol=1e-13)
     assert not passed.vertical[GROUND.samples * each :].any()
-    alone = floor_motion(rocking.Record(GROUND.vertical, 0.01, "m/s2"), periods=0.2, tolerance=1e-4)
+    alone = floor_motion(rocking.Record(GROUND.vertical, 0.01, "m/s2"), periods=0.2, relative_tolerance=1e-4)
     ratio = round(filtered.time_step / alone.time_step)
     np.testing.assert_allclose(filtered.vertical, alone.acceleration[::ratio][: filtered.samples], atol=1e-12)
 
@@ -80,5 +80,5 @@ def test_refusals(given):
 
 def test_results_of_too_many_samples_are_refused():
     fine = rocking.Record(GROUND.acceleration, 1e-3, "m/s2")
-    with pytest.raises(InvalidArgumentError, match="tolerance"):
+    with pytest.raises(InvalidArgumentError, match="relative_tolerance"):
         floor_motion(fine, periods=1.0, tail=1e4)

@@ -97,7 +97,7 @@ def test_cube_and_http_response(tmp_path):
     assert int(stored["pulse"]) == -1
     assert stored["pulse"].attrs["pulse_name"] == "three_sines"
     solved = float(rocking.peak_response("three_sines", **GROUPS).peak_rotation)
-    interpolated = open_cube(path).response(**GROUPS, tolerance=1e-2)
+    interpolated = open_cube(path).response(**GROUPS, absolute_tolerance=1e-2)
     assert abs(float(interpolated.peak_rotation) - solved) <= float(interpolated.error_bound)
     precompile.main()  # the service refuses requests while it compiles
     with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
@@ -171,7 +171,7 @@ def test_a_cube_of_a_sampled_pulse_and_http_by_its_name(ramp, tmp_path, monkeypa
     with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
         listed = client.get("/v1/pulses").json()["pulses"][-1]
         assert (listed["name"], listed["duration"]) == ("ramp", 1.0)
-        found = client.get("/v1/response", params=GROUPS | {"pulse": "ramp", "tolerance": 1e-2}).json()
+        found = client.get("/v1/response", params=GROUPS | {"pulse": "ramp", "absolute_tolerance": 1e-2}).json()
         assert found["source"] == "cube"
         assert found["peak_rotation"] == pytest.approx(solved, abs=found["error_bound"])
         for end in ("", ".nc", "/subset", ".zarr/zarr.json", ".zarr/.zmetadata"):

@@ -66,7 +66,7 @@ def test_cells_crossed_by_a_boundary_have_no_stencil(path):
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6])
 def test_outcome_is_correct_and_the_bound_holds(cube, tolerance):
     points = random_points(20_000)
-    found = cube.response(**points, tolerance=tolerance)
+    found = cube.response(**points, absolute_tolerance=tolerance)
     expected = peak_response("sine", **points, restitution=ETA)
     np.testing.assert_array_equal(found.outcome, expected.outcome)
     counted = (found.impacts >= 0) & ~expected.chatter
@@ -109,7 +109,7 @@ def test_method_cube_raises_or_is_correct(cube):
         try:
             found = cube.response(slenderness=s, frequency_ratio=w, method="cube")
         except OutsideCubeError as error:
-            assert error.parameter in ("method", "tolerance")  # noqa: PT017  (many points in one test)
+            assert error.parameter in ("method", "absolute_tolerance")  # noqa: PT017  (many points in one test)
             refused += 1
             continue
         expected = peak_response("sine", slenderness=s, frequency_ratio=w, restitution=ETA)
@@ -126,7 +126,7 @@ def test_method_cube_raises_or_is_correct(cube):
         ({"slenderness": 0.96, "frequency_ratio": 3.0}, "slenderness"),
         ({"slenderness": 0.5, "frequency_ratio": 12.5}, "frequency_ratio"),
         ({"slenderness": 0.5, "frequency_ratio": 3.0, "alpha": 0.3}, "alpha"),
-        ({"slenderness": 0.5, "frequency_ratio": 6.0, "tolerance": 1e-13}, "tolerance"),
+        ({"slenderness": 0.5, "frequency_ratio": 6.0, "absolute_tolerance": 1e-13}, "absolute_tolerance"),
         ({"slenderness": 1 / 1.42727, "frequency_ratio": 3.0}, "method"),  # beside the first golden threshold
     ],
 )
@@ -174,7 +174,7 @@ def test_arguments_broadcast(cube):
         ({"slenderness": np.nan}, "slenderness"),
         ({"slenderness": np.inf}, "slenderness"),
         ({"frequency_ratio": -1.0}, "frequency_ratio"),
-        ({"tolerance": -1e-9}, "tolerance"),
+        ({"absolute_tolerance": -1e-9}, "absolute_tolerance"),
         ({"method": "guess"}, "method"),
     ],
 )
@@ -198,7 +198,9 @@ def test_bound_is_the_measured_error_times_the_safety_factor(cube, path):
     error = stored["interpolation_error"].values[0]
     i, j = np.argwhere(error > 0.0)[100]
     s, w = (stored[name].values for name in ("slenderness", "frequency_ratio"))
-    found = cube.response(slenderness=s[i : i + 2].mean(), frequency_ratio=np.sqrt(w[j] * w[j + 1]), tolerance=1.0)
+    found = cube.response(
+        slenderness=s[i : i + 2].mean(), frequency_ratio=np.sqrt(w[j] * w[j + 1]), absolute_tolerance=1.0
+    )
     assert found.source == "cube"
     assert found.error_bound == pytest.approx(SAFETY * float(error[i, j]) + SOLVER_ERROR, rel=1e-12)
 

@@ -34,7 +34,7 @@ def test_bounds_hold_between_restitutions_and_angles(folder, between_etas, betwe
     points["alpha"] = rng.uniform(ANGLES[0], ANGLES[-1], n) if between_angles else rng.choice(ANGLES, n)
     cube = open_cube(folder)
     for tolerance, share in ((1e-4, 0.6), (1e-6, 0.45)):
-        found = cube.response(**points, tolerance=tolerance)
+        found = cube.response(**points, absolute_tolerance=tolerance)
         expected = peak_response("sine", **points)
         from_cube = found.source == "cube"
         assert from_cube.mean() > share
@@ -58,7 +58,7 @@ def test_impacts_are_known_where_all_corners_have_the_same_number(folder):
         frequency_ratio=columns,
         restitution=0.5 * (ETAS[1] + ETAS[2]),
         alpha=0.5 * (ANGLES[1] + ANGLES[2]),
-        tolerance=1e-2,
+        absolute_tolerance=1e-2,
     )
 
     def all_agree(etas, angles):
@@ -84,7 +84,7 @@ def test_errors_between_slices_are_measured_in_the_middle(tmp_path):
     rows = 0.5 * (fine["slenderness"][1:] + fine["slenderness"][:-1])
     columns = np.sqrt(fine["frequency_ratio"][1:] * fine["frequency_ratio"][:-1])
     points = {"slenderness": rows[:, None], "frequency_ratio": columns, "restitution": 0.75}
-    found = open_cube(tmp_path).response(**points, tolerance=1.0)
+    found = open_cube(tmp_path).response(**points, absolute_tolerance=1.0)
     expected = peak_response("sine", **points)
     between = lower.restitution_error.values[0, :-1, :-1]
     within = np.maximum(*(cube.interpolation_error.values[0, :-1, :-1] for cube in (lower, upper)))
@@ -108,7 +108,7 @@ def test_bounds_hold_at_a_crease_near_a_slice(tmp_path):
     }
     case = {"slenderness": 0.8872271, "frequency_ratio": 14.640226, "restitution": 0.9779474}
     points = {name: np.append(values, case[name]) for name, values in points.items()}
-    found, exact = open_cube(tmp_path).response(**points, tolerance=1e-3), peak_response(pulse, **points)
+    found, exact = open_cube(tmp_path).response(**points, absolute_tolerance=1e-3), peak_response(pulse, **points)
     counts = (found.source == "cube") & ~exact.overturned
     assert counts[:-1].mean() > 0.2
     assert (np.abs(found.peak_rotation - exact.peak_rotation) <= found.error_bound)[counts].all()
@@ -162,7 +162,7 @@ def test_large_intervals_are_not_interpolated(tmp_path, etas, angles, points):
     coarse = {"slenderness": np.linspace(0.3, 0.6, 13), "frequency_ratio": np.geomspace(8.0, 12.0, 13)}
     for cube in spectra("sine", restitution=etas, alpha=angles, **coarse):
         write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
-    cube, place = open_cube(tmp_path), {"slenderness": 0.46, "frequency_ratio": 10.1, "tolerance": 1e-2}
+    cube, place = open_cube(tmp_path), {"slenderness": 0.46, "frequency_ratio": 10.1, "absolute_tolerance": 1e-2}
     assert cube.response(**place, **points).source == "solver"
     assert cube.response(**place, restitution=0.66, alpha=0.0).source == "cube"
     with pytest.raises(OutsideCubeError, match="too far apart"):
@@ -178,7 +178,7 @@ def test_bounds_hold_between_uneven_slices(tmp_path):
     rng, n = np.random.default_rng(3), 20_000
     points = {"slenderness": rng.uniform(0.2, 0.35, n), "frequency_ratio": rng.uniform(9.0, 27.0, n)}
     points |= {"restitution": rng.uniform(0.5, 0.8, n), "alpha": rng.uniform(angles[2], angles[3], n)}
-    found = open_cube(tmp_path).response(**points, tolerance=1e-2)
+    found = open_cube(tmp_path).response(**points, absolute_tolerance=1e-2)
     expected = peak_response("cosine", **points)
     from_cube = found.source == "cube"
     assert from_cube.mean() > 0.5

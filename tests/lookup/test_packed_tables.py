@@ -81,7 +81,8 @@ def test_responses_are_equal_and_the_tables_read_only(results):
     own, shared = CubeCollection(results), collection(results)
     for eta in (0.85, 0.86, 0.853):
         expected, found = (
-            cubes.response("sine", restitution=eta, alpha=0.1, tolerance=1e-2, **POINTS) for cubes in (own, shared)
+            cubes.response("sine", restitution=eta, alpha=0.1, absolute_tolerance=1e-2, **POINTS)
+            for cubes in (own, shared)
         )
         assert found[1] == expected[1]
         for name in ("peak_rotation", "outcome", "impacts", "error_bound", "source"):

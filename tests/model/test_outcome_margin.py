@@ -84,6 +84,6 @@ def test_tolerance_is_kept_near_an_outcome_boundary(pulse, alpha, tolerance):
         beside = threshold.amplitude[:, None] * (1 + np.concatenate([-distance, distance]))
         groups = {"slenderness": 1 / beside.ravel(), "frequency_ratio": omega, "restitution": 0.9, "alpha": alpha}
         exact = rocking.peak_response(pulse, **groups)
-        quick = rocking.peak_response(pulse, **groups, tolerance=tolerance)
+        quick = rocking.peak_response(pulse, **groups, relative_tolerance=tolerance)
         np.testing.assert_array_equal(quick.outcome, exact.outcome)
         np.testing.assert_allclose(quick.peak_rotation, exact.peak_rotation, rtol=tolerance)

@@ -78,7 +78,7 @@ def test_slender_full_sine_against_closed_forms(omega, eta):
 @pytest.mark.parametrize("omega", [1.0, 2.0, 3.0, 7.0])
 def test_overturning_without_impact_of_simple_pulses(pulse, formula, omega):
     for name in (pulse, f"-{pulse}"):
-        found = rocking.thresholds(name, frequency_ratio=omega, restitution=0.85, highest_amplitude=200.0)
+        found = rocking.thresholds(name, frequency_ratio=omega, restitution=0.85, highest=200.0)
         directly = found.outcome == Outcome.OVERTURNED_DIRECTLY
         np.testing.assert_allclose(found.amplitude[directly], [float(formula(omega))], rtol=2e-12 * formula(omega))
 
@@ -114,9 +114,7 @@ def test_full_sine_as_read_off_by_zhang_and_makris_2001():
 def test_rigid_full_sine_by_size(half_diagonal, expected):
     alpha, period = 0.2, 0.5
     omega = 2 * math.pi / period / math.sqrt(0.75 * GRAVITY / half_diagonal)
-    found = rocking.thresholds(
-        "sine", frequency_ratio=omega, restitution=momentum(alpha), alpha=alpha, highest_amplitude=10.0
-    )
+    found = rocking.thresholds("sine", frequency_ratio=omega, restitution=momentum(alpha), alpha=alpha, highest=10.0)
     np.testing.assert_array_equal(found.overturns_above, [True, False, True])
     for amplitude, printed in zip(found.amplitude, expected, strict=True):
         decimals = len(printed.split(".")[1])
@@ -135,9 +133,7 @@ def test_rigid_full_sine_by_size(half_diagonal, expected):
 def test_rigid_cosine_of_makris_and_konstantinidis_2003():
     alpha, p, period = math.radians(15), 2.0, 2.0
     omega = 2 * math.pi / period / p
-    found = rocking.thresholds(
-        "cosine", frequency_ratio=omega, restitution=momentum(alpha), alpha=alpha, highest_amplitude=3.0
-    )
+    found = rocking.thresholds("cosine", frequency_ratio=omega, restitution=momentum(alpha), alpha=alpha, highest=3.0)
     in_g = found.amplitude * math.tan(alpha)
     assert abs(in_g[0] - 0.3150340) <= 0.5001e-7
     assert found.overturns_above[0]

@@ -25,7 +25,7 @@ def test_an_impulse_is_an_initial_velocity_of_free_rocking(name):
     assert (np.abs(error) < 1.3 * np.pi / omega / speed).all()  # the distance moved during the pulse
     assert (found.outcome == Outcome.SAFE).all()
     # overturns when the velocity reaches 1, (3.8), up to the distance moved during the pulse, of the order of 1/omega
-    threshold = rocking.thresholds(name, frequency_ratio=omega, restitution=0.9, highest_amplitude=1e5)
+    threshold = rocking.thresholds(name, frequency_ratio=omega, restitution=0.9, highest=1e5)
     assert velocity_given(name, 1 / threshold.amplitude[0]) / omega == pytest.approx(1.0, rel=3e-4)
 
 
@@ -48,7 +48,7 @@ def test_a_slow_pulse_overturns_every_block_that_uplifts(name, alpha):
 @pytest.mark.parametrize("name", ["sine", "half_sine", "rectangular", "cosine"])
 def test_threshold_of_slow_pulses_tends_to_one(name):
     amplitude = [
-        rocking.thresholds(name, frequency_ratio=omega, restitution=0.5, highest_amplitude=3.0).amplitude[0]
+        rocking.thresholds(name, frequency_ratio=omega, restitution=0.5, highest=3.0).amplitude[0]
         for omega in (0.3, 0.1, 0.03, 0.01)
     ]
     assert (np.diff(amplitude) <= 1e-9).all()

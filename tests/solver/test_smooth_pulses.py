@@ -115,7 +115,7 @@ def test_smooth_pulses_in_every_use():
     assert sides.overturned.tolist() == [False, True]
     assert rocking.overturning_boundary(CHIRP, restitution=0.85, nodes=31).sizes["curve"] > 0
     # with a tolerance
-    coarse = rocking.peak_response(CHIRP, **GROUPS, alpha=0.2, tolerance=1e-6)
+    coarse = rocking.peak_response(CHIRP, **GROUPS, alpha=0.2, relative_tolerance=1e-6)
     assert float(coarse.peak_rotation) == pytest.approx(peak, rel=1e-6)
 
 

@@ -240,7 +240,7 @@ def test_terms_beyond_the_degree_are_not_used(pulse, monkeypatch):
     rng, n = np.random.default_rng(5), 4000
     groups = {"slenderness": rng.uniform(0.05, 0.99, n), "frequency_ratio": rng.uniform(0.3, 8.0, n)}
     groups |= {"restitution": rng.uniform(0.3, 0.95, n), "alpha": rng.uniform(0.05, 0.6, n)}
-    clean = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
+    clean = rocking.peak_response(pulse, **groups, relative_tolerance=1.25e-5)
 
     def spoilt(flight, precision):
         steps = step_state(flight, precision)
@@ -252,6 +252,6 @@ def test_terms_beyond_the_degree_are_not_used(pulse, monkeypatch):
 
     monkeypatch.setattr("rocking._solver.peak_response.step_state", spoilt)
     monkeypatch.setattr("rocking._solver.peak_response.solver_state", SolverState())
-    found = rocking.peak_response(pulse, **groups, tolerance=1.25e-5)
+    found = rocking.peak_response(pulse, **groups, relative_tolerance=1.25e-5)
     for name in ("peak_rotation", "outcome", "impacts", "end_rotation", "end_velocity"):
         np.testing.assert_array_equal(getattr(found, name), getattr(clean, name))

@@ -83,7 +83,7 @@ def test_scale_of_a_sampled_pulse_is_its_critical_amplitude():
 def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     record = sampled("sine", 4.0, samples=8000)
     exact = rocking.thresholds(
-        "sine", frequency_ratio=4.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha, highest_amplitude=10.0
+        "sine", frequency_ratio=4.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha, highest=10.0
     )
     found = scale_thresholds(record, BLOCK)
     np.testing.assert_allclose(

@@ -183,7 +183,7 @@ def block_thresholds(
         frequency_ratio=float(groups.frequency_ratio),
         restitution=restitution,
         alpha=block.alpha,
-        highest_amplitude=HIGHEST,
+        highest=HIGHEST,
     )
     at_threshold = Groups(groups.frequency_ratio, 1 / found.amplitude, groups.cos_alpha)
     problem = problem_of_block(at_threshold, GroupSet.RIGID, alpha=block.alpha, frequency_parameter=p)

@@ -148,4 +148,4 @@ def _deliver(group: list[PendingRequest], outcomes: Sequence[PointResult | Excep
 
 def _group_key(params: ResponseParams) -> Hashable:
     """Requests with equal keys can be evaluated by one call; one restitution, so that one data set serves them."""
-    return params.pulse, params.restitution, params.alpha_deg, params.method, params.tolerance
+    return params.pulse, params.restitution, params.alpha_deg, params.method, params.absolute_tolerance

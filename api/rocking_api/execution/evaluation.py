@@ -75,7 +75,7 @@ def evaluate(
         frequency_ratio=check(FREQUENCY_RATIO, frequency_ratio),
         restitution=restitution,
         alpha=alpha_of(options.alpha_deg),
-        tolerance=options.tolerance,
+        absolute_tolerance=options.absolute_tolerance,
         method=options.method,
         stop=stop,
     )

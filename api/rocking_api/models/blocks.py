@@ -11,7 +11,7 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import in_range
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Method, Params, PulseName, TableFormat, Tolerance, check_value
+from rocking_api.models.params import AbsoluteTolerance, Method, Params, PulseName, TableFormat, check_value
 from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import BY_SOLVER, PointResponse
 
@@ -85,7 +85,7 @@ class BlockParams(Params):
     )
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
-    tolerance: Tolerance = 1e-4
+    absolute_tolerance: AbsoluteTolerance = 1e-4
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:

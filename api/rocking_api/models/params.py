@@ -70,7 +70,7 @@ Method = Annotated[
     Literal["auto", "cube", "solver"],
     Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
 ]
-Tolerance = Annotated[
+AbsoluteTolerance = Annotated[
     float,
     Field(description="largest absolute error of an interpolated peak_rotation [-]", json_schema_extra={"minimum": 0}),
 ]
@@ -134,7 +134,7 @@ class LookupOptions(Params):
     pulse: PulseName
     alpha_deg: AlphaDeg = None
     method: Method = "auto"
-    tolerance: Tolerance = 1e-4
+    absolute_tolerance: AbsoluteTolerance = 1e-4
 
 
 class ResponseParams(LookupOptions):
@@ -208,8 +208,8 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "frequency_ratio": partial(check, FREQUENCY_RATIO),
     "restitution": partial(check, RESTITUTION),
     "alpha_deg": alpha_of,
-    "tolerance": partial(in_range, "tolerance", low=0.0, high=np.inf, closed="left"),
-    "highest_amplitude": partial(in_range, "highest_amplitude", low=1.0, high=1e6, closed="right"),
+    "absolute_tolerance": partial(in_range, "absolute_tolerance", low=0.0, high=np.inf, closed="left"),
+    "highest": partial(in_range, "highest", low=1.0, high=1e6, closed="right"),
     "duration": partial(in_range, "duration", low=0.0, high=MAX_DURATION, closed="right"),
     "samples": partial(in_range, "samples", low=2, high=1_000_000),
     "points": partial(in_range, "points", low=2, high=np.inf, closed="left"),

@@ -208,7 +208,7 @@ def _point(service: Service, params: BlockParams, problem: BlockProblem, stop: S
     dimensionless = ResponseParams(
         pulse=params.pulse,
         method=params.method,
-        tolerance=params.tolerance,
+        absolute_tolerance=params.absolute_tolerance,
         alpha_deg=math.degrees(groups["alpha"]),
         slenderness=groups["slenderness"],
         frequency_ratio=groups["frequency_ratio"],

@@ -70,8 +70,8 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
 async def post_response(request: Request, service: ServiceDep) -> Response:
     """Arrays as JSON, CSV or netCDF-3; the response has the same format, or that of the Accept header.
 
-    With CSV and netCDF-3, `pulse`, `method`, `tolerance`, `alpha_deg` and any of the three groups that the body does
-    not hold are query parameters.
+    With CSV and netCDF-3, `pulse`, `method`, `absolute_tolerance`, `alpha_deg` and any of the three groups that the
+    body does not hold are query parameters.
     """
     given = body_form(request)
     form = negotiated_form(request, None, default=given)

@@ -28,7 +28,7 @@ class AmplitudeParams(Params):
     frequency_ratio: FrequencyRatio
     restitution: Restitution
     alpha_deg: AlphaDeg = None
-    highest_amplitude: float = Field(
+    highest: float = Field(
         100.0,
         description="largest a = a_g/(g tan alpha) searched [-]",
         json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6},
@@ -87,7 +87,7 @@ def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
         frequency_ratio=params.frequency_ratio,
         restitution=params.restitution,
         alpha=alpha_of(params.alpha_deg),
-        highest_amplitude=params.highest_amplitude,
+        highest=params.highest,
         stop=stop,
     )
     listed = _thresholds(found)

@@ -34,7 +34,7 @@ def floor_motion(
     damping: ArrayLike = 0.05,
     participation: ArrayLike = 1.0,
     vertical: Literal["pass", "filter"] = "pass",
-    tolerance: Scalar = 1e-3,
+    relative_tolerance: Scalar = 1e-3,
     tail: Scalar | None = None,
 ) -> Record:
     """Absolute acceleration of a floor of a linear structure, which starts at rest.
@@ -57,7 +57,7 @@ def floor_motion(
         Participation factor times mode shape at the floor, Gamma_n [-], [-100, 100].
     vertical : {"pass", "filter"}
         Whether the floor has the vertical acceleration of the ground, or that of the same modes.
-    tolerance : float
+    relative_tolerance : float
         Largest interpolation error of the result over its peak acceleration [-], [1e-6, 0.1]. The step of the result is
         that of the record over a power of two, the largest at which the error, measured against the exact acceleration
         in the middle of every step, is not above it. The `source` of the result states step and error. Not counted is
@@ -91,7 +91,7 @@ def floor_motion(
         raise InvalidArgumentError("periods", period.shape, "one dimension, one period or more")
     modes = 2.0 * math.pi / period, zeta, gamma
     one_of("vertical", vertical, ("pass", "filter"))
-    allowed = number("tolerance", tolerance, 1e-6, 0.1)
+    allowed = number("relative_tolerance", relative_tolerance, 1e-6, 0.1)
     after = TAIL_PERIODS * float(period.max()) if tail is None else number("tail", tail, 0.0, 1e4, unit="s")
     parts = 1
     while True:
@@ -99,7 +99,7 @@ def floor_motion(
         extra = math.ceil(after / step)
         if step < TIME_STEP[0] or record.samples * parts + extra > MAX_SAMPLES:
             raise InvalidArgumentError(
-                "tolerance",
+                "relative_tolerance",
                 allowed,
                 f"more: a step of {step:g} s over {record.duration + after:g} s is not fine enough",
             )
@@ -125,7 +125,7 @@ def isolated_motion(
     period: Scalar,
     damping: Scalar,
     vertical: Literal["pass", "filter"] = "pass",
-    tolerance: Scalar = 1e-3,
+    relative_tolerance: Scalar = 1e-3,
 ) -> Record:
     """Absolute acceleration above a linear base isolation: `floor_motion` of one mode that takes the whole mass.
 
@@ -137,7 +137,7 @@ def isolated_motion(
         Of the isolated structure [s], [1e-3, 100].
     damping : float
         Ratio zeta [-], [0, 1).
-    vertical, tolerance
+    vertical, relative_tolerance
         As for `floor_motion`.
 
     Raises
@@ -147,7 +147,7 @@ def isolated_motion(
     """
     one = number("period", period, *PERIODS, unit="s")
     zeta = number("damping", damping, 0.0, 1.0, closed="left")
-    return floor_motion(record, periods=one, damping=zeta, vertical=vertical, tolerance=tolerance)
+    return floor_motion(record, periods=one, damping=zeta, vertical=vertical, relative_tolerance=relative_tolerance)
 
 
 def _refined(a: Array, parts: int) -> Array:

@@ -67,7 +67,7 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
     groups["alpha"] = groups.get("alpha") or None
     slenderness = groups.pop("slenderness")
     amplitude = 1.0 / slenderness
-    edges = thresholds(pulse, **groups, highest_amplitude=max(12.0, 2.0 * amplitude)).amplitude
+    edges = thresholds(pulse, **groups, highest=max(12.0, 2.0 * amplitude)).amplitude
     top = max(2.0 * amplitude, 1.1 * edges[0] if edges.size else 0.0, 1.2)
     beside = (edges[:, None] * (1.0 + BESIDE * np.array([-1.0, 1.0]))).ravel()
     a = np.union1d(np.linspace(top / SAMPLES, top, SAMPLES), beside[beside < top])

@@ -45,8 +45,8 @@ def read_record(
     path : str or path
         The file.
     unit : str, optional
-        Unit of the samples, a key of `rocking._excitation.records.record.UNITS`. Required where the file states none;
-        refused where it states another.
+        Unit of the samples: "m/s2", "cm/s2", "gal", "mm/s2", "g", "in/s2" or "ft/s2". Required where the file states
+        none; refused where it states another.
     time_step : float, optional
         Time step [s], [1e-6, 10]; likewise.
     component : str, optional
@@ -131,7 +131,7 @@ def parse_record(
     try:
         upwards = _parsed(content, name, unit, time_step, vertical, stop)
     except RecordFileError as error:
-        raise InvalidArgumentError("vertical", vertical, f"a component of {name} ({error})") from None
+        raise InvalidArgumentError("vertical", vertical, f"a file, or a component of {name} ({error})") from None
     return _with_vertical(found, upwards)
 
 
