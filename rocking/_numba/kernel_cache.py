@@ -81,7 +81,11 @@ def cache_folder() -> str | None:
 
 
 def kernel_digest(sources: SourceTree) -> str:
-    """Digest of what compiled code depends on: processor, Python, numba, and the kernel files with their imports."""
+    """Digest of what compiled code depends on: processor, Python, numba, and the kernel files with their imports.
+
+    The processor is that of the machine, or the one that NUMBA_CPU_NAME and NUMBA_CPU_FEATURES name: the folder is then
+    found on every machine.
+    """
     compiled = [path for path in sources.package() if _is_compiled(sources, path)]
     return _digest(sources, sources.files(*compiled))
 
@@ -177,9 +181,11 @@ def _is_compiled(sources: SourceTree, path: Path) -> bool:
 
 
 def _digest(sources: SourceTree, files: Iterable[Path]) -> str:
-    processor = binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
+    config: Any = numba.config
+    name = binding.get_host_cpu_name() if config.CPU_NAME is None else config.CPU_NAME
+    features = binding.get_host_cpu_features().flatten() if config.CPU_FEATURES is None else config.CPU_FEATURES
     way = "plain" if INTERNALS is None else "faster"
-    made_by = sys.version, numba.__version__, way, *processor, sources.digest_of(files)
+    made_by = sys.version, numba.__version__, way, name, features, sources.digest_of(files)
     return hashlib.sha256("\n".join(made_by).encode()).hexdigest()[:16]
 
 

@@ -1,6 +1,7 @@
 """Machine code on disk: found again by other processes, made again where it is damaged, done without if need be."""
 
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -102,6 +103,19 @@ def test_processes_that_start_together_compile_and_load_without_a_warning(run):
     code = f"import os, time\nfor _ in range(2): os.fork()\n{CALL}"
     assert [line.split()[2] for line in run(code).splitlines()] == ["0"] * 4
     assert run().split() == ["1", "0", "0"]
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_machine_code_of_a_named_processor_is_found_on_another_machine(run, named, monkeypatch):
+    """Without a name another processor compiles again."""
+    level = "x86-64" if platform.machine() == "x86_64" else "generic"
+    if named:
+        monkeypatch.setenv("NUMBA_CPU_NAME", level)
+        monkeypatch.setenv("NUMBA_CPU_FEATURES", "")
+    assert run().split() == ["0", "1", "0"]
+    other = f"from llvmlite import binding\nbinding.get_host_cpu_name = lambda: {level!r}\n"
+    (run.kept.parent / "sitecustomize.py").write_text(other)
+    assert run().split() == (["1", "0", "0"] if named else ["0", "1", "0"])
 
 
 @pytest.mark.parametrize(("file", "damage"), [("index", truncated), ("machine code", flipped)])

@@ -79,10 +79,20 @@ def test_container_installs_what_has_the_hashes_of_the_lock(tmp_path):
 
 def test_base_of_the_container_may_be_named_by_its_digest():
     assert [line.split()[0] for line in instructions("FROM")] == ["${BASE}", "${BASE}"]
-    assert [line.partition("=")[0] for line in instructions("ARG")] == ["BASE"]
+    assert instructions("ARG")[0].startswith("BASE=")
     for text in (CONTAINER, (ROOT / "docs" / "deploy.md").read_text()):
         assert "--build-arg BASE=docker.io/library/python@sha256:" in text
         assert "podman image inspect --format '{{index .RepoDigests 0}}'" in text
+
+
+def test_kernels_of_the_container_may_be_of_a_named_level_of_processors():
+    """numba reads the two variables while the kernels are made and in the container that loads them."""
+    build = CONTAINER.rpartition("FROM ${BASE}")[0]
+    names = instructions("ARG")[1:]
+    assert names == ["NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"]  # without a value: those of the machine
+    assert all(build.index(f"ARG {name}") < build.index("rocking.precompile") for name in names)
+    text = (ROOT / "docs" / "deploy.md").read_text()
+    assert all(re.search(rf"{option} {name}=", text) for name in names for option in ("--build-arg", "--env"))
 
 
 def test_container_starts_the_service():
