@@ -62,6 +62,8 @@ def _memory_limit(arguments: Sequence[str]) -> list[str]:
     """The option of Snakemake that keeps the memory of all jobs together below a share of that of this machine."""
     if any(argument.partition("=")[0] in ("--resources", "--res", "--workflow-profile") for argument in arguments):
         return []  # another engine has its own limits
+    if "SC_PHYS_PAGES" not in os.sysconf_names:
+        return []  # POSIX does not have this name
     megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") * MEMORY_SHARE / 1e6
     return [f"--resources=mem_mb={megabytes:.0f}"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import tempfile
@@ -28,13 +29,16 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
     port : int
         Port to listen on, 0 to 65535; 0 takes a free one.
     workers : int
-        Number of processes that serve, >= 1.
+        Number of processes that serve, >= 1; more than one where processes can be forked, not on Windows.
 
     Raises
     ------
     typer.Exit
         With code 2 if a setting is not allowed; the message names it.
     """
+    if workers > 1 and "fork" not in multiprocessing.get_all_start_methods():
+        typer.echo(f"Error: --workers = {workers} is not allowed; allowed: 1 on a system that cannot fork", err=True)
+        raise typer.Exit(2)
     given: dict[str, Any] = {} if results is None else {"results": results}
     try:
         settings = Settings(**given)

@@ -134,7 +134,7 @@ def _return_freed_memory() -> None:
     By default it raises that threshold to 32 MB and keeps freed memory. Twenty clients that requested 500,000 points
     each and read nothing add at most 73 to 125 MB rather than 138 to 201 MB, and 42 to 49 MB of it remain.
     """
-    with suppress(OSError, AttributeError):  # another C library
+    with suppress(OSError, AttributeError, TypeError):  # another C library; on Windows None names none
         for parameter in (M_TRIM_THRESHOLD, M_MMAP_THRESHOLD):
             ctypes.CDLL(None).mallopt(parameter, LARGE_BLOCK)
 
