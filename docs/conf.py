@@ -76,11 +76,12 @@ warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive") 
 html_theme = "furo"
 html_theme_options = {
     "announcement": '<a href="/">Explorer and other pages of the service</a>'
-}  # which serves the guide
+}  # which serves the guide; elsewhere guide.js and guide.css leave it out
 html_title = f"rocking {release}"
 html_baseurl = f"{GUIDE_URL}/{'.'.join(release.split('.')[:2])}/" if GUIDE_URL else ""  # of this version, for ever
 html_static_path = ["_static"]
 html_favicon = "_static/icon.svg"
 html_css_files = ["guide.css"]
+html_js_files = ["guide.js"]
 html_show_sourcelink = False
 html_copy_source = False

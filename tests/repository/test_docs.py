@@ -54,6 +54,9 @@ PICTURES = {
 }  # fmt: skip
 """Pictures that each example draws."""
 
+ABOVE = r'<a [^>]*href="(/[^"]*)"'
+"""A link to an address of the host, not of the guide."""
+
 LOADED = re.compile(r'<(?:script|link(?! rel="canonical")|img)[^>]*?(?:src|href)="(https?://[^"]+)"')
 """Addresses of other hosts that a page loads."""
 
@@ -186,6 +189,9 @@ def test_guide_builds_without_warning(tmp_path):
     assert "--format csv holds" in (target / "reference/command.html").read_text()  # no dash
     loaded = [(page.name, url) for page in target.rglob("*.html") for url in re.findall(LOADED, page.read_text())]
     assert loaded == []  # nothing comes from other hosts
+    above = [(page.name, url) for page in target.rglob("*.html") for url in re.findall(ABOVE, page.read_text())]
+    assert {url for _, url in above} == {"/"}  # a site without the service leaves it out: guide.js
+    assert [page.name for page in target.rglob("*.html") if "_static/guide.js" not in page.read_text()] == []
     (outside,) = re.findall(r'<link rel="canonical" href="([^"]*)"', (target / "concepts.html").read_text())
     assert outside == f"https://guide.example/{rocking.__version__.rpartition('.')[0]}/concepts.html"
     listed = re.findall(r"^- \[.+\]\((.+)\): \S", (target / "llms.txt").read_text(), re.MULTILINE)
