@@ -279,6 +279,15 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
     return [list(map(_cell_text, row)) for row in frame.to_numpy().tolist()]
 
 
+def csv_of_sheet(raw: bytes, argument: str) -> str:
+    """The first sheet of a file as text with semicolons, whose numbers `read_csv` takes as they are in the sheet."""
+    text = io.StringIO()
+    rows = csv.writer(text, delimiter=";", lineterminator="\n")
+    for row in rows_of_sheet(raw, argument):  # 1.250, with three decimals, could be 1250
+        rows.writerow([f"{cell}0" if isinstance(cell, _Exact) and cell[-4:-3] == "." else cell for cell in row])
+    return text.getvalue()
+
+
 class _Exact(str):
     """A number of a sheet, whose decimal sign is a point whatever the texts of the table have."""
 

@@ -8,6 +8,7 @@ import pytest
 
 import rocking
 from rocking._assessment.columns import VERDICTS
+from rocking._assessment.tables import objects_of_csv
 from tests.api.conftest import assert_problem
 from tests.sheets import xlsx_bytes
 
@@ -83,6 +84,7 @@ def test_files_are_read_as_text(client):
 
 
 def test_a_sheet_becomes_text_with_its_cells(client):
-    content = xlsx_bytes([["object", "width [cm]", "height [cm]"], ["vase", 22, 55.5]])
+    content = xlsx_bytes([["object", "width [cm]", "height [cm]"], ["vase", 22, 55.5], ["jug", 20, 40.125]])
     text = client.post("/objects/text?name=a.xlsx", content=content).text
-    assert text.splitlines() == ["object;width [cm];height [cm]", "vase;22;55.500000000"]
+    assert text.splitlines() == ["object;width [cm];height [cm]", "vase;22;55.5", "jug;20;40.1250"]
+    assert [one.height for one in objects_of_csv(text).objects] == [0.555, 0.40125]

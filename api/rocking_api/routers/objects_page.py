@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import zipfile
 from datetime import UTC, datetime
@@ -19,7 +18,7 @@ from rocking._assessment.result import Assessment
 from rocking._assessment.site import Site
 from rocking._assessment.tables import ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.table_reader import SHEETS, rows_of_sheet, text_of
+from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
@@ -92,12 +91,9 @@ def _text(raw: bytes, ending: str) -> str:
     if size > MAX_SHEET:
         raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
     try:
-        rows = rows_of_sheet(raw, "table")
+        return csv_of_sheet(raw, "table")
     except ImportError as error:
         raise UnsupportedBodyError("table", ending, f"CSV, because this service cannot read sheets: {error}") from None
-    text = io.StringIO()
-    csv.writer(text, delimiter=";", lineterminator="\n").writerows(rows)
-    return text.getvalue()
 
 
 async def _form(request: Request, service: Service) -> dict[str, str]:
