@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -73,12 +74,19 @@ def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.fl
 
 def _mesh(path: str | Path) -> trimesh.Trimesh:
     try:
-        mesh = trimesh.load_mesh(Path(path), process=True)
+        status = Path(path).stat()
+        mesh = _loaded(Path(path), status.st_mtime_ns, status.st_size)
     except Exception as error:  # noqa: BLE001  (each format has its own errors)
         raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
     if not len(mesh.vertices) or not abs(mesh.volume) > 0.0:
         raise InvalidArgumentError("path", str(path), "a mesh that encloses a volume")
     return mesh
+
+
+@lru_cache(maxsize=1)
+def _loaded(path: Path, _changed: int, _size: int) -> trimesh.Trimesh:
+    """The mesh of a file, kept for the other directions: loading it and its inertia take most of the time."""
+    return trimesh.load_mesh(path, process=True)
 
 
 def _horizontal(direction: float) -> NDArray[np.float64]:
