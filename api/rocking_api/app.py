@@ -81,7 +81,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     cubes = CubeCollection(settings.results, settings.cache)
     service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
     # data sets are compressed already, and a compressed response has no ranges
-    binary = ("application/x-netcdf", "application/octet-stream")
+    binary = ("application/x-netcdf", "application/octet-stream", "application/zip")
     app.add_middleware(  # counts before compression
         MemoryBudgetMiddleware, budget=service.memory_budget, seconds=settings.reading_seconds
     )

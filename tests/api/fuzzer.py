@@ -95,6 +95,7 @@ PAGES = [
     "/ready",
     "/metrics",
     "/v1/datasets",
+    "/v1/datasets.zip",
     "/static/explorer/main.js",
     "/static/",
 ]

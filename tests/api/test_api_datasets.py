@@ -2,6 +2,8 @@
 
 import base64
 import hashlib
+import io
+import zipfile
 
 import pytest
 
@@ -53,6 +55,25 @@ def test_description_lists_dimensions_variables_and_attributes(client):
     assert described["variables"]["outcome"]["attributes"]["flag_values"] == [0, 1, 2, 3]
     assert described["coordinates"]["restitution"]["shape"] == []
     assert "CF-1.11" in described["attributes"]["Conventions"]
+
+
+def test_the_archive_holds_every_sound_file_and_its_checksum(own_results):
+    (own_results / "overturning/sine/eta-0.85.nc").write_bytes(b"no netCDF")
+    sound = NAMES - {"overturning/sine/eta-0.85"}
+    with client_of(own_results) as client:
+        response = client.get("/v1/datasets.zip", headers={"accept-encoding": "gzip"})
+        assert client.get("/v1/datasets.zip").content == response.content
+    assert response.headers["content-type"] == "application/zip"
+    assert "content-encoding" not in response.headers
+    with zipfile.ZipFile(io.BytesIO(response.content)) as found:
+        assert found.testzip() is None
+        lines = found.read("SHA256SUMS").decode().splitlines()
+        listed = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
+        assert set(found.namelist()) - {"SHA256SUMS"} == set(listed) == {f"{name}.nc" for name in sound}
+        for name, digest in listed.items():
+            stored = (own_results / name).read_bytes()
+            assert found.read(name) == stored
+            assert digest == hashlib.sha256(stored).hexdigest()
 
 
 def test_download_carries_its_digest(client, content):

@@ -196,6 +196,7 @@ def test_openapi_describes_every_route(client):
         "/v1/datasets/{name}/subset",
         "/v1/thresholds",
         "/v1/datasets",
+        "/v1/datasets.zip",
         "/v1/datasets/{name}",
         "/v1/datasets/{name}.nc",
         "/v1/datasets/{name}.zarr/{key}",

@@ -11,13 +11,16 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.exceptions import HTTPException
+from starlette.responses import StreamingResponse
 
 from rocking._base.errors import DatasetError
-from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError
+from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError, version_of
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
+from rocking_api.http.dataset_archive import archive
 from rocking_api.http.dataset_summaries import Summary
 from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
+from rocking_api.http.memory_budget import reservation_of
 from rocking_api.http.params_route import ParamsRoute
 from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, Link, VariableDescription
 from rocking_api.service import Service, ServiceDep
@@ -44,6 +47,27 @@ async def get_datasets(request: Request, service: ServiceDep) -> Response:
     summaries = await service.run_io(work)
     catalogue = DatasetCatalogue(datasets=[DatasetSummary(**_summary(summary)) for summary in summaries])
     return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
+
+
+@router.get(
+    ".zip",
+    summary="All data sets in one archive",
+    response_class=Response,
+    responses={200: {"content": {"application/zip": {}}}},
+)
+async def get_archive(request: Request, service: ServiceDep) -> Response:
+    """The netCDF files of all data sets that can be read, and their SHA256SUMS."""
+    catalogue = service.cubes.catalogue
+
+    def work() -> tuple[list[str], int]:
+        names = catalogue.names()
+        versions = (version_of(catalogue.results / f"{name}.nc") for name in names)
+        return names, max((version.size for version in versions if version is not None), default=0)
+
+    names, largest = await service.run_io(work)
+    reservation_of(request).add(largest)
+    headers = {"Content-Disposition": 'attachment; filename="rocking-data.zip"', "Cache-Control": REVALIDATE}
+    return StreamingResponse(archive(catalogue, names), media_type="application/zip", headers=headers)
 
 
 @router.head("/{name:path}.nc", include_in_schema=False)

@@ -26,6 +26,7 @@ async function show() {
     }
     const kinds = [...new Set([...Object.keys(GROUPS), ...datasets.map(({ kind }) => kind)])];
     groups.replaceChildren(...kinds.map(group).filter(Boolean));
+    document.getElementById("archive").textContent = `All as one archive, ${sizeOf(datasets)}`;
     select();
   } catch (problem) {
     setStatus(status, problem, show);
@@ -75,17 +76,22 @@ function centre({ slenderness: [low, high], frequency_ratio: [from, to] }) {
   return new URLSearchParams([...texts, ["format", "csv"]]);
 }
 
+/** The ranges of the axes, each in one line. */
 function extent({ extent: ranges }) {
-  return Object.entries(ranges)
-    .map(([name, ends]) => {
-      const texts = ends.map((end) => (name === "alpha" ? `${number(end * DEGREES)}°` : number(end)));
-      return `${SYMBOLS[name]} ${texts.join(" to ")}`;
-    })
-    .join("; ");
+  const parts = Object.entries(ranges).map(([name, ends]) => {
+    const texts = new Set(ends.map((end) => (name === "alpha" ? `${number(end * DEGREES)}°` : number(end))));
+    return element("span", `${SYMBOLS[name]} ${[...texts].join(" to ")}`);
+  });
+  return element("span", parts, { class: "extent" });
 }
 
 function size(bytes) {
   return bytes < 1e6 ? `${number(bytes / 1e3)} kB` : `${number(bytes / 1e6)} MB`;
+}
+
+/** The size of several data sets. */
+function sizeOf(several) {
+  return size(several.reduce((sum, one) => sum + one.size, 0));
 }
 
 /** The data sets that the filters leave. */
@@ -99,8 +105,7 @@ function select() {
   const left = chosen();
   for (const one of datasets) one.row.hidden = !left.includes(one);
   for (const section of groups.children) section.hidden = !section.querySelector("tbody tr:not([hidden])");
-  const bytes = left.reduce((sum, one) => sum + one.size, 0);
-  setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${size(bytes)}` : "There is no data set yet: make reproduce makes them.");
+  setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${sizeOf(left)}` : "There is no data set yet: make reproduce makes them.");
 }
 
 document.getElementById("sums").addEventListener("click", () => {
