@@ -33,6 +33,13 @@ export function marginOf({ margin }) {
   return margin ? asSentence(margin) : "";
 }
 
+/** The outcome under the second horizontal component, and which of the two overturns it first. */
+export function secondOutcome(found, first) {
+  const [own, other] = [found, first].map(({ overturning_scale: from }) => from ?? Infinity);
+  const order = own < other ? " It is the worse of the two." : own > other ? " It is the milder of the two." : "";
+  return `Under the second component, ${found.query.component}: ${verdict(found)} ${marginOf(found)}${order}`;
+}
+
 /** That the record does not determine the peak, in a sentence; empty where it does. */
 export function doubtOf({ peak_is_determined: determined, amplification }) {
   const by = amplification === null ? "" : ` (amplification ${number(amplification, 2)})`;
@@ -56,7 +63,10 @@ function sentence(found) {
 /** Facts about the block: pairs of term and value. */
 export function ofBlock(found) {
   const friction = found.friction_demand;
+  const { peak_is_determined: determined, amplification } = found;
+  const follows = determined && amplification !== null ? [["With 1 % more of the record the rotation changes by", `${number(amplification, 2)} %`]] : [];
   return [
+    ...follows,
     ["Uplifts at", acceleration(found.uplift_acceleration)],
     ["Coefficient of restitution", number(found.restitution, 4)],
     ["Friction coefficient required to prevent sliding", friction === null ? "it lifts off" : number(friction, 2)],

@@ -36,12 +36,21 @@ export function drawScales(found, answer) {
   caption.textContent = readout(found, answer, null);
 }
 
+/** Mark on the bar below the slider, from 0.1 to 10, the factors that overturn the block; null clears it. */
+export function markFactors(found) {
+  const place = (factor) => `${(50 + 50 * Math.log10(factor)).toFixed(2)}%`;
+  const colour = (overturns) => (overturns ? "var(--wrong)" : "transparent");
+  const stops = (found?.thresholds ?? []).flatMap((one) => [!one.overturns_above, one.overturns_above].map((on) => `${colour(on)} ${place(one.scale)}`));
+  const last = found?.thresholds.at(-1)?.overturns_above ? `, var(--wrong) ${place(found.scale.at(-1))}, transparent 0` : "";
+  document.getElementById("factor-marks").style.background = stops.length ? `linear-gradient(to right, ${stops.join()}${last})` : "";
+}
+
 function readout(found, answer, at) {
   if (at !== null && at !== undefined) {
     const peak = found.overturned[at] ? "overturns" : `peak ${number(found.peak_rotation[at])} α`;
     return `Factor ${number(found.scale[at])}, ${number(found.peak_acceleration[at] / 9.80665)} g: ${peak}`;
   }
-  return `${changes(found)} Hatched: the block overturns; dashed: the factor ${number(answer.query.scale)}.`;
+  return `${changes(found)} Hatched: the block overturns; dashed: the factor ${number(answer.query.scale)}. The slider has a red bar below these factors.`;
 }
 
 /** Every factor at which the outcome changes, in words. */

@@ -2,19 +2,21 @@
 
 import { file as fileOf, send } from "./api.js";
 import { chartsReady } from "./chart.js";
+import { joined } from "./components.js";
 import { onDrop } from "./drop.js";
 import { drawMotion } from "./motion_charts.js";
 import { number } from "./labels.js";
-import { clearErrors, element } from "./page.js";
+import { clearErrors, element, setStatus } from "./page.js";
 import { pane } from "./pane.js";
 import { unload } from "./player.js";
-import { showRecordAnswer } from "./record_answer.js";
+import { secondOutcome, showRecordAnswer } from "./record_answer.js";
 import { drawPulse } from "./record_pulse.js";
-import { changes, drawScales } from "./record_scales.js";
+import { changes, drawScales, markFactors } from "./record_scales.js";
 import { onChange, refresh } from "./state.js";
 import { toSI } from "./units.js";
 
 const SAMPLES = 4000;
+const STATED = ["unit", "time_step", "component", "vertical", "baseline_order"]; // what the file does not state
 
 const form = document.getElementById("record");
 const input = document.getElementById("file");
@@ -22,6 +24,7 @@ const factor = document.getElementById("factor");
 const report = document.getElementById("open-report");
 
 let file = null;
+let takes = 0; // number of times that files were taken; the last ones count
 let answer = null; // the response, from which the views take the size of the block
 let margins = "Not computed."; // factors at which the outcome changes, in words
 
@@ -34,9 +37,13 @@ const motion = view("motion", "motion-status", "Computing the time history …",
   if (history) drawMotion(inGroups(history), { size: sizeOf(answer), alpha_deg: answer.alpha_deg, note: noteOf(answer) });
   else unload();
 });
+const other = view("second-answer", "second-status", "Computing the second component …", (found) => {
+  document.querySelector("#second-answer p").textContent = found ? secondOutcome(found, answer) : "";
+});
 const scales = view("scales", "scales-status", "Computing other factors …", (found) => {
   margins = found ? changes(found) : "Not computed.";
   if (found) drawScales(found, answer);
+  markFactors(found);
 });
 const pulse = view("pulse", "pulse-status", "Fitting a pulse …", (found) => found && drawPulse(found));
 
@@ -52,18 +59,20 @@ async function show(_, all = true) {
   if (!file) return;
   const power = Math.log10(Number(form.elements.scale.value.replace(",", ".")));
   if (Number.isFinite(power)) factor.value = power;
-  for (const section of document.querySelectorAll("section.empty")) section.classList.remove("empty");
   const params = paramsOf();
   const key = (more) => JSON.stringify([params, more, file.name, file.size, file.lastModified]);
-  for (const one of [motion, scales, pulse]) one.wait();
+  const second = form.elements.second.value.trim();
+  for (const one of [motion, scales, pulse, other]) one.wait();
   const found = await result.show(key("response"), upload("response", params));
   if (!found) {
     openDetails();
-    for (const one of [motion, scales, pulse]) one.nothing();
+    for (const one of [motion, scales, pulse, other]) one.nothing();
     return;
   }
   const { scale, ...unscaled } = params;
   await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }));
+  if (second) await other.show(key(second), upload("response", { ...params, component: second }));
+  else other.nothing();
   if (!all) return;
   await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }));
   await pulse.show(key("pulse"), upload("pulse", params));
@@ -83,7 +92,7 @@ function paramsOf() {
   const [scale, restitution] = ["scale", "restitution"].map((name) => text(name).replace(",", "."));
   return {
     name: file.name.slice(0, 200),
-    ...Object.fromEntries(["unit", "time_step", "component", "baseline_order"].map((name) => [name, text(name)])),
+    ...Object.fromEntries(STATED.map((name) => [name, text(name)])),
     width: quantity("width"),
     height: quantity("height"),
     scale: scale || "?",
@@ -126,23 +135,33 @@ function openDetails() {
 /** Until a file is chosen, a part of a record is shown. */
 async function example() {
   const found = await fileOf("/static/example-record.csv", "South Napa 2014, CE.68150, east, part.csv", new AbortController().signal);
-  if (!file) take(found);
+  if (!takes) take([found]);
 }
 
-function take(chosen) {
-  if (!chosen) return;
-  file = chosen;
-  document.getElementById("dropped").textContent = `${chosen.name}; drop another one anywhere on this page`;
-  refresh();
+async function take(files) {
+  if (!files.length) return;
+  const mine = ++takes;
+  try {
+    const { chosen, columns, file: found } = await joined(files);
+    if (mine !== takes) return;
+    file = found;
+    for (const name of ["component", "second", "vertical"]) form.elements[name].value = chosen[name] ?? "";
+    document.getElementById("columns").replaceChildren(...columns.map((value) => element("option", "", { value })));
+    document.getElementById("more").open ||= files.length > 1;
+    document.getElementById("dropped").textContent = `${file.name}; drop another one anywhere on this page`;
+    refresh();
+  } catch (problem) {
+    setStatus(document.getElementById("record-status"), problem, () => take(files));
+  }
 }
 
 for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2"]) form.elements.unit.append(element("option", unit));
-input.addEventListener("change", () => take(input.files[0]));
+input.addEventListener("change", () => take(input.files));
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (file) refresh();
 });
-onDrop(take);
+onDrop((_, files) => take(files));
 report.addEventListener("click", async () => {
   const { showReport } = await import("./report.js");
   const { recordReport } = await import("./record_report.js");

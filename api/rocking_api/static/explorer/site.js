@@ -3,7 +3,7 @@
 import { send } from "./api.js";
 import { axis, chart, chartsReady } from "./chart.js";
 import { hatch, themed } from "./colours.js";
-import { acceleration, length, number, threshold, velocity } from "./labels.js";
+import { acceleration, length, number, pulseName, threshold, velocity } from "./labels.js";
 import { element } from "./page.js";
 import { pane } from "./pane.js";
 import { inShown, shown, toSI, written } from "./units.js";
@@ -101,7 +101,7 @@ const upwards = (value, digits = 3) => threshold(value, false, digits);
 /** The nearest change: by how much the motion of the site would have to differ. */
 function changeOf({ factor, governing }, highest) {
   if (factor === null) return `No factor up to ${number(highest)} on these motions was found to overturn it.`;
-  const name = governing.replaceAll("_", " ");
+  const name = pulseName(governing);
   return factor > 1 ? `It overturns with ${percent(factor)} more (${name}).` : `The lowest factor that overturns it is ${threshold(factor)} (${name}).`;
 }
 
