@@ -19,6 +19,7 @@ FIRST = (
     "tests/api/explorer/test_layout.py",
     "tests/workflow/test_workflow.py",
     "tests/api/explorer/test_form.py",
+    "tests/api/explorer/test_tasks.py",
     "tests/api/explorer/test_accessibility.py",
     "tests/benchmarks/test_benchmarks.py",
     "tests/api/explorer/test_motion.py",

@@ -1,4 +1,4 @@
-"""No control, text or picture overlaps another one or lies outside the page, at any width."""
+"""No control, text or picture overlaps another one or lies outside the page, at any width, and with text of 200 %."""
 
 import pytest
 from playwright.sync_api import expect
@@ -57,14 +57,15 @@ def test_nothing_overlaps_on_the_other_pages(open_page, path):
 
 
 def overlaps_by_width(page):
-    """Boxes over each other or outside, by width of the window; nothing is wider than the window."""
+    """Boxes over each other or outside, by width of the window and size of the text; nothing is wider than it."""
     found = {}
-    for width in range(320, 1441, 40):
+    sizes = [*((width, "100%") for width in range(320, 1441, 40)), *((width, "200%") for width in (390, 768, 1400))]
+    for width, text in sizes:
         page.set_viewport_size({"width": width, "height": 900})
-        page.evaluate("() => scrollTo(0, 0)")
+        page.evaluate("size => { document.documentElement.style.fontSize = size; scrollTo(0, 0) }", text)
         page.evaluate(NEXT_FRAME)
         overlaps = page.evaluate(OVERLAPS)
         if overlaps:
-            found[width] = overlaps
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+            found[width, text] = overlaps
+        assert page.evaluate("document.documentElement.scrollWidth") <= width, (width, text)
     return found

@@ -2,11 +2,9 @@
 
 import hashlib
 import io
-import re
 
 import numpy as np
 import pytest
-import xarray as xr
 from playwright.sync_api import expect
 
 from tests.api.conftest import NAMES
@@ -38,18 +36,6 @@ def test_data_sets_are_listed_and_filtered(open_page):
     table = np.loadtxt(io.StringIO(waiting.value.path().read_text()), delimiter=",", skiprows=1, usecols=(1, 2))
     assert table[:, 0].min() > 0.479
     assert table[:, 0].max() < 0.521
-
-
-def test_a_spectrum_goes_into_xarray_by_the_copied_line(open_page, address):
-    page = open_page("/datasets")
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    page.locator("tr", has_text="spectra/cosine/eta-0.90").get_by_role("button", name="xarray").click()
-    expect(page.locator("#status")).to_have_text("Copied the line for spectra/cosine/eta-0.90.")
-    line = page.evaluate("navigator.clipboard.readText()")
-    assert line == f'xarray.open_dataset("{address}/v1/datasets/spectra/cosine/eta-0.90.zarr", engine="zarr")'
-    url = re.search(r'"(.*?)"', line)[1]
-    with xr.open_dataset(url, engine="zarr") as cube:
-        assert cube.peak_rotation.sizes["slenderness"] == 91
 
 
 def test_the_state_is_told(open_page):

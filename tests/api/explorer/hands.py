@@ -1,0 +1,73 @@
+"""Two ways to use a page: the keyboard alone, and touch on a phone. Each action waits until its field is there."""
+
+from typing import ClassVar
+
+import pytest
+
+PHONE = {"has_touch": True, "viewport": {"width": 390, "height": 844}}
+
+
+class Keyboard:
+    """Keys alone: a field is reached from where the focus is, by the key Tab."""
+
+    options: ClassVar = {}
+
+    def __init__(self, page):
+        self.page = page
+
+    def reach(self, selector):
+        self.page.locator(selector).first.wait_for()
+        for _ in range(200):
+            if self.page.evaluate("selector => document.activeElement.matches(selector)", selector):
+                return
+            self.page.keyboard.press("Tab")
+        pytest.fail(f"{selector} is not reached by the key Tab")
+
+    def press(self, selector):
+        self.reach(selector)
+        self.page.keyboard.press("Enter")
+
+    def write(self, selector, text):
+        self.reach(selector)
+        self.page.keyboard.press("ControlOrMeta+A")
+        self.page.keyboard.type(text)
+        self.page.keyboard.press("Tab")
+
+    def choose(self, selector, label):
+        self.reach(selector)
+        self.page.keyboard.type(label)
+        self.page.keyboard.press("Tab")
+
+    def slide(self, selector, share):
+        """To a share of the range, from its start by the keys that move by 10 % and by 1 %."""
+        self.reach(selector)
+        for key, times in (("Home", 1), ("PageUp", round(100 * share) // 10), ("ArrowRight", round(100 * share) % 10)):
+            for _ in range(times):
+                self.page.keyboard.press(key)
+
+
+class Touch:
+    """Taps on a phone; text comes from its keyboard, and choices and files from dialogs of its own."""
+
+    options = PHONE
+
+    def __init__(self, page):
+        self.page = page
+
+    def press(self, selector):
+        self.page.locator(selector).tap()
+
+    def write(self, selector, text):
+        self.press(selector)
+        self.page.locator(selector).fill(text)
+        self.page.locator(selector).dispatch_event("change")
+
+    def choose(self, selector, label):
+        self.page.locator(selector).select_option(label=label)
+
+    def slide(self, selector, share):
+        """By a tap on the track, which begins and ends half a thumb within the field."""
+        field = self.page.locator(selector)
+        field.scroll_into_view_if_needed()
+        box = field.bounding_box()
+        self.page.touchscreen.tap(box["x"] + 8 + share * (box["width"] - 16), box["y"] + box["height"] / 2)
