@@ -33,6 +33,6 @@ ax = rocking.plot.response(response)
 
 history = block.history("sine", peak_acceleration=0.45 * 9.80665, period=0.5)
 figure, axes = plt.subplots(2, 1, sharex=True, height_ratios=(2, 1), layout="constrained")
-rocking.plot.history(history, axes[0])
+rocking.plot.history(history, axes[0]).set_xlabel("")
 rocking.plot.ground_acceleration(history, axes[1])
 plt.show()

@@ -30,6 +30,7 @@ for ax, slenderness in zip(axes, (0.6, 0.3), strict=True):
     ax.set_prop_cycle(color=plt.colormaps["viridis"](np.linspace(0.0, 0.85, row.sizes["restitution"])))
     lines = (row * row.slenderness).plot.line(ax=ax, x="frequency_ratio", add_legend=False)
     ax.set_title(rf"sine, $g\alpha/a_g$ = {float(row.slenderness):.2f}")
-    ax.set_ylabel(r"$g\,\theta_{max}/a_g$ [-]")
+    ax.set(xlabel="", ylabel=r"$g\,\theta_{max}/a_g$ [-]")
+axes[1].set_xlabel(r"frequency ratio $\omega_g/p$ [-]")
 figure.legend(lines, [f"{eta:.2f}" for eta in spectra.restitution.values], loc="outside right upper", title=r"$\eta$")
 plt.show()

@@ -26,7 +26,7 @@ class DecayingChirp(rocking.SmoothPulse):
 
 chirp = DecayingChirp("chirp", 0.0, 8.0 * math.pi, decay=0.1, growth=0.03)
 phi = np.linspace(chirp.start, chirp.end, 400)
-figure, axes = plt.subplots(2, 1, layout="constrained")
+figure, axes = plt.subplots(2, 1, figsize=(6.4, 6.4), height_ratios=(1, 2), layout="constrained")
 axes[0].plot(phi, chirp.acceleration(phi), color="black")
 axes[0].set_xlabel(r"phase $\varphi$ [rad]")
 axes[0].set_ylabel("f [-]")

@@ -20,6 +20,7 @@ for ax, pulse in zip(axes, ("sine", "ricker"), strict=True):
     rocking.plot.spectrum(spectrum, ax, label="survives")
     ax.set_title(pulse)
     ax.legend()
+axes[1].set_ylabel("")
 plt.show()
 
 # %%
