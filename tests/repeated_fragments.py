@@ -19,11 +19,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import typer
-from pydantic import ValidationError
 from rocking_api.app import create_app
-from rocking_api.http.batch import read_batch
-from rocking_api.http.errors import InvalidQueryError, TooLargeError
+from rocking_api.http.parameters import read_json
+from rocking_api.models.batch import parse_csv
 from rocking_api.models.blocks import BlockRows
+from rocking_api.models.params import BatchParams, LookupOptions
 from rocking_api.models.pulses import with_samples
 from rocking_api.routers.control_map import MapParams
 from rocking_api.settings import Settings
@@ -197,13 +197,12 @@ def request(text: str, path: str, header: str = "") -> None:
 
 def body(text: str, form: str) -> None:
     """Read the body of a request for many points, or for many blocks."""
-    with suppress(InvalidArgumentError, ValidationError, InvalidQueryError, TooLargeError):
-        if form == "blocks":
-            BlockRows.model_validate_json(text)
-        elif form == "pulse":
-            with_samples(MapParams).model_validate_json(text)
+    with suppress(InvalidArgumentError):
+        if form == "csv":
+            parse_csv(text.encode(), 10_000, StopFlag())
         else:
-            read_batch(text.encode(), form, {}, 10_000, StopFlag())  # type: ignore[arg-type]
+            kind = {"blocks": BlockRows, "pulse": with_samples(MapParams), "json": with_samples(BatchParams)}[form]
+            read_json(kind, text.encode(), {"pulse": "sine"}, LookupOptions)
 
 
 def places(text: str, *parts: str) -> list[str]:

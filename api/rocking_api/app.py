@@ -18,12 +18,8 @@ from rocking_api.http.errors import RESPONSES, Problem, add_handlers
 from rocking_api.http.host import HostCheck
 from rocking_api.http.memory_budget import MemoryBudgetMiddleware
 from rocking_api.http.request_log import RequestLog
-from rocking_api.http.zarr_store import ZarrStores
 from rocking_api.models.answer import VERSION
-from rocking_api.models.assess import AssessBody
-from rocking_api.models.blocks import BlockRows
-from rocking_api.models.identify import Trace
-from rocking_api.models.pulses import BODIES
+from rocking_api.models.bodies import BODIES
 from rocking_api.routers import (
     assess,
     blocks,
@@ -48,6 +44,7 @@ from rocking_api.routers import (
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
+from rocking_api.zarr_store import ZarrStores
 
 LOG = logging.getLogger("rocking.service")
 
@@ -140,7 +137,7 @@ def _describe_bodies(app: FastAPI) -> None:
         if app.openapi_schema is None:
             schemas = generate()["components"]["schemas"]
             bodies = sorted(BODIES, key=lambda body: body.__name__)
-            models: list[type[BaseModel]] = [Problem, BlockRows, AssessBody, Trace, *bodies]
+            models: list[type[BaseModel]] = [Problem, *bodies]
             for model in models:
                 schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
                 schemas.update(schema.pop("$defs", {}))

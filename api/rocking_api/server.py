@@ -17,8 +17,8 @@ from uvicorn.config import STARTUP_FAILURE
 from rocking.precompile import load_kernels
 from rocking_api.app import create_app
 from rocking_api.execution.kernels import compile_command
-from rocking_api.http.metrics import forget_process
-from rocking_api.http.request_log import CONFIG
+from rocking_api.json_log import CONFIG
+from rocking_api.metrics import forget_process
 from rocking_api.service_manager import tell_that_it_answers
 from rocking_api.settings import Settings
 from rocking_api.workers import Workers

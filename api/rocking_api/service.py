@@ -11,26 +11,30 @@ import anyio.to_thread
 from anyio import CapacityLimiter
 from fastapi import Depends, Request
 
-from rocking._base.errors import InvalidArgumentError
 from rocking._lookup.collection import CubeCollection
 from rocking._numba.cancellation import StopFlag
 from rocking_api.dataset_checker import DatasetChecker
+from rocking_api.dataset_summaries import DatasetSummaries
 from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
-from rocking_api.http.batch import body_form, limited_body
-from rocking_api.http.dataset_summaries import DatasetSummaries
-from rocking_api.http.memory_budget import MemoryBudget, reservation_of
-from rocking_api.http.metrics import Metrics
-from rocking_api.http.params_route import query_parameters
-from rocking_api.http.zarr_store import ZarrStores
+from rocking_api.http.body import limited_body
+from rocking_api.http.encoding import Form
+from rocking_api.http.memory_budget import MemoryBudget
+from rocking_api.http.parameters import query_parameters, read_json, read_query
+from rocking_api.metrics import Metrics
 from rocking_api.models.params import Params
-from rocking_api.models.pulses import MAX_BODY, with_samples
+from rocking_api.models.pulses import options_of
 from rocking_api.settings import Settings
 from rocking_api.suite_reader import SuiteReader
+from rocking_api.zarr_store import ZarrStores
 
+B = TypeVar("B", bound=Params)
 P = TypeVar("P", bound=Params)
 T = TypeVar("T")
+
+LARGE_BODY = 1_000_000
+"""Bytes beyond which bodies are parsed one at a time. Smaller ones take some hundredths of a second."""
 
 SEARCH_SHARE = 0.2
 """Share of the time limit for the search along one line [-]."""
@@ -84,27 +88,38 @@ class Service:
         await self.kernels.wait()
         return await self.executor.run(work, request)
 
-    async def read_body(self, request: Request, limit: int) -> bytes:
-        """The body of a request, of at most `limit` bytes, see `limited_body`."""
-        return await limited_body(request, limit, self.settings.arrival_seconds, reservation_of(request), self.turns)
+    async def read_body(self, request: Request, limit: int, hint: str = "") -> bytes:
+        """The body of a request, of at most `limit` bytes, see `limited_body`; `hint` is for larger ones."""
+        allowed = limit, f"at most {limit} bytes{hint}"
+        reservation = request.state.reservation
+        return await limited_body(request, allowed, self.settings.arrival_seconds, reservation, self.turns)
 
-    async def read_params(self, kind: type[P], request: Request) -> P:
-        """The parameters in a JSON body, in which the pulse may be given by samples.
+    async def read(
+        self, request: Request, kind: type[P], form: Form, body: type[B], limit: int, hint: str = ""
+    ) -> tuple[P, B | bytes]:
+        """The parameters of a request, and its content: an object of JSON, or a file or list as it is.
+
+        An object of JSON is read as `body`, which has the fields of `kind`; these may be in the query as well. Beside a
+        file or a list they are in the query.
 
         Raises
         ------
         InvalidArgumentError
-            If there are parameters in the query, or the body is no JSON or too large.
-        ValidationError
-            If the body does not fit the model.
+            If parameters or body do not fit, see `read_json` and `limited_body`.
         """
-        body_form(request, ("json",))
-        for name, value in query_parameters(request).items():
-            raise InvalidArgumentError(name, value, "nothing in the query: all parameters are in the body")
-        body = await self.read_body(request, MAX_BODY)
-        params: P = await self.run_io(lambda: with_samples(kind).model_validate_json(body))
-        reservation_of(request).replace(len(body))  # about the size of the samples
-        return params
+        query = query_parameters(request)
+        if form != "json":
+            read_query(kind, query).check()  # before the body arrives
+        raw = await self.read_body(request, limit, hint)
+        if form != "json" or (body.takes_lists and raw.lstrip()[:1] != b"{"):
+            params = read_query(kind, query)
+            params.check()
+            return params, raw
+        large = len(raw) > LARGE_BODY
+        found = await self.run_parser(lambda _: read_json(body, raw, query, kind), request, large)
+        params = options_of(found, kind)
+        params.check()
+        return params, found
 
     async def run_parser(self, work: Work[T], request: Request, large: bool) -> T:
         """Parse a body in a thread; large bodies one at a time, until the time limit or the client disconnects."""

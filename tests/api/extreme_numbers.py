@@ -227,7 +227,7 @@ BODIES: dict[str, dict[str, Any]] = {
         },
     },
     **{
-        f"/v1/records/{name}": {"text/plain": {"scale": 4.0, "last": 1.0}}
+        f"/v1/records/{name}": {"text/plain": {"scale": 4.0, "last": 1.0}, "application/json": {"record": SAMPLES}}
         for name in ("response", "history", "scales", "pulse")
     },
 }

@@ -16,14 +16,14 @@ from tests.api.servers import kept_waiting, serving
 
 ROUTE = "/v1/records/response?width=0.5&height=2.0&unit=g"
 
-CLIENTS = f"""
+CLIENTS = """
 import http.client, json, sys, threading
 
 body, statuses = open(sys.argv[2], "rb").read(), []
 
 def upload():
     connection = http.client.HTTPConnection("127.0.0.1", int(sys.argv[1]), timeout=120)
-    connection.request("POST", "{ROUTE}", body=body)
+    connection.request("POST", sys.argv[3], body=body, headers={"Content-Type": sys.argv[4]})
     statuses.append(connection.getresponse().status)
     connection.close()
 
@@ -92,15 +92,34 @@ def delay_of_health(server):
     return took - (kept_waiting(os.getpid(), server.process.pid) - waited)
 
 
+def json_of(values):
+    """A JSON body of blocks or of a record, of about four megabytes."""
+    numbers = np.random.default_rng(1).uniform(0.05, 0.95, 200_000)
+    if values == "groups":
+        columns = {"slenderness": numbers[:99_000].tolist(), "frequency_ratio": (9.0 * numbers[:99_000]).tolist()}
+        return json.dumps({"pulse": "sine", "restitution": 0.85, **columns}).encode()
+    records = [{"acceleration": numbers[k::4].tolist(), "time_step": 0.01} for k in range(4)]
+    return json.dumps({"objects": [{"width": 0.4, "height": 1.6}], "records": records, "sensitivity": False}).encode()
+
+
+UPLOADS = {
+    "record": (ROUTE, "text/csv", lambda: column_file(5_000_000)),
+    "blocks in JSON": ("/v1/response", "application/json", lambda: json_of("groups")),
+    "records of a site in JSON": ("/v1/assess", "application/json", lambda: json_of("records")),
+}
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
-def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path):
-    body, delays = column_file(5_000_000), []
-    (tmp_path / "record.csv").write_bytes(body)
+@pytest.mark.parametrize("upload", UPLOADS)
+def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path, upload):
+    route, media_type, made = UPLOADS[upload]
+    body, delays = made(), []
+    (tmp_path / "body").write_bytes(body)
     with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
-        assert status_of(server, "POST", ROUTE, body[:20_000]) == 200  # the kernels are loaded
+        assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200  # the kernels are loaded
         before = megabytes(server.process, "VmRSS")
-        arguments = [sys.executable, "-c", CLIENTS, str(server.port), str(tmp_path / "record.csv")]
+        arguments = [sys.executable, "-c", CLIENTS, str(server.port), str(tmp_path / "body"), route, media_type]
         with subprocess.Popen(arguments, stdout=subprocess.PIPE) as clients:
             while clients.poll() is None:
                 delays.append(delay_of_health(server))

@@ -7,7 +7,7 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.app import create_app
-from rocking_api.http.request_log import JsonFormatter
+from rocking_api.json_log import JsonFormatter
 from rocking_api.settings import Settings
 
 from tests.api.conftest import assert_problem, client_of

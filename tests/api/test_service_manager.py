@@ -13,7 +13,7 @@ from pathlib import Path
 
 import httpx2
 import pytest
-from rocking_api.http.metrics import FOLDER
+from rocking_api.metrics import FOLDER
 from rocking_api.service_manager import tell_that_it_answers, watchdog_seconds
 
 from tests.api.servers import Server, processes_below, serving

@@ -19,7 +19,7 @@ import pytest
 import rocking_api.command
 import rocking_api.server
 from prometheus_client.parser import text_string_to_metric_families
-from rocking_api.http.metrics import FOLDER
+from rocking_api.metrics import FOLDER
 from typer.testing import CliRunner
 
 from benchmarks.service import workers as benchmark

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from http import HTTPStatus
-from typing import Any
-
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from rocking_api.http.errors import problem_response
@@ -15,11 +12,6 @@ class HostCheck:
 
     Starlette makes the target of a redirect from the Host header, which a client can choose; without it and without the
     address of the server the target is a path. A request of HTTP/1.0 needs no Host.
-
-    Parameters
-    ----------
-    app : ASGI application
-        Inner application.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -30,8 +22,9 @@ class HostCheck:
             hosts = [value for name, value in scope["headers"] if name == b"host"]
             if len(hosts) > 1 or (not hosts and scope["http_version"] != "1.0"):
                 detail = f"the request has {len(hosts)} headers Host; allowed: one"
-                named: dict[str, Any] = {"parameter": "Host", "value": f"{len(hosts)} headers", "allowed": "one"}
-                await problem_response(HTTPStatus.BAD_REQUEST, detail, **named)(scope, receive, send)
+                value = f"{len(hosts)} headers"
+                refused = problem_response(400, detail, parameter="Host", value=value, allowed="one")
+                await refused(scope, receive, send)
                 return
             scope["headers"] = [header for header in scope["headers"] if header[0] != b"host"]
             scope["server"] = None

@@ -19,13 +19,7 @@ CHUNK_BYTES = 128 * 1024
 
 
 class MemoryBudget:
-    """Bytes held for all requests.
-
-    Parameters
-    ----------
-    limit : int
-        Most bytes for all requests together, unless a single request holds more.
-    """
+    """Bytes held for all requests, at most `limit` unless a single request holds more."""
 
     def __init__(self, limit: int) -> None:
         self.limit = limit
@@ -33,13 +27,7 @@ class MemoryBudget:
 
 
 class Reservation:
-    """Bytes held for one request; its methods are called by the event loop only.
-
-    Parameters
-    ----------
-    budget : MemoryBudget
-        Of the service.
-    """
+    """Bytes held for one request, in `request.state.reservation`; its methods are called by the event loop only."""
 
     def __init__(self, budget: MemoryBudget) -> None:
         self._budget = budget
@@ -65,24 +53,8 @@ class Reservation:
         self.replace(self._own + count)
 
 
-def reservation_of(request: Request) -> Reservation:
-    """The reservation of a request."""
-    found: Reservation = request.state.reservation
-    return found
-
-
 class MemoryBudgetMiddleware:
-    """Counts responses while they are sent, and sends large ones in chunks.
-
-    Parameters
-    ----------
-    app : ASGI application
-        Inner application.
-    budget : MemoryBudget
-        Of the service.
-    seconds : float
-        Time for a client to read a chunk; then the response is given up [s].
-    """
+    """Counts responses while they are sent, and sends large ones in chunks; gives up after `seconds` for a chunk."""
 
     def __init__(self, app: ASGIApp, budget: MemoryBudget, seconds: float) -> None:
         self._app = app
@@ -98,36 +70,34 @@ class MemoryBudgetMiddleware:
         start: Message | None = None
         refused = False
 
-        async def send_in_time(message: Message) -> None:
-            with anyio.move_on_after(self._seconds) as patience:
-                await send(message)
-            if patience.cancelled_caught:
-                raise ClientDisconnect
-
         async def send_chunks(message: Message) -> None:
             """Hold the head until the first bytes: a response beyond the limit is replaced by an error."""
             nonlocal start, refused
             if message["type"] == "http.response.start":
                 start = message
                 return
-            body, head = message.get("body", b""), start
-            start = None
             if refused:
                 return
+            body, more, head = message.get("body", b""), message.get("more_body", False), start
             if head is not None:
-                try:
-                    if len(body) > CHUNK_BYTES:
+                start = None
+                if len(body) > CHUNK_BYTES:
+                    try:
                         reservation.add(len(body))
-                except BusyError as error:
-                    refused = True
-                    await (await error_response(Request(scope), error))(scope, receive, send)
-                    return
+                    except BusyError as error:
+                        refused = True
+                        await (await error_response(Request(scope), error))(scope, receive, send)
+                        return
                 await send(head)
-            while len(body) > CHUNK_BYTES:
-                await send_in_time({**message, "body": bytes(body[:CHUNK_BYTES]), "more_body": True})
-                body = memoryview(body)[CHUNK_BYTES:]
-            is_short = head is not None and len(message.get("body", b"")) <= CHUNK_BYTES
-            await (send if is_short else send_in_time)({**message, "body": bytes(body)})
+                if len(body) <= CHUNK_BYTES:
+                    await send(message)
+                    return
+            for first in range(0, max(len(body), 1), CHUNK_BYTES):
+                part, last = bytes(memoryview(body)[first : first + CHUNK_BYTES]), first + CHUNK_BYTES >= len(body)
+                with anyio.move_on_after(self._seconds) as patience:
+                    await send({"type": message["type"], "body": part, "more_body": more or not last})
+                if patience.cancelled_caught:
+                    raise ClientDisconnect
 
         try:
             await self._app(scope, receive, send_chunks)

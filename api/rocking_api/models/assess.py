@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
@@ -86,7 +86,7 @@ class AssessParams(Params):
             for shape in str(value).split(","):
                 as_pulse(shape)
 
-    def site(self, given: AssessBody) -> Site:
+    def site(self, given: AssessBody | None) -> Site:
         """The site, with the records and the hazard curve of a body.
 
         Raises
@@ -101,8 +101,8 @@ class AssessParams(Params):
             self.pga,
             self.pgv,
             periods,
-            [one.motion(k) for k, one in enumerate(given.records, start=1)],
-            None if given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
+            [] if given is None else [one.motion(k) for k, one in enumerate(given.records, start=1)],
+            None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
             None if self.shapes is None else self.shapes.split(","),
             self.moving_ground,
             None if self.floor_periods is None else _numbers("floor_periods", self.floor_periods),
@@ -148,10 +148,10 @@ class HazardBody(BaseModel):
     annual_rate: list[float] = Field(description="annual rates of exceedance [1/year]")
 
 
-class AssessBody(BaseModel):
-    """Objects, with the records of the site if they are not in the query by PGA and PGV or periods."""
+class AssessBody(AssessParams):
+    """Objects, a site, and its records and hazard curve, if it has any."""
 
-    model_config = ConfigDict(extra="forbid")
+    takes_lists: ClassVar = True
 
     objects: list[dict[str, Any]] = Field(
         description="one object for each row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS

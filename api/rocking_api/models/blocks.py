@@ -68,28 +68,33 @@ def check_block_value(name: str, value: Any) -> None:
         check_value(name, value)
 
 
-class BlockParams(Params):
+class SizeParams(Params):
+    """A block in SI units."""
+
+    width: float = quantity("width", "width 2b of the base", examples=[0.4])
+    height: float = quantity("height", "height 2h", examples=[1.6])
+    restitution: MomentumOrNumber = Field(
+        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
+    )
+    gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
+
+    @classmethod
+    def check_field(cls, name: str, value: Any) -> None:
+        check_block_value(name, value)
+
+
+class BlockParams(SizeParams):
     """A block and a pulse in SI units."""
 
     pulse: PulseName
-    width: float = quantity("width", "width 2b of the base", examples=[0.4])
-    height: float = quantity("height", "height 2h", examples=[1.6])
     offset: Offset = 0.0
     mass_height: MassHeight = None
     peak_acceleration: float = quantity("peak_acceleration", "a_g", examples=[4.0])
     period: float = quantity(
         "period", "T_p = 2 pi/omega_g; a half sine or rectangular pulse lasts half of it", examples=[0.5]
     )
-    restitution: MomentumOrNumber = Field(
-        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
-    )
-    gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     method: Method = "auto"
     absolute_tolerance: AbsoluteTolerance = 1e-4
-
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        check_block_value(name, value)
 
 
 class BlocksParams(Params):
@@ -114,14 +119,16 @@ class BlockRow(Params):
     height: float = quantity("height", "height 2h")
     peak_acceleration: float = quantity("peak_acceleration", "a_g")
     period: float = quantity("period", "T_p = 2 pi/omega_g")
-    restitution: MomentumOrNumber | None = Field(None, description="eta [-], or momentum; absent: that of the query")
+    restitution: MomentumOrNumber | None = Field(None, description="eta [-], or momentum; absent: that of all")
 
 
-class BlockRows(Params):
-    """Many blocks in a JSON body."""
+class BlockRows(BlocksParams):
+    """Many blocks in a JSON body, and what they have in common."""
 
     blocks: list[BlockRow] = Field(description="blocks, in the order of the response")
-    pulse: GivenPulse | None = Field(None, description="a pulse by its name, or by samples; absent: that of the query")
+    pulse: GivenPulse | None = Field(  # type: ignore[assignment]
+        None, description="a pulse by its name, or by samples; absent: that of the query"
+    )
 
 
 class BlocksResponse(Answer):
@@ -150,25 +157,28 @@ class BlocksResponse(Answer):
     source: str = BY_SOLVER
 
 
+OVERTURNS_ABOVE = Field(description="true: overturns just above and survives just below; false: the reverse")
+
+
 class Threshold(BaseModel):
     """An amplitude at which the outcome changes."""
 
     peak_acceleration: float = Field(description="a_g [m/s2]")
-    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
+    overturns_above: bool = OVERTURNS_ABOVE
 
 
 class PeriodThreshold(BaseModel):
     """A period at which the outcome changes, the amplitude being what it is."""
 
     period: float = Field(description="T_p [s]")
-    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
+    overturns_above: bool = OVERTURNS_ABOVE
 
 
 class SizeThreshold(BaseModel):
     """A size at which the outcome of blocks of this shape changes under this pulse."""
 
     half_diagonal: float = Field(description="R [m]")
-    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
+    overturns_above: bool = OVERTURNS_ABOVE
 
 
 class Margins(BaseModel):
@@ -235,19 +245,10 @@ class BodyResponse(BodySummary):
     )
 
 
-class BlockResponse(Answer):
-    """What happens to the block."""
+class BlockSummary(Answer):
+    """What happens to a block, under any motion."""
 
-    query: BlockParams = QUERY
-    response: PointResponse = Field(description="the same request and response in dimensionless groups")
     overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
-    rocking_model_applies: bool = Field(
-        description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off; what is "
-        "said of its rocking and overturning then does not hold for a block that is free to do so"
-    )
-    meaning: str = Field(
-        description="the outcome in words; where the rocking model does not apply, first of all that and why"
-    )
     peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
     top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
     alpha_deg: float = Field(description="slenderness angle [deg]")
@@ -255,6 +256,24 @@ class BlockResponse(Answer):
     frequency_parameter: float = Field(description="p [rad/s]")
     restitution: float = Field(description="eta [-]; with momentum 0 where (2.4) is negative")
     uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
+    friction_at_uplift: float = Field(
+        description="coefficient of friction below which it slides instead of rocking [-]"
+    )
+    metadata: Metadata = METADATA_FIELD
+
+
+class BlockResponse(BlockSummary):
+    """What happens to the block."""
+
+    query: BlockParams = QUERY
+    response: PointResponse = Field(description="the same request and response in dimensionless groups")
+    rocking_model_applies: bool = Field(
+        description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off; what is "
+        "said of its rocking and overturning then does not hold for a block that is free to do so"
+    )
+    meaning: str = Field(
+        description="the outcome in words; where the rocking model does not apply, first of all that and why"
+    )
     thresholds: list[Threshold] | None = Field(
         description="all amplitudes at which the outcome changes, this period, ascending; null if not found in time, "
         "see `warnings`"
@@ -269,9 +288,6 @@ class BlockResponse(Answer):
     )
     margin: str = Field(description="below which peak acceleration it does not overturn at this period, in words")
     margins: Margins | None = Field(description="null if they were not found in time, see `warnings`")
-    friction_at_uplift: float = Field(
-        description="coefficient of friction below which it slides instead of rocking [-]"
-    )
     friction_demand: float | None = Field(
         description="the same through the whole motion, impacts excluded; if it overturns, until it passes alpha for "
         "good [-]; null: it lifts off"
@@ -282,4 +298,3 @@ class BlockResponse(Answer):
     smallest_normal_reaction: float = Field(description="over its weight, for as long [-]; 0 and below: it lifts off")
     notes: list[str] = Field(description="what else is worth knowing")
     data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
-    metadata: Metadata = METADATA_FIELD

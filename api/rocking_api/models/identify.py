@@ -39,8 +39,8 @@ class IdentifyParams(Params):
             in_range(name, value, 0.0, 0.999, closed="right")
 
 
-class Trace(Params):
-    """A trace in a JSON body."""
+class Trace(IdentifyParams):
+    """A trace in a JSON body, and how it is read and fitted."""
 
     time: Samples = Field(description="times, ascending [s]")
     rotation: Samples = Field(description="rotation; positive values turn on the right edge [rad]")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -21,6 +21,10 @@ from rocking._model.parameters import RESTITUTION, Parameter
 SLENDERNESS = parameters.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = parameters.FREQUENCY_RATIO.restricted(1e-6, 1e6)
 ALPHA_DEG = parameters.ALPHA.in_degrees().restricted(1e-6, 89.9)
+
+GROUPS = ("slenderness", "frequency_ratio", "restitution")
+
+_FAIL_FAST = Field(fail_fast=True)  # one error for an array, not one for each entry
 
 _KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
 """Names that need no look at the registered pulses."""
@@ -78,6 +82,10 @@ Format = Annotated[
     Literal["json", "csv", "nc"] | None,
     Field(description="format of the response; absent: by the Accept header, else JSON (nc: netCDF-3)"),
 ]
+BodyFormat = Annotated[
+    Literal["json", "csv", "nc"] | None,
+    Field(description="format of the response; absent: by the Accept header, else that of the body (nc: netCDF-3)"),
+]
 TableFormat = Annotated[
     Literal["json", "csv"] | None,
     Field(description="format of the response; absent: by the Accept header, else that of the body"),
@@ -92,6 +100,9 @@ class Params(BaseModel):
     """Base of all parameter models. Unknown parameters are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    takes_lists: ClassVar[bool] = False
+    """Whether a JSON body may be a list as well: content without parameters."""
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
@@ -145,12 +156,28 @@ class ResponseParams(LookupOptions):
     restitution: Restitution
 
 
-class BatchParams(LookupOptions):
+class BatchOptions(LookupOptions):
+    """Options of many blocks."""
+
+    format: BodyFormat = None
+
+
+class TableParams(BatchOptions):
+    """The same, and those of the groups that a table does not hold."""
+
+    slenderness: Slenderness | None = None
+    frequency_ratio: FrequencyRatio | None = None
+    restitution: Restitution | None = None
+
+
+class BatchParams(BatchOptions):
     """Many blocks: numbers, or arrays of one length."""
 
-    slenderness: Slenderness | list[Slenderness] = Field(description=SLENDERNESS.help)
-    frequency_ratio: FrequencyRatio | list[FrequencyRatio] = Field(description=FREQUENCY_RATIO.help)
-    restitution: Restitution | list[Restitution] = Field(description=RESTITUTION.help)
+    slenderness: Slenderness | Annotated[list[Slenderness], _FAIL_FAST] = Field(description=SLENDERNESS.help)
+    frequency_ratio: FrequencyRatio | Annotated[list[FrequencyRatio], _FAIL_FAST] = Field(
+        description=FREQUENCY_RATIO.help
+    )
+    restitution: Restitution | Annotated[list[Restitution], _FAIL_FAST] = Field(description=RESTITUTION.help)
 
 
 class SpectrumParams(LookupOptions):

@@ -28,9 +28,6 @@ MAX_SAMPLES = 10_000
 MAX_BODY = 500_000
 """Largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits."""
 
-EXAMPLE = {"acceleration": [0.0, 1.0, 0.0], "name": "triangle"}
-"""A triangle."""
-
 Samples = Annotated[list[float], Field(min_length=2, max_length=MAX_SAMPLES, fail_fast=True)]
 
 
@@ -94,20 +91,7 @@ def with_samples(kind: type[P]) -> type[P]:
     return model
 
 
-BODIES: set[type[Params]] = set()
-"""The models of bodies to which the descriptions of routes refer."""
-
-
-def schema_of(kind: type[Params]) -> dict[str, str]:
-    """The reference to the model of a body with the fields of `kind`."""
-    body = with_samples(kind)
-    BODIES.add(body)
-    return {"$ref": f"#/components/schemas/{body.__name__}"}
-
-
-def body_of(kind: type[Params]) -> dict[str, Any]:
-    """The description of a route whose JSON body has the fields of `kind`."""
-    required = {name: field.examples for name, field in kind.model_fields.items() if field.is_required()}
-    example = {name: examples[0] for name, examples in required.items() if examples} | {"pulse": EXAMPLE}
-    content = {"application/json": {"schema": schema_of(kind), "example": example}}
-    return {"requestBody": {"required": True, "content": content}}
+def options_of(found: Params, kind: type[P]) -> P:
+    """The fields of `kind` of a body that was validated, with the digest of a pulse that is given by samples."""
+    own = kind if sampled_pulse(found) is None else with_samples(kind)
+    return own.model_construct(**{name: getattr(found, name) for name in kind.model_fields})

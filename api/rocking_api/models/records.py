@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, create_model
 
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import in_range, one_of
 from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import (
-    RANGES,
-    BodySummary,
-    MassHeight,
-    MomentumOrNumber,
-    Offset,
-    check_block_value,
-    quantity,
-)
+from rocking_api.models.blocks import OVERTURNS_ABOVE, RANGES, BlockSummary, BodySummary, MassHeight, Offset, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Format, Params
+from rocking_api.models.params import Format
 from rocking_api.models.responses import BY_SOLVER, Motion
 
 SMALLEST_SCALE = 1e-6
@@ -49,18 +41,12 @@ Unit = Annotated[
 ]
 
 
-class RecordFileParams(Params):
+class RecordFileParams(SizeParams):
     """A block in SI units, and what the file of the record does not state."""
 
     BOUNDS: ClassVar[dict[str, tuple[float, float]]] = {"baseline_order": (0, MAX_BASELINE_ORDER)}
     """Ranges of the parameters that are numbers without unit, both ends included [-]."""
 
-    width: float = quantity("width", "width 2b of the base", examples=[0.4])
-    height: float = quantity("height", "height 2h", examples=[1.6])
-    restitution: MomentumOrNumber = Field(
-        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
-    )
-    gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
     name: str = Field("record", description="name of the file, for messages", max_length=200)
     unit: Unit = None
     time_step: float | None = Field(
@@ -87,7 +73,7 @@ class RecordFileParams(Params):
         elif name == "unit" and value is not None:
             one_of(name, value, UNITS)
         elif name in RANGES or name == "restitution":
-            check_block_value(name, value)
+            super().check_field(name, value)
 
 
 class RecordParams(RecordFileParams):
@@ -152,6 +138,21 @@ class RecordPulseParams(RecordParams):
     samples: int = Field(2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2})
 
 
+class RecordBody(RecordFileParams):
+    """A record in a JSON body, with the parameters of its route."""
+
+    record: str = Field(description="text of the file")
+
+
+@cache
+def with_record(kind: type[RecordFileParams]) -> type[RecordBody]:
+    """The model of a JSON body with the fields of `kind` and the record."""
+    bases: Any = (RecordBody, kind)
+    doc = f"The record, and: {kind.__doc__}"
+    model: type[RecordBody] = create_model(f"{kind.__name__}WithRecord", __base__=bases, __doc__=doc)
+    return model
+
+
 class RecordDescription(BaseModel):
     """The record, as read; SI units."""
 
@@ -181,7 +182,7 @@ class ScaleThreshold(BaseModel):
 
     scale: float = Field(description="factor of the record [-]")
     peak_acceleration: float = Field(description="PGA of the scaled record [m/s2]")
-    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
+    overturns_above: bool = OVERTURNS_ABOVE
 
 
 class FittedPulse(BaseModel):
@@ -200,12 +201,11 @@ class FittedPulse(BaseModel):
     )
 
 
-class RecordResponse(Answer):
+class RecordResponse(BlockSummary):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
     query: RecordResponseParams = QUERY
     record: RecordDescription = _RECORD
-    overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
     exceeded_alpha: bool = Field(description="whether the rotation passes alpha; the ground can bring a block back")
     outcome: str = Field(description="final outcome by name")
     rocking_model_applies: bool = Field(
@@ -228,13 +228,6 @@ class RecordResponse(Answer):
     peak_is_determined: bool = Field(
         description="false: the amplification exceeds 1e4, the record does not determine the peak, see `warnings`"
     )
-    peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
-    top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
-    alpha_deg: float = Field(description="slenderness angle [deg]")
-    half_diagonal: float = Field(description="R [m]")
-    frequency_parameter: float = Field(description="p [rad/s]")
-    restitution: float = Field(description="eta [-]; with momentum 0 where (2.4) is negative")
-    uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
     slenderness: float = Field(description="g tan(alpha)/PGA of the scaled record [-]")
     overturned_resampled: bool | None = Field(
         description="the same under the record interpolated band-limited at an eighth of its step; null: it is too "
@@ -243,9 +236,6 @@ class RecordResponse(Answer):
     peak_rotation_resampled: float | None = Field(description="the same [-]; null if overturned, or not computed")
     thresholds: list[ScaleThreshold] | None = Field(
         description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
-    )
-    friction_at_uplift: float = Field(
-        description="coefficient of friction below which it slides instead of rocking [-]"
     )
     friction_demand: float | None = Field(
         description="the same through the whole motion [-]; null: it lifts off, or the forces are not known, as under "
@@ -258,7 +248,6 @@ class RecordResponse(Answer):
         description="over its weight [-]; 0 and below: it lifts off; null: not known"
     )
     pulse: FittedPulse | None = Field(None, description="null unless requested")
-    metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
 
 

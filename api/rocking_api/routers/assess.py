@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Request, Response
 
 from rocking._assessment.assess import assess
 from rocking._assessment.site import Site
-from rocking._assessment.tables import ObjectTable, objects_of_json, objects_of_text
+from rocking._assessment.tables import ObjectTable, objects_of_text
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.batch import body_form
+from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, json_response, negotiated_form, text_response
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.assess import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
+from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -37,29 +37,20 @@ _ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0
     summary="Many objects at a site",
     response_model=AssessResponse,
     responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "description": "table of objects; the columns are those of `rocking.Object`",
-            "content": {
-                MEDIA_TYPES["json"]: {
-                    "schema": {
-                        "anyOf": [
-                            {"type": "array", "items": {"type": "object"}, "maxItems": MAX_OBJECTS},
-                            {"$ref": "#/components/schemas/AssessBody"},
-                        ]
-                    },
-                    "example": [_ROW],
-                },
-                MEDIA_TYPES["csv"]: {
-                    "schema": {"type": "string"},
-                    "example": "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n",
-                },
-            },
-        }
-    },
+    openapi_extra=body_of(
+        {
+            **json_content(
+                AssessBody,
+                {"objects": [_ROW], "pga": 3.0, "pgv": 0.3, "shapes": "sine,ricker"},
+                {"type": "array", "items": {"type": "object"}, "maxItems": MAX_OBJECTS},
+            ),
+            **text_content(MEDIA_TYPES["csv"], "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n"),
+        },
+        AssessParams,
+        "table of objects; the columns are those of `rocking.Object`",
+    ),
 )
-async def post_assess(params: Annotated[AssessParams, Query()], request: Request, service: ServiceDep) -> Response:
+async def post_assess(request: Request, service: ServiceDep) -> Response:
     """Which objects the motions of a site overturn, from which factor on these motions, the worst first.
 
     The table is CSV with units in its header or cells, or a JSON list of objects in SI units; or a JSON object with
@@ -67,31 +58,37 @@ async def post_assess(params: Annotated[AssessParams, Query()], request: Request
     `Accept`; CSV ends with the rows that were not read.
     """
     given = body_form(request, _FORMS)
-    form = negotiated_form(request, params.format, _FORMS, default=given)
-    params.check()
-    body = await service.read_body(request, MAX_BODY)
+    params, body = await service.read(request, AssessParams, given, AssessBody, MAX_BODY)
     table, site = await service.run_parser(lambda _: _read(body, given, params), request, large=True)
+    form = negotiated_form(request, params.format, _FORMS, default=given)
     return await service.run_heavy(params, lambda stop: _assess(params, request, site, table, form, stop), request)
 
 
-def _read(body: bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, Site]:
-    if form == "json" and body.lstrip()[:1] == b"{":
-        given = AssessBody.model_validate_json(body)
-        table = objects_of_json(json.dumps(given.objects))
-    else:
-        given = AssessBody(objects=[], records=[], hazard=None)
-        table = objects_of_text(body, json=form == "json")
-    count = len(table.objects) + len(table.bad_rows)
-    if count > MAX_OBJECTS:
-        raise TooLargeError("objects", count, f"at most {MAX_OBJECTS}")
-    if not table.objects:
-        reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
-        raise InvalidArgumentError("objects", reasons, "one object or more")
+def _read(body: AssessBody | bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, Site]:
+    given, raw = (None, body) if isinstance(body, bytes) else (body, json.dumps(body.objects).encode())
+    table = objects_of_text(raw, json=form == "json")
+    check_table(table, "objects")
     site = params.site(given)
     size = sum(len(one.planes) for one in table.objects) * len(site.motions)
     if size > MAX_PAIRS:
         raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
     return table, site
+
+
+def check_table(table: ObjectTable, name: str) -> None:
+    """Refuse a table of too many rows, or without an object.
+
+    Raises
+    ------
+    TooLargeError, InvalidArgumentError
+        If it is; `name` is that of the table for the message.
+    """
+    count = len(table.objects) + len(table.bad_rows)
+    if count > MAX_OBJECTS:
+        raise TooLargeError(name, count, f"at most {MAX_OBJECTS}")
+    if not table.objects:
+        reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
+        raise InvalidArgumentError(name, reasons, "one object or more")
 
 
 def _assess(

@@ -18,10 +18,10 @@ from rocking._dimensional.table import BlockTable, read_table, respond_table
 from rocking._dimensional.thresholds import BodyThresholds
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import evaluate, point_results
-from rocking_api.http.batch import body_form
+from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.blocks import (
     RANGES,
     BlockParams,
@@ -35,8 +35,8 @@ from rocking_api.models.blocks import (
     SizeThreshold,
     Threshold,
 )
+from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
-from rocking_api.models.pulses import with_samples
 from rocking_api.models.responses import PointResponse, finite, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -77,49 +77,40 @@ async def get_block(
     summary="Many blocks in SI units",
     response_model=BlocksResponse,
     responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "content": {
-                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/BlockRows"}, "example": _EXAMPLE},
-                MEDIA_TYPES["csv"]: {
-                    "schema": {"type": "string"},
-                    "example": "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n",
-                },
-            },
-        }
-    },
+    openapi_extra=body_of(
+        {
+            **json_content(BlockRows, _EXAMPLE),
+            **text_content(
+                MEDIA_TYPES["csv"], "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n"
+            ),
+        },
+        BlocksParams,
+    ),
 )
-async def post_blocks(params: Annotated[BlocksParams, Query()], request: Request, service: ServiceDep) -> Response:
+async def post_blocks(request: Request, service: ServiceDep) -> Response:
     """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
 
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in
     brackets or in its cells, and optionally name and restitution; others are not used.
     """
     given = body_form(request, _FORMS)
+    params, body = await service.read(request, BlocksParams, given, BlockRows, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
-    params.check()
-    body = await service.read_body(request, MAX_BODY)
-    query, table = await service.run_parser(lambda _: _read_table(body, given, params), request, large=True)
-    return await service.run_heavy(query, lambda stop: _blocks(service, query, request, table, form, stop), request)
+    table = await service.run_parser(lambda _: _read_table(body, params), request, large=True)
+    return await service.run_heavy(params, lambda stop: _blocks(service, params, request, table, form, stop), request)
 
 
-def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksParams, BlockTable]:
-    """The parameters with the pulse of the body, and its blocks, each checked."""
-    rows = None if given == "csv" else BlockRows.model_validate_json(body)
-    if rows is not None and rows.pulse is not None:
-        if params.pulse is not None:
-            raise InvalidArgumentError("pulse", params.pulse, "either in the query or in the body")
-        params = with_samples(BlocksParams).model_construct(**dict(params) | {"pulse": rows.pulse})
+def _read_table(body: BlockRows | bytes, params: BlocksParams) -> BlockTable:
+    """The blocks of a body, each checked."""
     if params.pulse is None:
         raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
-    if rows is None:
+    if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
         _check_count(text.count("\n"))
         table = read_table(text, params.pulse, params.restitution)
         table.check()
     else:
-        _check_count(len(rows.blocks))
+        _check_count(len(body.blocks))
         problems = [
             BlockProblem(
                 Block(row.width, row.height),
@@ -128,9 +119,9 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksPa
                 row.period,
                 params.restitution if row.restitution is None else row.restitution,
             )
-            for row in rows.blocks
+            for row in body.blocks
         ]
-        names = [row.name for row in rows.blocks]
+        names = [row.name for row in body.blocks]
         table = BlockTable(problems, names if any(names) else [])
     if not table.problems:
         raise InvalidArgumentError("blocks", "none", "at least one block")
@@ -144,7 +135,7 @@ def _read_table(body: bytes, given: str, params: BlocksParams) -> tuple[BlocksPa
         ):
             low, high, unit = RANGES[name]
             in_range(name, value, low, high, unit=unit)
-    return params, table
+    return table
 
 
 def _check_count(count: int) -> None:

@@ -20,7 +20,7 @@ from rocking._solver.peak_response import peak_response
 from rocking_api.http.caching import not_modified
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import (
@@ -35,8 +35,8 @@ from rocking_api.models.params import (
     Slenderness,
     alpha_of,
 )
-from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import BY_SOLVER, OUTCOMES
+from rocking_api.routers.twin import add_twin
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -95,22 +95,15 @@ async def get_map(params: Annotated[MapParams, Query()], request: Request, servi
     return response
 
 
-@router.post(
-    "/map",
-    summary="Outcome and peak rotation over a window, under a pulse given by samples",
-    response_model=MapResponse,
-    responses=CONTENT,
-    openapi_extra=body_of(MapParams),
-)
-async def post_map(request: Request, service: ServiceDep) -> Response:
-    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-    return await _answer(await service.read_params(MapParams, request), request, service)
-
-
 async def _answer(params: MapParams, request: Request, service: Service) -> Response:
     form = negotiated_form(request, params.format)
     axes = _axes(service, params)
     return await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
+
+
+add_twin(
+    router, "/map", _answer, "Outcome and peak rotation over a window", response_model=MapResponse, responses=CONTENT
+)
 
 
 def _map(

@@ -10,18 +10,19 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Path, Query, Request, Response
+from pydantic import Field
 from starlette.exceptions import HTTPException
 from starlette.responses import StreamingResponse
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError, version_of
+from rocking_api.dataset_summaries import Summary
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
 from rocking_api.http.dataset_archive import archive
-from rocking_api.http.dataset_summaries import Summary
 from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
-from rocking_api.http.memory_budget import reservation_of
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.params import Params
 from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, Link, VariableDescription
 from rocking_api.service import Service, ServiceDep
 
@@ -31,6 +32,12 @@ DatasetName = Annotated[
     str, Path(description="name of a data set, see /v1/datasets", examples=["spectra/sine/eta-0.85"])
 ]
 ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".zmetadata"])]
+
+
+class FileParams(Params):
+    """Which version of a file."""
+
+    sha256: str | None = Field(None, description="only this version: 404 once the file has changed")
 
 
 @router.get("", summary="Catalogue", response_model=DatasetCatalogue)
@@ -65,7 +72,7 @@ async def get_archive(request: Request, service: ServiceDep) -> Response:
         return names, max((version.size for version in versions if version is not None), default=0)
 
     names, largest = await service.run_io(work)
-    reservation_of(request).add(largest)
+    request.state.reservation.add(largest)
     headers = {"Content-Disposition": 'attachment; filename="rocking-data.zip"', "Cache-Control": REVALIDATE}
     return StreamingResponse(archive(catalogue, names), media_type="application/zip", headers=headers)
 
@@ -82,19 +89,16 @@ async def get_archive(request: Request, service: ServiceDep) -> Response:
     },
 )
 async def get_netcdf(
-    name: DatasetName,
-    request: Request,
-    service: ServiceDep,
-    sha256: Annotated[str | None, Query(description="only this version: 404 once the file has changed")] = None,
+    name: DatasetName, params: Annotated[FileParams, Query()], request: Request, service: ServiceDep
 ) -> Response:
     """The file as written by the workflow; its ETag is its sha256, and ranges are supported.
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
     file, product = await service.run_io(partial(_sound, service, name))
-    if sha256 is None:
+    if params.sha256 is None:
         return file_response(request, file, product)
-    if sha256 != product.sha256:
+    if params.sha256 != product.sha256:
         file.close()
         raise HTTPException(404, f"`{name}` has another version now: sha256 {product.sha256}")
     return file_response(request, file, product, IMMUTABLE)

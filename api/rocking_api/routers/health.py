@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from rocking_api.execution.kernels import NotReadyError
 from rocking_api.http.encoding import json_response
 from rocking_api.http.errors import DamagedDatasetsError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.responses import Health
 from rocking_api.service import Service, ServiceDep
 

@@ -12,10 +12,10 @@ from rocking._history.time_history import time_history
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import HistoryParams, alpha_of
-from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import ContactResponse, HistoryResponse, finite
+from rocking_api.routers.twin import add_twin
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -33,16 +33,7 @@ async def get_history(params: Annotated[HistoryParams, Query()], request: Reques
     return await service.run_heavy(params, lambda stop: _history(params, request, form, stop), request)
 
 
-@router.post(
-    "/history",
-    summary="Motion of one block under a pulse given by samples",
-    response_model=HistoryResponse,
-    responses=CONTENT,
-    openapi_extra=body_of(HistoryParams),
-)
-async def post_history(request: Request, service: ServiceDep) -> Response:
-    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-    return await get_history(await service.read_params(HistoryParams, request), request, service)
+add_twin(router, "/history", get_history, "Motion of one block", response_model=HistoryResponse, responses=CONTENT)
 
 
 def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag) -> Response:

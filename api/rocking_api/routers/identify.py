@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Request, Response
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation.records.readers.columns import read_samples
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.batch import body_form
+from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES, IdentifyParams, IdentifyResponse, Trace
 from rocking_api.models.responses import finite
 from rocking_api.service import ServiceDep
@@ -58,37 +59,30 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
     summary="The block from a measured free rocking",
     response_model=IdentifyResponse,
     responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "description": "times and rotations of a sensor or a film, with noise and an offset",
-            "content": {
-                MEDIA_TYPES["json"]: {"schema": {"$ref": "#/components/schemas/Trace"}, "example": EXAMPLE},
-                MEDIA_TYPES["csv"]: {"schema": {"type": "string"}, "example": _CSV},
-            },
-        }
-    },
+    openapi_extra=body_of(
+        {**json_content(Trace, EXAMPLE), **text_content(MEDIA_TYPES["csv"], _CSV)},
+        IdentifyParams,
+        "times and rotations of a sensor or a film, with noise and an offset",
+    ),
 )
-async def post_identify(params: Annotated[IdentifyParams, Query()], request: Request, service: ServiceDep) -> Response:
+async def post_identify(request: Request, service: ServiceDep) -> Response:
     """Restitution, slenderness angle and frequency parameter with intervals, as `rocking.identify_free_rocking`.
 
     The body is JSON, or CSV with a column of times and one of rotations; the response has the same format, or that of
     `format` or `Accept`. CSV has a row for each edge.
     """
     given = body_form(request, _FORMS)
+    params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
-    params.check()
-    body = await service.read_body(request, MAX_BODY)
-    time, rotation = await service.run_parser(lambda stop: _read(body, given, stop), request, large=True)
+    time, rotation = await service.run_parser(lambda stop: _read(body, stop), request, large=True)
     return await service.run_heavy(
         params, lambda stop: _identified(params, request, time, rotation, form, stop), request
     )
 
 
-def _read(body: bytes, form: Form, stop: StopFlag) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if form == "json":
-        trace = Trace.model_validate_json(body)
-        return np.array(trace.time), np.array(trace.rotation)
+def _read(body: Trace | bytes, stop: StopFlag) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if isinstance(body, Trace):
+        return np.array(body.time), np.array(body.rotation)
     _, time, rotation = read_samples(TextFile("trace", body, stop), MAX_SAMPLES)
     if time is None:
         raise InvalidArgumentError("body", "one column", "a column of times and one of rotations")

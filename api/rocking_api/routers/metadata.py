@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.metadata import GROUPS_METADATA, MetadataResponse
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)

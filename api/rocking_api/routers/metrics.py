@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
-from rocking_api.http.metrics import CONTENT_TYPE
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
+from rocking_api.metrics import CONTENT_TYPE
 from rocking_api.service import ServiceDep
 
 router = APIRouter(tags=["health"], route_class=ParamsRoute)

@@ -22,8 +22,7 @@ from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
-from rocking_api.models.assess import MAX_OBJECTS
-from rocking_api.routers.assess import MAX_BODY
+from rocking_api.routers.assess import MAX_BODY, check_table
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
 from rocking_api.service import Service, ServiceDep
 
@@ -111,12 +110,7 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
     pga, pgv = (f"{given[name].replace(',', '.')} {given[f'{name}_unit']}" for name in ("pga", "pgv"))
     site = Site(pga, pgv)
     table = await service.run_parser(lambda _: objects_of_csv(given["table"]), request, large=True)
-    count = len(table.objects) + len(table.bad_rows)
-    if count > MAX_OBJECTS:
-        raise TooLargeError("table", count, f"at most {MAX_OBJECTS} rows")
-    if not table.objects:
-        reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
-        raise InvalidArgumentError("table", reasons, "one object or more")
+    check_table(table, "table")
 
     def run(stop: StopFlag) -> Assessment:
         return assess(table.objects, site, sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)

@@ -18,10 +18,11 @@ from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking_api.execution.executor import TimeLimitError
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import OverturningParams, alpha_of
-from rocking_api.models.pulses import body_of, sampled_pulse
+from rocking_api.models.pulses import sampled_pulse
 from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
+from rocking_api.routers.twin import add_twin
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -55,16 +56,9 @@ async def get_overturning(
         raise TimeLimitError(error.seconds, instead) from None
 
 
-@router.post(
-    "/overturning",
-    summary="Boundary curves of a pulse given by samples",
-    response_model=OverturningResponse,
-    responses=CONTENT,
-    openapi_extra=body_of(OverturningParams),
+add_twin(
+    router, "/overturning", get_overturning, "Boundary curves", response_model=OverturningResponse, responses=CONTENT
 )
-async def post_overturning(request: Request, service: ServiceDep) -> Response:
-    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-    return await get_overturning(await service.read_params(OverturningParams, request), request, service)
 
 
 def _overturning(service: Service, params: OverturningParams, request: Request, form: str, stop: StopFlag) -> Response:

@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 
 from rocking._base.errors import in_range
 from rocking._excitation import pulses
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.params import Params
 

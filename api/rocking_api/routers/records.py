@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Request, Response
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.block import Block
@@ -23,10 +23,18 @@ from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 from rocking.suites.pulse_fit import PulseFit, fit_pulse
-from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.encoding import (
+    CONTENT,
+    MEDIA_TYPES,
+    Form,
+    csv_response,
+    json_response,
+    negotiated_form,
+    netcdf_response,
+)
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.memory_budget import reservation_of
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.records import (
     FittedPulse,
     RecordBodyResponse,
@@ -41,10 +49,13 @@ from rocking_api.models.records import (
     RecordScalesParams,
     RecordScalesResponse,
     ScaleThreshold,
+    with_record,
 )
 from rocking_api.models.responses import OUTCOMES, finite
 from rocking_api.routers.history import motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
+
+P = TypeVar("P", bound=RecordFileParams)
 
 router = APIRouter(prefix="/v1/records", tags=["response"], route_class=ParamsRoute)
 
@@ -53,30 +64,24 @@ _EXAMPLE = "time [s],acceleration [g]\n" + "".join(
 )
 """One full sine of 1 s and 0.6 g."""
 
-_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "description": "file of the record: PEER AT2, ESM ASCII, K-NET or columns of numbers, known by its content",
-        "content": {
-            media_type: {
-                "schema": {"type": "string"},
-                "example": _EXAMPLE,
-            }
-            for media_type in ("text/plain", "text/csv", "application/octet-stream")
-        },
+
+def _about(kind: type[RecordFileParams]) -> dict[str, Any]:
+    """The description of a route under a record."""
+    example = {"record": _EXAMPLE, "width": 0.4, "height": 1.6}
+    files = {
+        name: text_content(name, _EXAMPLE)[name] for name in ("text/plain", "text/csv", "application/octet-stream")
     }
-}
+    description = "file of the record: PEER AT2, ESM ASCII, K-NET or columns of numbers, known by its content"
+    return body_of({**files, **json_content(with_record(kind), example)}, kind, description)
 
 
-@router.post("/response", summary="A block in SI units under a record", openapi_extra=_BODY)
-async def post_response(
-    params: Annotated[RecordResponseParams, Query()], request: Request, service: ServiceDep
-) -> RecordResponse | RecordBodyResponse:
+@router.post("/response", summary="A block in SI units under a record", openapi_extra=_about(RecordResponseParams))
+async def post_response(request: Request, service: ServiceDep) -> RecordResponse | RecordBodyResponse:
     """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2).
 
     With `offset` or `mass_height` of a body with two different edges.
     """
-    record = await _read(params, request, service)
+    params, record = await _read(RecordResponseParams, request, service)
     return await service.run_heavy(params, lambda stop: _response(service, params, record, stop), request)
 
 
@@ -85,19 +90,17 @@ async def post_response(
     summary="Motion of a block in SI units under a record",
     response_model=RecordHistoryResponse,
     responses=CONTENT,
-    openapi_extra=_BODY,
+    openapi_extra=_about(RecordHistoryParams),
 )
-async def post_history(
-    params: Annotated[RecordHistoryParams, Query()], request: Request, service: ServiceDep
-) -> Response:
+async def post_history(request: Request, service: ServiceDep) -> Response:
     """Rotation and angular velocity from the first sample through free rocking; with `contact` also reactions."""
     limit = service.settings.max_samples
+    params, record = await _read(RecordHistoryParams, request, service)
     if params.samples is not None and params.samples > limit:
         raise TooLargeError("samples", params.samples, f"at most {limit}")
-    form = negotiated_form(request, params.format)
-    record = await _read(params, request, service)
     if record.samples > limit and params.samples is None:
         raise TooLargeError("samples", record.samples, f"at most {limit}; state `samples`")
+    form = negotiated_form(request, params.format)
     return await service.run_heavy(params, lambda stop: _history(params, request, record, form, stop), request)
 
 
@@ -106,34 +109,31 @@ async def post_history(
     summary="A block in SI units under a record times many factors",
     response_model=RecordScalesResponse,
     responses=CONTENT,
-    openapi_extra=_BODY,
+    openapi_extra=_about(RecordScalesParams),
 )
-async def post_scales(
-    params: Annotated[RecordScalesParams, Query()], request: Request, service: ServiceDep
-) -> Response:
+async def post_scales(request: Request, service: ServiceDep) -> Response:
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
+    params, record = await _read(RecordScalesParams, request, service)
     form = negotiated_form(request, params.format)
-    record = await _read(params, request, service)
     return await service.run_heavy(params, lambda stop: _scales(params, request, record, form, stop), request)
 
 
-@router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_BODY)
-async def post_pulse(
-    params: Annotated[RecordPulseParams, Query()], request: Request, service: ServiceDep
-) -> RecordPulseResponse:
+@router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_about(RecordPulseParams))
+async def post_pulse(request: Request, service: ServiceDep) -> RecordPulseResponse:
     """Parameters of the pulse, how both motions overturn the block, and their accelerations and velocities."""
-    record = await _read(params, request, service)
+    params, record = await _read(RecordPulseParams, request, service)
     return await service.run_heavy(params, lambda stop: _pulse(params, record, stop), request)
 
 
-async def _read(params: RecordFileParams, request: Request, service: Service) -> Record:
-    """The record in the body, parsed in a thread, one body at a time."""
-    params.check()
-    body = await service.read_body(request, service.settings.max_record_bytes)
+async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, Record]:
+    """The parameters, and the record in the body, parsed in a thread, one body at a time."""
+    declared = request.headers.get("content-type", "").split(";")[0].strip().lower()
+    form: Form = "json" if declared == MEDIA_TYPES["json"] else "csv"  # a file, whatever its type
+    params, body = await service.read(request, kind, form, with_record(kind), service.settings.max_record_bytes)
 
     def read(stop: StopFlag) -> Record:
         found = parse_record(
-            body,
+            body if isinstance(body, bytes) else body.record.encode(),
             params.name,
             unit=params.unit,
             time_step=params.time_step,
@@ -145,8 +145,8 @@ async def _read(params: RecordFileParams, request: Request, service: Service) ->
 
     record = await service.run_parser(read, request, large=True)
     kept = record.acceleration.nbytes * (1 if record.vertical is None else 2)
-    reservation_of(request).replace(kept)  # the body is released
-    return record
+    request.state.reservation.replace(kept)  # the body is released
+    return params, record
 
 
 def _response(

@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate_many
-from rocking_api.http.batch import Batch, batch_response, body_form, read_batch
-from rocking_api.http.encoding import CONTENT, MEDIA_TYPES, Form, negotiated_form
-from rocking_api.http.memory_budget import reservation_of
-from rocking_api.http.params_route import ParamsRoute, query_parameters
-from rocking_api.models.params import BatchParams, ResponseParams
-from rocking_api.models.pulses import schema_of
-from rocking_api.models.responses import BatchResponse, PointResponse, point_response
-from rocking_api.service import Service, ServiceDep
+from rocking_api.http.body import body_form
+from rocking_api.http.encoding import (
+    CONTENT,
+    MEDIA_TYPES,
+    Form,
+    csv_stream,
+    dataset_of,
+    json_stream,
+    negotiated_form,
+    netcdf_response,
+)
+from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.batch import Batch, Columns, batch_of, parse_csv, parse_netcdf
+from rocking_api.models.bodies import body_of, json_content, text_content
+from rocking_api.models.params import BatchOptions, BatchParams, LookupOptions, ResponseParams, TableParams
+from rocking_api.models.pulses import options_of, with_samples
+from rocking_api.models.responses import BatchResponse, PointResponse, columns_of, point_response
+from rocking_api.service import LARGE_BODY, Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-LARGE_BODY = 1_000_000
-"""Bytes beyond which bodies are parsed one at a time. Smaller ones take some hundredths of a second."""
+MAX_JSON = 4 * 1024 * 1024
+"""Largest JSON body [bytes], a hundred thousand blocks: pydantic holds the interpreter lock for 0.03 s to read it."""
 
 
 @router.get("/response", summary="One block")
@@ -37,58 +47,45 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     summary="Many blocks",
     response_model=BatchResponse,
     responses=CONTENT,
-    openapi_extra={
-        "parameters": [
-            {
-                "name": "pulse",
-                "in": "query",
-                "description": "pulse, required for CSV and netCDF-3; a JSON body holds it",
-                "schema": {"type": "string", "examples": ["sine"]},
-            }
-        ],
-        "requestBody": {
-            "required": True,
-            "content": {
-                MEDIA_TYPES["json"]: {
-                    "schema": schema_of(BatchParams),
-                    "example": {
-                        "pulse": "sine",
-                        "slenderness": [0.4, 0.2, 1.2],
-                        "frequency_ratio": 5,
-                        "restitution": 0.85,
-                    },
-                },
-                MEDIA_TYPES["csv"]: {
-                    "schema": {"type": "string"},
-                    "example": "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n",
-                },
-                MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
-            },
+    openapi_extra=body_of(
+        {
+            **json_content(
+                with_samples(BatchParams),
+                {"pulse": "sine", "slenderness": [0.4, 0.2, 1.2], "frequency_ratio": 5, "restitution": 0.85},
+            ),
+            **text_content(MEDIA_TYPES["csv"], "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"),
+            MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
         },
-    },
+        BatchOptions,
+    ),
 )
 async def post_response(request: Request, service: ServiceDep) -> Response:
-    """Arrays as JSON, CSV or netCDF-3; the response has the same format, or that of the Accept header.
+    """Arrays as JSON, CSV or netCDF-3; the response has the same format, or that of `format` or `Accept`.
 
-    With CSV and netCDF-3, `pulse`, `method`, `absolute_tolerance`, `alpha_deg` and any of the three groups that the
-    body does not hold are query parameters.
+    The three groups, where the body does not hold them, are query parameters, too.
     """
-    given = body_form(request)
-    form = negotiated_form(request, None, default=given)
-    batch = await _read(request, service, given)
-    reservation_of(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
+    batch, form = await _read(request, service)
+    request.state.reservation.replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
     return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, request, form, stop), request)
 
 
-async def _read(request: Request, service: Service, given: Form) -> Batch:
-    parameters = query_parameters(request)
-    settings = service.settings
-    body = await service.read_body(request, settings.max_body_bytes)
+async def _read(request: Request, service: Service) -> tuple[Batch, Form]:
+    """The points of a request, and the format of its response."""
+    given, most = body_form(request, ("json", "csv", "nc")), service.settings.max_points
+    limit, hint = service.settings.max_body_bytes, ""
+    if given == "json":
+        limit, hint = min(limit, MAX_JSON), " in JSON; send larger tables as CSV or netCDF"
+    params, body = await service.read(request, TableParams, given, with_samples(BatchParams), limit, hint)
 
     def read(stop: StopFlag) -> Batch:
-        return read_batch(body, given, parameters, settings.max_points, stop)
+        columns: Columns = {}
+        if isinstance(body, bytes):
+            columns = parse_csv(body, most, stop) if given == "csv" else parse_netcdf(body, most)
+        return batch_of(options_of(params, LookupOptions), columns, dict(params), most)
 
-    return await service.run_parser(read, request, large=len(body) > LARGE_BODY)
+    large = isinstance(body, bytes) and len(body) > LARGE_BODY
+    batch = await service.run_parser(read, request, large)
+    return batch, negotiated_form(request, params.format, default=given)
 
 
 def _answered(service: Service, batch: Batch, request: Request, form: Form, stop: StopFlag) -> Response:
@@ -96,4 +93,12 @@ def _answered(service: Service, batch: Batch, request: Request, form: Form, stop
     from_cubes = int(result.from_cube.sum())
     service.metrics.points("cube", from_cubes)
     service.metrics.points("solver", batch.points - from_cubes)
-    return batch_response(batch, request, result, form)
+    query: dict[str, Any] = batch.options.model_dump() | {"points": batch.points}
+    if form == "nc":
+        attributes = {name: value for name, value in query.items() if value is not None}
+        return netcdf_response(dataset_of(batch.groups, result, attributes), "response")
+    columns = columns_of(result)  # JSON and CSV are written while they are sent
+    if form == "csv":
+        return csv_stream(batch.groups | columns, "response")
+    answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
+    return json_stream(answer, request, columns)

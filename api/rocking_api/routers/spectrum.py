@@ -14,10 +14,10 @@ from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import evaluate_many
 from rocking_api.http.encoding import CONTENT, csv_stream, dataset_of, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import FREQUENCY_RATIO, SpectrumParams
-from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import SpectrumResponse, columns_of
+from rocking_api.routers.twin import add_twin
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -35,16 +35,14 @@ async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Requ
     )
 
 
-@router.post(
+add_twin(
+    router,
     "/spectrum",
-    summary="Peak rotation against frequency ratio, under a pulse given by samples",
+    get_spectrum,
+    "Peak rotation against frequency ratio",
     response_model=SpectrumResponse,
     responses=CONTENT,
-    openapi_extra=body_of(SpectrumParams),
 )
-async def post_spectrum(request: Request, service: ServiceDep) -> Response:
-    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-    return await get_spectrum(await service.read_params(SpectrumParams, request), request, service)
 
 
 def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:

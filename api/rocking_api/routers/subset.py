@@ -16,7 +16,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.cube import DIMENSIONS
 from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import FileFormat, Params
 from rocking_api.routers.datasets import DatasetName
 from rocking_api.service import Service, ServiceDep

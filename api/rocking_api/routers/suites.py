@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 
 from rocking_api.http.caching import REVALIDATE
 from rocking_api.http.encoding import MEDIA_TYPES, json_response, negotiated_form, text_response
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.suites import SuiteCatalogue, SuiteParams, SuiteResponse
 from rocking_api.service import ServiceDep
 

@@ -10,12 +10,12 @@ from pydantic import BaseModel, Field, SerializeAsAny
 from rocking._boundary.amplitude import Thresholds, thresholds
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.params_route import ParamsRoute
+from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
-from rocking_api.models.pulses import body_of
 from rocking_api.models.responses import BY_SOLVER
+from rocking_api.routers.twin import add_twin
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -71,14 +71,13 @@ async def get_thresholds(
     return await service.run_heavy(params, lambda stop: _answer(params, stop), request)
 
 
-@router.post(
+add_twin(
+    router,
     "/thresholds",
-    summary="Amplitudes at which the outcome of a block changes, under a pulse given by samples",
-    openapi_extra=body_of(AmplitudeParams),
+    get_thresholds,
+    "Amplitudes at which the outcome of a block changes",
+    response_model=AmplitudeResponse,
 )
-async def post_thresholds(request: Request, service: ServiceDep) -> AmplitudeResponse:
-    """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-    return await get_thresholds(await service.read_params(AmplitudeParams, request), request, service)
 
 
 def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:

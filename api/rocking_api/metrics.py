@@ -25,7 +25,6 @@ CONTENT_TYPE = CONTENT_TYPE_LATEST
 BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
 """Bucket bounds of the latency [s]: a point takes a millisecond, a batch a second, a curve several."""
 
-
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
 """Environment variable with the folder of the metrics of several workers."""
 
@@ -39,39 +38,27 @@ class Metrics:
     """Metrics of one application."""
 
     def __init__(self) -> None:
-        self.registry = CollectorRegistry()
-        self._requests = Counter(
-            "rocking_requests", "Requests answered.", ["method", "route", "status"], registry=self.registry
-        )
-        self._seconds = Histogram(
-            "rocking_request_seconds",
-            "Time from the headers of the request to the last byte of the response.",
-            ["route"],
-            buckets=BUCKETS,
-            registry=self.registry,
-        )
-        self._request = cache(self._requests.labels)  # looking labels up costs more than counting
-        self._time = cache(self._seconds.labels)
-        self._points = Counter(
-            "rocking_points", "Blocks computed, by a data set or by the solver.", ["source"], registry=self.registry
-        )
-        self._source = cache(self._points.labels)
+        own = self.registry = CollectorRegistry()
+        labels = ["method", "route", "status"]
+        about = "Time from the headers of the request to the last byte of the response."
+        points = Counter("rocking_points", "Blocks computed, by a data set or by the solver.", ["source"], registry=own)
+        # looking labels up costs more than counting
+        self._request = cache(Counter("rocking_requests", "Requests answered.", labels, registry=own).labels)
+        self._time = cache(Histogram("rocking_request_seconds", about, ["route"], buckets=BUCKETS, registry=own).labels)
+        self._source = cache(points.labels)
         self._running, self._waiting = (
-            Gauge(f"rocking_heavy_{name}", text, registry=self.registry, multiprocess_mode="livesum")
-            for name, text in [
-                ("running", "Requests of heavy work being computed."),
-                ("waiting", "Requests of heavy work that wait."),
-            ]
+            Gauge(f"rocking_heavy_{name}", f"Requests of heavy work {text}.", registry=own, multiprocess_mode="livesum")
+            for name, text in [("running", "being computed"), ("waiting", "that wait")]
         )
         self._heavy_lock = threading.Lock()
         self._damaged = Gauge(
             "rocking_dataset_damaged",
             "1 for a data set or folder that exists and cannot be used, 0 once it is repaired.",
             ["dataset"],
-            registry=self.registry,
+            registry=own,
             multiprocess_mode="mostrecent",
         )
-        ProcessCollector(registry=self.registry)  # memory, processor time, open files
+        ProcessCollector(registry=own)  # memory, processor time, open files
         self._all_workers: CollectorRegistry | None = None
         if FOLDER in os.environ:
             self._all_workers = CollectorRegistry()
@@ -104,13 +91,7 @@ class Metrics:
 
 
 class WorkerProcesses(Collector):
-    """Memory, processor time and open files of each worker.
-
-    Parameters
-    ----------
-    folder : path
-        Folder of the metrics; it has a file with the gauges of each running worker.
-    """
+    """Memory, processor time and open files of each worker, which has a file of gauges in the folder of the metrics."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder

@@ -1,0 +1,86 @@
+"""Bodies of requests: their format, and their arrival within limits of size, time and memory."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+
+import anyio
+import anyio.lowlevel
+from fastapi import Request
+
+from rocking_api.execution.executor import BusyError
+from rocking_api.http.encoding import MEDIA_TYPES, Form
+from rocking_api.http.errors import SlowBodyError, TooLargeError, UnsupportedBodyError
+from rocking_api.http.memory_budget import Reservation
+
+TURN_BYTES = 64 * 1024
+"""Bytes of a body that arrive without waiting for other bodies.
+
+With 64 connections that are read in one iteration of the event loop, 16 MB of bodies pass between two steps of any
+other request, and `/health` took 1.4 to 2.7 s.
+"""
+
+
+def body_form(request: Request, accepted: Sequence[Form]) -> Form:
+    """Format of the body by its Content-Type; JSON without one.
+
+    Raises
+    ------
+    UnsupportedBodyError
+        For a type that is not accepted.
+    """
+    declared = request.headers.get("content-type", MEDIA_TYPES["json"]).split(";")[0].strip().lower()
+    for form in accepted:
+        if declared in (MEDIA_TYPES[form], "application/netcdf" if form == "nc" else MEDIA_TYPES[form]):
+            return form
+    types = ", ".join(MEDIA_TYPES[form] for form in accepted)
+    raise UnsupportedBodyError("Content-Type", declared, f"one of {types}")
+
+
+async def limited_body(
+    request: Request, allowed: tuple[int, str], seconds: float, reservation: Reservation, turns: anyio.Lock
+) -> bytes:
+    """The body, of at most as many bytes as `allowed` says, within `seconds`; its bytes are counted in `reservation`.
+
+    Beyond `TURN_BYTES` bodies arrive in turns: one connection is read in each iteration of the event loop. A body that
+    exceeds the bytes in flight is read to its end and dropped, also in turns, before it is refused.
+
+    Raises
+    ------
+    TooLargeError, SlowBodyError
+        If it is larger, or takes longer.
+    UnsupportedBodyError
+        If it is compressed: a few bytes could expand to any number.
+    BusyError
+        If the bytes in flight exceed their limit.
+    """
+    limit, meaning = allowed
+    coding = request.headers.get("content-encoding", "identity")
+    if coding != "identity":
+        raise UnsupportedBodyError("Content-Encoding", coding, "none: bodies are not compressed")
+    declared = request.headers.get("content-length", "")
+    if declared.isdecimal() and int(declared[:20]) > limit:  # more digits exceed any limit
+        raise TooLargeError("body", declared[:20], meaning)
+    body = io.BytesIO()  # getvalue() does not copy
+    size, refusal = 0, None
+    with anyio.move_on_after(seconds) as patience:
+        async for chunk in request.stream():
+            size += len(chunk)
+            if size > limit:
+                raise TooLargeError("body", size, meaning)
+            if refusal is None:
+                try:
+                    reservation.add(len(chunk))
+                    body.write(chunk)
+                except BusyError as error:
+                    refusal, body = error, io.BytesIO()
+                    reservation.replace(0)
+            if size > TURN_BYTES:  # no more of it is read before the next request for a chunk
+                async with turns:
+                    await anyio.lowlevel.checkpoint()
+    if refusal is not None:
+        raise refusal
+    if patience.cancelled_caught:
+        raise SlowBodyError("body", f"{size} bytes", f"all of it within {seconds:g} s")
+    return body.getvalue()

@@ -1,0 +1,27 @@
+"""POST beside GET: the same parameters in a JSON body, where the pulse may be given by samples."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import Any, get_type_hints
+
+from fastapi import APIRouter, Request
+
+from rocking_api.http.body import body_form
+from rocking_api.models.bodies import twin_of
+from rocking_api.models.pulses import MAX_BODY, with_samples
+from rocking_api.service import ServiceDep
+
+
+def add_twin(router: APIRouter, path: str, endpoint: Callable[..., Awaitable[Any]], summary: str, **about: Any) -> None:
+    """Add the POST of an endpoint of parameters, request and service; `about` as its GET."""
+    kind = get_type_hints(endpoint)["params"]
+
+    async def post(request: Request, service: ServiceDep) -> Any:
+        """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+        form = body_form(request, ("json",))
+        params, _ = await service.read(request, kind, form, with_samples(kind), MAX_BODY)
+        return await endpoint(params, request, service)
+
+    summary = f"{summary}, under a pulse given by samples"
+    router.add_api_route(path, post, methods=["POST"], summary=summary, openapi_extra=twin_of(kind), **about)

@@ -1,0 +1,88 @@
+"""JSON bodies take the parameters that the query takes, and answer the same."""
+
+import pytest
+
+from tests.api.conftest import assert_problem
+
+RECORD = "time [s],a [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
+BLOCK = {"width": 0.4, "height": 1.6}
+RECORDS = BLOCK | {"restitution": 0.9, "gravity": 9.8, "name": "a.csv"}
+TRACE = {"time": [0.02 * k for k in range(3)], "rotation": [0.1, 0.05, 0.01]}
+ROUTES = {
+    "/v1/assess": ({"objects": [BLOCK]}, {"pga": 3.0, "pgv": 0.3, "shapes": "sine", "sensitivity": False, "seed": 3}),
+    "/v1/blocks/response": (
+        {"blocks": [BLOCK | {"peak_acceleration": 4.0, "period": 0.5}]},
+        {"pulse": "sine", "restitution": 0.9, "format": "csv"},
+    ),
+    "/v1/records/response": ({"record": RECORD}, RECORDS | {"scale": 1.5, "thresholds": False}),
+    "/v1/records/history": ({"record": RECORD}, RECORDS | {"samples": 20, "contact": True, "format": "csv"}),
+    "/v1/records/scales": ({"record": RECORD}, RECORDS | {"points": 5, "scale_max": 3.0}),
+    "/v1/records/pulse": ({"record": RECORD}, RECORDS | {"samples": 30}),
+    "/v1/response": ({}, {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}),
+    "/v1/spectrum": ({}, {"pulse": "sine", "slenderness": 0.4, "restitution": 0.85, "points": 3}),
+    "/v1/identify": (TRACE, {"confidence": 0.9, "degrees": True, "edges": 2}),
+}
+OTHER = {"pga": 2.0, "width": 0.5, "pulse": "cosine", "confidence": 0.8}
+FILES = {"/v1/records/" + name: RECORD for name in ("response", "history", "scales", "pulse")}
+
+
+def answer_of(response):
+    """The answer without its address; what is asked is the same."""
+    if "json" not in response.headers["content-type"]:
+        return response.text
+    return {name: value for name, value in response.json().items() if name != "url"}
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_the_same_parameters_in_the_body_and_in_the_query_have_the_same_answer(client, route):
+    content, params = ROUTES[route]
+    inside = client.post(route, json=content | params)
+    assert inside.status_code == (422 if route == "/v1/identify" else 200), inside.text  # three samples are too few
+    for name in params:
+        rest = {key: value for key, value in params.items() if key != name}
+        text = str(params[name]).lower() if isinstance(params[name], bool) else params[name]
+        assert answer_of(client.post(route, params={name: text}, json=content | rest)) == answer_of(inside)
+        assert answer_of(client.post(route, params={name: text}, json=content | params)) == answer_of(inside)
+    if route in FILES:
+        texts = {name: str(value).lower() if isinstance(value, bool) else value for name, value in params.items()}
+        assert answer_of(client.post(route, params=texts, content=FILES[route])) == answer_of(inside)
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_two_values_of_one_parameter_are_refused(client, route):
+    content, params = ROUTES[route]
+    name = next(name for name in OTHER if name in params)
+    problem = assert_problem(client.post(route, params={name: OTHER[name]}, json=content | params), 422, name)
+    assert problem["allowed"] == "one value"
+    assert problem["value"] == f"{OTHER[name]} in the query and {params[name]} in the body"
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_unknown_parameters_and_wrong_values_are_refused_in_either_place(client, route):
+    content, params = ROUTES[route]
+    assert_problem(client.post(route, json=content | params | {"colour": 1}), 422, "colour")
+    assert_problem(client.post(route, params={"colour": 1}, json=content | params), 422, "colour")
+    name = next(name for name in OTHER if name in params)
+    rest = {key: value for key, value in params.items() if key != name}
+    for given in (
+        client.post(route, json=content | params | {name: -1.0}),
+        client.post(route, params={name: "-1.0"}, json=content | rest),
+    ):
+        assert_problem(given, 422, name)
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_the_description_states_the_parameters_of_the_body(client, route):
+    document = client.get("/openapi.json").json()
+    operation = document["paths"][route]["post"]
+    schema = operation["requestBody"]["content"]["application/json"]["schema"]
+    model = document["components"]["schemas"][schema.get("anyOf", [schema])[0]["$ref"].rpartition("/")[2]]
+    content, params = ROUTES[route]
+    assert set(content) | set(params) <= set(model["properties"])
+    assert {one["name"] for one in operation.get("parameters", [])} <= set(model["properties"])
+
+
+def test_what_is_missing_in_both_places_is_named(client):
+    assert_problem(client.post("/v1/records/response?width=0.4", json={"record": RECORD}), 422, "height")
+    assert_problem(client.post("/v1/records/response?width=0.4", content=RECORD), 422, "height")
+    assert_problem(client.post("/v1/records/response", json=BLOCK), 422, "record")
