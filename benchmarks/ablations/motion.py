@@ -20,11 +20,12 @@ from rocking._history.sampling import REST_VELOCITY, sample_free_rocking
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._solver.arcs.flight import state_at
-from rocking._solver.kernels.event_loop import advance, init_state
+from rocking._solver.kernels.event_loop import advance_by_arc, end_flight, init_state, start_flight
 from rocking._solver.peak_response import peak_response
 from rocking._solver.records.state import BLOCK_STATE
 from rocking._solver.rules import SAFE, set_block
 from rocking._solver.state import pulse_state, step_state
+from rocking._solver.taylor.flight import flight_by_steps
 from rocking._solver.taylor.step import take_step
 
 PULSE, RESTITUTION = "sine", 0.85
@@ -41,6 +42,18 @@ outcomes of the motion integrated after the pulse that differ from the outcome b
 
 LONG_DURATION = 1e6
 """Time after the pulse that no block exceeds [tau]."""
+
+
+@kernel
+def advance(flight: Record, steps: Record) -> bool:
+    """Follow the next flight of any block to its end; False if it is the last or there is none."""
+    if flight.by_arcs == 1:
+        return advance_by_arc(flight)
+    if not start_flight(flight):
+        return False
+    ended, w, z = flight_by_steps(flight, steps)
+    flight.length, top = flight.elapsed, flight.largest_z
+    return end_flight(flight, ended, w, z, top)
 
 
 @kernel

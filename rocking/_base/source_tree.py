@@ -13,6 +13,9 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 """Folder of the package and, in a checkout, of `workflow/` and `environment.lock`."""
 
+_BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
+"""Attributes of statements that hold statements."""
+
 
 class SourceTree:
     """The Python files of a folder as they are now: each is read once, for any number of digests.
@@ -83,13 +86,17 @@ class SourceTree:
 
 def imported_names(syntax: ast.Module) -> Iterable[tuple[str, str | None, int]]:
     """The names that a module imports, with the module of which each may be an attribute, and the relative level."""
-    for node in ast.walk(syntax):
+    waiting: list[ast.AST] = [syntax]
+    while waiting:
+        node = waiting.pop()
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name, None, 0
         elif isinstance(node, ast.ImportFrom):
             for alias in node.names:
                 yield alias.name, node.module or "", node.level
+        for block in _BLOCKS:  # expressions, nine tenths of the nodes, hold no import
+            waiting += getattr(node, block, ())
 
 
 def _package(root: Path) -> Iterable[Path]:

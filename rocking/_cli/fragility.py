@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json as json_format
 import re
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import accumulate
@@ -229,6 +228,8 @@ def _read(path: Path) -> dict[str, Any]:
 def _toml(text: str) -> Any:
     if max(map(len, text.split("\n"))) > MAX_LINE:
         raise ValueError(f"lines of TOML have at most {MAX_LINE} characters")
+    import tomllib
+
     return tomllib.loads(text)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +15,15 @@ from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
 from rocking._excitation.records.vertical import check_one_vertical_scale
+from rocking._excitation.shapes import MAX_PIECES
 from rocking._history.sampling import (
     ROTATION,
     TAU,
     VELOCITY,
     sample_arcs,
+    sample_flights,
     sample_free_rocking,
     sample_record,
-    solve_and_sample,
 )
 from rocking._model.checks import check_number, check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
@@ -30,12 +32,22 @@ from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
-from rocking._solver.peak_response import peak_response
+from rocking._numba.simd import LANES
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.peak_response import NO_BODIES, peak_response
 from rocking._solver.records import state as samples_state
 from rocking._solver.records.record_response import frequency_parameter_range, pulse_rows
 from rocking._solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
 from rocking._solver.rules import IMPACT_LIMIT
-from rocking._solver.state import BODY_FIELDS, block_cell, pulse_state, step_state
+from rocking._solver.state import (
+    BODY_FIELDS,
+    EDGE_COLUMNS,
+    FOLLOWED_FLIGHT,
+    RESPONSE_RECORD,
+    block_cell,
+    pulse_state,
+    step_state,
+)
 
 Floats = NDArray[np.float64]
 
@@ -44,6 +56,9 @@ FREE_DURATION = 8.0
 
 MAX_FREE_IMPACTS = 10_000
 """Largest number of impacts of free rocking."""
+
+MAX_FLIGHTS = IMPACT_LIMIT + 12 * (MAX_PIECES + 1)
+"""Most flights under a pulse: three more impacts and one uplift in each of the three intervals of a piece."""
 
 MAX_ROTATION = 4.0
 """|theta|/alpha up to which an overturning block is followed [-]; it lies on the ground at |theta| = pi/2."""
@@ -233,18 +248,37 @@ class PulseMotion(BodyMotion):
         return np.asarray(f / self.cell["slenderness"][0])
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
-        rest = self.max_rotation, history, impact_times, flag_array(self.stop)
-        record = pulse_state(self.pulse).copy()
+        flag = flag_array(self.stop)
         if self.pulse.series.has_exact_arcs and self.alpha == 0.0:
-            written = sample_arcs(self.cell, record, *rest)
+            record = pulse_state(self.pulse).copy()
+            written = int(sample_arcs(self.cell, record, history, impact_times, flag))
         else:
-            written = solve_and_sample(self.cell, record, step_state(record), *rest)
+            followed, solved = self._flights
+            record = solved.copy()
+            sample_flights(followed, record, step_state(pulse_state(self.pulse)), self.max_rotation, history, flag)
+            impacts = followed if record["end_sign"] == 0.0 else followed[:-1]
+            written = min(impacts.size, impact_times.size)
+            impact_times[:written] = (impacts["next_phase"][:written] - self.pulse.start) / self.frequency_ratio
         if self.alpha == 0.0:
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
         check_stop(self.stop)
-        return record, int(written)
+        return record, written
+
+    @cached_property
+    def _flights(self) -> tuple[NDArray[np.void], Record]:
+        """The flights under the pulse by Taylor steps, and the state of the solver after them."""
+        cell, state = self.cell, np.repeat(pulse_state(self.pulse), LANES)
+        followed, edges = np.empty(MAX_FLIGHTS, FOLLOWED_FLIGHT), np.empty((1, EDGE_COLUMNS))
+        values = cell["slenderness"][0], cell["rate"], cell["eta"][0], cell["alpha"]
+        groups = [np.array([value]) for value in values]
+        equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
+        bodies = NO_BODIES if equal else np.array([cell])
+        steps, flag = step_state(state[0]), flag_array(self.stop)
+        count = solve_batch(*groups, bodies, state, steps, flag, np.empty(1, RESPONSE_RECORD), edges, followed)
+        check_stop(self.stop)
+        return followed[:count].copy(), state[0]
 
     def _set_response(self, record: Record) -> None:
         """Set the response of `peak_response`, whose stages round differently; the state at the pulse's end stays."""

@@ -2,7 +2,8 @@
 
 The event loop of the solver, for a pulse or for samples of the ground motion, follows one flight after the other; each
 is then repeated from its start, by the same arcs, pieces or Taylor steps, and evaluated at the times inside it. So a
-history has the events of the response, and samples do not change them.
+history has the events of the response, and samples do not change them. Under a pulse the flights by Taylor steps are
+those that the kernel of the responses has written, so that a history does not compile its event loop again.
 
 In all functions `history` is a float array (3, times): the rows `TAU`, ascending times from the start of the ground
 motion [-], `ROTATION` theta/alpha and `VELOCITY` theta'/(p alpha), the last two zero on entry. `filled` is the number
@@ -18,8 +19,9 @@ import math
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.records import copy_fields
 from rocking._solver.arcs.flight import set_angles, state_at
-from rocking._solver.kernels.event_loop import advance, advance_by_arc, init_state
+from rocking._solver.kernels.event_loop import advance_by_arc, init_state
 from rocking._solver.records import taylor_flight as pieces
 from rocking._solver.records.arc_flight import flight_by_arcs
 from rocking._solver.records.batch import end_flight
@@ -30,7 +32,7 @@ from rocking._solver.records.taylor_step import take_step as take_piece_step
 from rocking._solver.rules import set_body, set_sign
 from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 from rocking._solver.taylor.events import evaluate_series
-from rocking._solver.taylor.flight import MAX_STEPS, impact_in_step, start_steps
+from rocking._solver.taylor.flight import MAX_STEPS, impact_in_step
 from rocking._solver.taylor.step import set_edge_lane, take_step
 
 TAU, ROTATION, VELOCITY = range(3)
@@ -41,38 +43,94 @@ REST_VELOCITY = 1e-7
 
 
 @entry
-def solve_and_sample(
-    cell: Record,
+def sample_flights(
+    followed: Record,
     flight: Record,
     steps: Record,
     max_rotation: float,
     history: FloatArray,
-    impact_times: FloatArray,
     stop: FloatArray,
-) -> int:
-    """One body under a pulse from rest to its final outcome, sampled during the pulse; returns the impacts written.
+) -> None:
+    """Repeat the flights of a body under a pulse by the Taylor steps of `rocking._solver.kernels.batch.solve_batch`.
+
+    A body that overturns is followed to the end of the pulse.
 
     Parameters
     ----------
-    cell
-        A record `BODY_CELL`.
+    followed : array of `rocking._solver.state.FOLLOWED_FLIGHT`
+        The flights, in their order.
     flight, steps
-        Solver state, records of `pulse_state` and `step_state`; `flight` holds the response on return.
+        Solver state, records of `pulse_state` as it was after them, and of `step_state`; `flight` holds z and w at the
+        end of the pulse on return.
     """
-    return sample_pulse(cell, flight, steps, max_rotation, history, impact_times, stop)
+    first, omega = flight.end_phase[0], flight.omega
+    pulse_end = (flight.end_phase[flight.pieces] - first) / omega
+    filled = 0
+    for k in range(len(followed)):
+        if is_stopped(stop):
+            return
+        copy_fields(followed[k], flight)
+        set_sign(flight, flight.sign)
+        start = (flight.phase - first) / omega
+        going = k + 1 < len(followed) or flight.end_sign == 0.0  # whether the flight ended in an impact
+        end = (flight.next_phase - first) / omega if going else start + flight.length
+        if not going and end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
+            flight.length, end = pulse_end - start, pulse_end
+        filled = pass_times(history, filled, start)  # at rest
+        limit = math.inf if going else max_rotation
+        filled, z, w = sample_steps(flight, steps, start, end, limit, history, filled)
+        if not going:
+            flight.end_rotation, flight.end_velocity = z, w
 
 
 @entry
 def sample_arcs(
     cell: Record,
     flight: Record,
-    max_rotation: float,
     history: FloatArray,
     impact_times: FloatArray,
     stop: FloatArray,
 ) -> int:
-    """`solve_and_sample` for a slender block under sinusoids, compiled without Taylor steps."""
-    return sample_pulse(cell, flight, None, max_rotation, history, impact_times, stop)
+    """One slender block under sinusoids from rest to its final outcome, sampled during the pulse by exact arcs.
+
+    Returns the number of impacts written.
+
+    Parameters
+    ----------
+    cell
+        A record `BODY_CELL`.
+    flight
+        Solver state, a record of `pulse_state`; it holds the response on return.
+    """
+    set_body(flight, cell, False)
+    omega = cell.rate
+    init_state(flight, omega)
+    pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
+    filled, written = 0, 0
+    going = flight.interval_count > 0  # whether the last flight ended in an impact
+    while going and not is_stopped(stop):
+        flight.length = math.nan
+        going = advance_by_arc(flight)
+        if math.isnan(flight.length):
+            break  # at rest until the end
+        start = (flight.phase - flight.end_phase[0]) / omega
+        end = start + flight.length
+        if going:
+            end = (flight.next_phase - flight.end_phase[0]) / omega  # as the start of the next flight
+            if written < len(impact_times):
+                impact_times[written] = end
+                written += 1
+        elif end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
+            flight.length, end = pulse_end - start, pulse_end
+        filled = pass_times(history, filled, start)  # at rest
+        # `advance_by_arc` has set the angles of the next flight: restore those of this one
+        set_angles(flight, flight.phase, flight.cosine0, flight.sine0)
+        filled, z, w = sample_arc(flight, start, end, history, filled)
+        if going:
+            set_angles(flight, flight.next_phase, flight.cosine0, flight.sine0)
+        else:
+            flight.end_rotation, flight.end_velocity = z, w
+    return written
 
 
 @entry
@@ -128,52 +186,6 @@ def sample_record(
 
 
 @kernel
-def sample_pulse(
-    cell: Record,
-    flight: Record,
-    steps: Record | None,
-    max_rotation: float,
-    history: FloatArray,
-    impact_times: FloatArray,
-    stop: FloatArray,
-) -> int:
-    """`solve_and_sample`, or `sample_arcs` where `steps` is None: then it is compiled without Taylor steps."""
-    set_body(flight, cell, False)
-    omega = cell.rate
-    init_state(flight, omega)
-    pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
-    filled, written = 0, 0
-    going = flight.interval_count > 0  # whether the last flight ended in an impact
-    while going and not is_stopped(stop):
-        flight.length = math.nan
-        going = advance_by_arc(flight) if steps is None else advance(flight, steps)
-        if math.isnan(flight.length):
-            break  # at rest until the end
-        start = (flight.phase - flight.end_phase[0]) / omega
-        end = start + flight.length
-        if going:
-            end = (flight.next_phase - flight.end_phase[0]) / omega  # as the start of the next flight
-            if written < len(impact_times):
-                impact_times[written] = end
-                written += 1
-        elif end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
-            flight.length, end = pulse_end - start, pulse_end
-        filled = pass_times(history, filled, start)  # at rest
-        # `advance` has set the angles of the next flight: restore those of this one
-        set_angles(flight, flight.phase, flight.cosine0, flight.sine0)
-        if steps is None or flight.by_arcs == 1:
-            filled, z, w = sample_arc(flight, start, end, history, filled)
-        else:
-            limit = math.inf if going else max_rotation
-            filled, z, w = sample_steps(flight, steps, start, end, limit, history, filled)
-        if going:
-            set_angles(flight, flight.next_phase, flight.cosine0, flight.sine0)
-        else:
-            flight.end_rotation, flight.end_velocity = z, w
-    return written
-
-
-@kernel
 def pass_times(history: FloatArray, filled: int, start: float) -> int:
     """Pass the times before `start`; returns the number of times passed."""
     while filled < history.shape[1] and history[TAU, filled] < start:
@@ -195,7 +207,7 @@ def sample_step(steps: Record, sign: float, start: float, end: float, history: F
 
 @kernel
 def sample_arc(flight: Record, start: float, end: float, history: FloatArray, filled: int) -> tuple[int, float, float]:
-    """Evaluate the arc of the last flight of `advance`; returns the times passed, last z, w."""
+    """Evaluate the arc of the last flight; returns the times passed, last z, w."""
     while filled < history.shape[1] and history[TAU, filled] < end:
         h = max(history[TAU, filled] - start, 0.0)
         set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
@@ -217,9 +229,10 @@ def sample_steps(
     history: FloatArray,
     filled: int,
 ) -> tuple[int, float, float]:
-    """Repeat the last flight of `advance`, at most to z = `max_rotation`; returns the times passed, last z, w."""
-    steps.omega[0] = flight.omega
-    start_steps(flight, steps, 0)
+    """Repeat a flight, at most to z = `max_rotation`; returns the times passed, last z, w."""
+    set_edge_lane(steps, 0, flight, flight.side)
+    steps.omega[0], steps.strength[0], steps.phase[0] = flight.omega, flight.strength, flight.phase
+    steps.z0[0], steps.w0[0], steps.starts_at_uplift[0] = 0.0, flight.w0, flight.starts_at_uplift
     elapsed, z, w = 0.0, 0.0, flight.w0
     while elapsed < flight.length and z < max_rotation:
         steps.limit[0] = flight.length - elapsed

@@ -12,6 +12,7 @@ is compiled in each process. Either gives one warning in a process.
 from __future__ import annotations
 
 import ast
+import gc
 import hashlib
 import os
 import shutil
@@ -86,8 +87,14 @@ def kernel_digest(sources: SourceTree) -> str:
     The processor is that of the machine, or the one that NUMBA_CPU_NAME and NUMBA_CPU_FEATURES name: the folder is then
     found on every machine.
     """
-    compiled = [path for path in sources.package() if _is_compiled(sources, path)]
-    return _digest(sources, sources.files(*compiled))
+    collecting = gc.isenabled()
+    gc.disable()  # the syntax trees are kept: to look for garbage among them takes half of the time
+    try:
+        compiled = [path for path in sources.package() if _is_compiled(sources, path)]
+        return _digest(sources, sources.files(*compiled))
+    finally:
+        if collecting:
+            gc.enable()
 
 
 def keep_on_disk(make: Make, function: Callable[..., Any]) -> Any:

@@ -12,7 +12,7 @@ from rocking._excitation.shapes import AbstractPulse
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, solver_state
+from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, NO_FLIGHTS, solver_state
 from rocking._solver.records.record_response import pulse_rows, solve_bodies
 from rocking._solver.records.samples import motion_samples
 from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
@@ -47,7 +47,8 @@ def solve_motion(
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
         unused = omega[part]
         state = solver_state.of_steps(motion, FULL_PRECISION)
-        solve_batch(unused, omega[part], unused, unused, cells[part], *state, flag, records[part], edges[part])
+        groups = unused, omega[part], unused, unused
+        solve_batch(*groups, cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
 
     cores = threads or AVAILABLE_CORES
     fill_chunks(fill, cells.size, min(max(math.ceil(cells.size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)

@@ -27,7 +27,15 @@ from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.records.record_response import record_response, solve_pulse
 from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
 from rocking._solver.stages.state import StageState, stage_state
-from rocking._solver.state import BODY_CELL, EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, pulse_state, step_state
+from rocking._solver.state import (
+    BODY_CELL,
+    EDGE_COLUMNS,
+    FOLLOWED_FLIGHT,
+    FULL_PRECISION,
+    RESPONSE_RECORD,
+    pulse_state,
+    step_state,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,8 +53,11 @@ NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
 
 
-NO_BODIES = np.empty(0, BODY_CELL)
+NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))
 """For blocks with equal edges."""
+
+NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)
+"""Where only responses are wanted."""
 
 
 class SolverState(threading.local):
@@ -294,7 +305,7 @@ def _solve_by_steps(
     records: NDArray[np.void],
 ) -> None:
     state = solver_state.of_steps(pulse, precision)
-    solve_batch(*_with_alpha(cells), NO_BODIES, *state, flag, records, np.empty((0, EDGE_COLUMNS)))
+    solve_batch(*_with_alpha(cells), NO_BODIES, *state, flag, records, NO_EDGES, NO_FLIGHTS)
 
 
 def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

@@ -164,6 +164,18 @@ def _flight_layout() -> np.dtype[np.void]:
 FLIGHT_STATE = _flight_layout()
 """Layout of the record of an excitation and a cell."""
 
+FOLLOWED_FLIGHT = np.dtype(
+    [
+        ("phase", np.float64),  # fields of `FLIGHT_STATE`: those of the start,
+        ("w0", np.float64),
+        ("sign", np.float64),
+        ("starts_at_uplift", np.int64),
+        ("length", np.float64),  # and of the end
+        ("next_phase", np.float64),
+    ]
+)
+"""What repeats a flight of a cell."""
+
 
 EDGE_LANES = [
     ("slender", np.float64, (LANES,)),  # 1 for the slender limit, else 0

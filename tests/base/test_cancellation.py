@@ -13,10 +13,10 @@ from rocking._history.motion import build_motion
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES
+from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS
 from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
 from rocking._solver.stages.state import stage_state
-from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, pulse_state, step_state
+from rocking._solver.state import RESPONSE_RECORD, pulse_state, step_state
 from rocking._spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
@@ -99,7 +99,7 @@ def test_a_kernel_reads_the_flag_within_one_cell():
             timer = threading.Timer(delay, flag.fill, [1])
             timer.start()
             if alpha:
-                kernel(*groups, NO_BODIES, *scratch, flag, answers, np.empty((0, EDGE_COLUMNS)))
+                kernel(*groups, NO_BODIES, *scratch, flag, answers, NO_EDGES, NO_FLIGHTS)
             else:
                 kernel(*groups, *scratch, flag, answers)
             timer.join()

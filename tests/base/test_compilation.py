@@ -43,7 +43,7 @@ ENTRIES = (
         rock_many.solve_batch,
         stages.solve_by_arcs,
         stages.solve_remainder,
-        sampling.solve_and_sample,
+        sampling.sample_flights,
         sampling.sample_arcs,
         sampling.sample_free_rocking,
     ),

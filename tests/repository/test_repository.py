@@ -100,7 +100,7 @@ def test_a_response_loads_the_solver_only(command: str) -> None:
         "import sys\nfrom rocking._cli import progress\nfrom rocking._cli.app import app\n"
         "progress.DELAY = 1e6  # no command is long\n"
         f"app({command.split()}, standalone_mode=False)\n"
-        "heavy = ('scipy.', 'pint', 'xarray', 'pandas', 'netCDF4', 'matplotlib', 'rich')\n"
+        "heavy = ('scipy.', 'pint', 'xarray', 'pandas', 'netCDF4', 'matplotlib', 'rich', 'tomllib')\n"
         "light = ('scipy._', 'scipy.version')  # of scipy itself, which numba imports\n"
         "print(*(one for one in sys.modules if one.startswith(heavy) and not one.startswith(light)), file=sys.stderr)"
     )

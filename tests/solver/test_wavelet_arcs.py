@@ -10,9 +10,9 @@ import rocking
 from rocking._excitation.pulses import WaveletPulse
 from rocking._solver.families.wavelets import WAVELET_SERIES_LENGTH
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES, solve_cells, solver_state
+from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS, solve_cells, solver_state
 from rocking._solver.stages.batch import LEFT
-from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
+from rocking._solver.state import FULL_PRECISION, RESPONSE_RECORD
 from tests.solver.test_stages import assert_agree, assert_equal, by_stages, cells
 
 NAMES = ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"]
@@ -38,9 +38,8 @@ def frequencies(pulse, s, w):
 def by_steps(pulse, s, w, eta):
     found = np.zeros(s.size, RESPONSE_RECORD)
     state = solver_state.of_steps(pulse, FULL_PRECISION)
-    solve_batch(
-        s, w, eta, np.zeros(s.size), NO_BODIES, *state, np.zeros(1, np.uint8), found, np.empty((0, EDGE_COLUMNS))
-    )
+    groups = s, w, eta, np.zeros(s.size)
+    solve_batch(*groups, NO_BODIES, *state, np.zeros(1, np.uint8), found, NO_EDGES, NO_FLIGHTS)
     return found
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.records import copy_fields
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
 from rocking._solver.rules import set_block, set_body, write_edges, write_response
@@ -104,8 +105,9 @@ def solve_batch(
     stop: FloatArray,
     responses: Record,
     edges: FloatArray,
-) -> None:
-    """Follow blocks from rest to their final outcome, by Taylor steps.
+    followed: Record,
+) -> int:
+    """Follow blocks from rest to their final outcome, by Taylor steps; returns the number of flights written.
 
     Parameters
     ----------
@@ -121,8 +123,10 @@ def solve_batch(
         Filled.
     edges : float array (cells, EDGE_COLUMNS), or (0, EDGE_COLUMNS)
         Of `bodies`, filled, see `rocking._solver.state.EDGE_COLUMNS`.
+    followed : array of `rocking._solver.state.FOLLOWED_FLIGHT`
+        Filled with the flights in the order of their ends, as many as fit: of one cell, for its history.
     """
-    following, busy, taken = 0, 0, steps.taken
+    following, busy, taken, written = 0, 0, steps.taken, 0
     free_lanes(steps)
     for lane in range(LANES):
         taken[lane] = 0
@@ -147,8 +151,11 @@ def solve_batch(
                 continue
             taken[lane] = 0
             flight.length = flight.elapsed
-            going = end_flight(flight, ended, w, z, flight.largest_z) and start_flight(flight)
-            if going or continue_with_next_eta(flight, eta, responses, edges):
+            going = end_flight(flight, ended, w, z, flight.largest_z)
+            if written < len(followed):
+                copy_fields(flight, followed[written])
+                written += 1
+            if (going and start_flight(flight)) or continue_with_next_eta(flight, eta, responses, edges):
                 start_steps(flight, steps, lane)
                 continue
             following = next_cell(
@@ -157,3 +164,4 @@ def solve_batch(
             if flight.cell < 0:
                 steps.in_use[lane] = 0.0
                 busy -= 1
+    return written

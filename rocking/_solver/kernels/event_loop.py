@@ -25,7 +25,6 @@ from rocking._solver.rules import (
     update_peak,
 )
 from rocking._solver.state import IMPACT, OVERTURNS
-from rocking._solver.taylor.flight import flight_by_steps
 
 ROUNDING = 1e-15
 """Excess of |a f| over 1 at the start of the pulse that is within rounding [-]."""
@@ -175,16 +174,4 @@ def advance_by_arc(flight: Record) -> bool:
     if h < 0.0:
         ended, h, w, z, top = long_flight(flight)
     flight.length = h
-    return end_flight(flight, ended, w, z, top)
-
-
-@kernel
-def advance(flight: Record, steps: Record) -> bool:
-    """The same for any block and excitation."""
-    if flight.by_arcs == 1:
-        return advance_by_arc(flight)
-    if not start_flight(flight):
-        return False
-    ended, w, z = flight_by_steps(flight, steps)
-    flight.length, top = flight.elapsed, flight.largest_z
     return end_flight(flight, ended, w, z, top)
