@@ -27,7 +27,7 @@ OBSERVE = """() => {
 DONE: dict[str, str] = {
     "/": "() => document.querySelector('#spectrum-chart canvas') && document.querySelector('.headline')",
     "/objects?sample=1": "() => document.getElementById('ranking')",
-    "/records": "() => document.getElementById('pulse-caution').textContent",
+    "/records": "() => document.querySelector('#rotation canvas')",
     "/datasets": "() => document.querySelector('#groups h3')",
     "/suites": "() => document.querySelector('#suite-report canvas')",
     "/state": "() => document.querySelector('#facts dl')",
