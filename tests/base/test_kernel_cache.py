@@ -61,22 +61,35 @@ sys.stdout.write(" ".join(map(str, [*hits_and_misses(compiled), len(said), *said
 """
 
 
-@pytest.fixture(params=WAYS, ids=["faster", "plain"])
-def run(request, tmp_path):
-    """Runs small kernels in a process of its own, with the cache of this test; returns what they print."""
-    kept = tmp_path / "kept"
-    (tmp_path / "small_kernels.py").write_text(KERNELS)
-    variables = {"PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}", "ROCKING_PLAIN_NUMBA": request.param}
+@pytest.fixture(scope="module", params=WAYS, ids=["faster", "plain"])
+def empty(request, fork, tmp_path_factory):
+    """A cache that knows the digest of the sources, which takes a second, and the way of compilation."""
+    folder, way = tmp_path_factory.mktemp("empty"), {"ROCKING_PLAIN_NUMBA": request.param}
+    fork("from rocking._numba import kernel_cache; kernel_cache.cache_folder()", NUMBA_CACHE_DIR=str(folder), **way)
+    return folder, way
 
-    def process(code=CALL, *, command=(sys.executable,), cache=kept):
-        environment = os.environ | variables | {"NUMBA_CACHE_DIR": str(cache)}
-        started = [*command, "-c", START + code]
-        done = subprocess.run(started, env=environment, capture_output=True, text=True, check=False)
+
+@pytest.fixture
+def run(empty, fork, tmp_path):
+    """Runs small kernels in a process of its own, with the cache of this test; returns what they print."""
+    folder, way = empty
+    kept = Path(shutil.copytree(folder, tmp_path / "kept"))
+    (tmp_path / "small_kernels.py").write_text(KERNELS)
+
+    def forked(code=CALL):
+        found = f"import sys; sys.path.append({str(tmp_path)!r})\n"
+        return fork(found + START + code, NUMBA_CACHE_DIR=str(kept), **way)
+
+    def started(code=CALL, *, command=(sys.executable,), cache=kept):
+        variables = way | {"PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}", "NUMBA_CACHE_DIR": str(cache)}
+        done = subprocess.run(
+            [*command, "-c", START + code], env=os.environ | variables, capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    process.kept = kept
-    return process
+    forked.kept, forked.started = kept, started
+    return forked
 
 
 def files_of(cache):
@@ -95,8 +108,9 @@ def flipped(content, share):
 
 
 def test_other_processes_find_the_machine_code(run):
-    assert run().split() == ["0", "1", "0"]
-    assert run().split() == ["1", "0", "0"]
+    """Each has its own addresses."""
+    assert run.started().split() == ["0", "1", "0"]
+    assert run.started().split() == ["1", "0", "0"]
 
 
 def test_processes_that_start_together_compile_and_load_without_a_warning(run):
@@ -235,7 +249,7 @@ def test_a_full_disk_is_done_without(run, tmp_path):
     disk = tmp_path / "disk"
     disk.mkdir()
     mounted = f'mount -t tmpfs -o size=8k tmpfs {disk} && exec "$0" "$@"'
-    output = run(command=(*IN_NAMESPACE, "sh", "-c", mounted, sys.executable), cache=disk)
+    output = run.started(command=(*IN_NAMESPACE, "sh", "-c", mounted, sys.executable), cache=disk)
     hits, misses, warned, text = output.split(maxsplit=3)
     assert (hits, misses, warned) == ("0", "1", "1")
     assert "No space left on device" in text
@@ -376,8 +390,9 @@ def test_kernels_without_a_cache_folder_give_one_warning(folder, package, tmp_pa
         assert twice(1.5) == 3.0
 
 
-def test_a_process_without_a_cache_folder_gives_results_after_one_warning(run, tmp_path):
-    closed(tmp_path / "kept")
+def test_a_process_without_a_cache_folder_gives_results_after_one_warning(run):
+    shutil.rmtree(run.kept)
+    closed(run.kept)
     hits, misses, warned, text = run().split(maxsplit=3)
     assert (hits, misses, warned) == ("0", "1", "1")
     assert "NUMBA_CACHE_DIR" in text
