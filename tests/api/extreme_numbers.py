@@ -35,6 +35,7 @@ from rocking_api.settings import Settings
 from typer.testing import CliRunner
 
 import rocking
+from benchmarks.accuracy.free_rocking import free_rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._cli.app import app as command_line
 from rocking.paper import Groups, GroupSet, Orientation, Problem
@@ -85,7 +86,8 @@ NUMBERS: dict[str, Any] = {
 }  # fmt: skip
 """Ordinary values of the parameters of Python by their names."""
 
-TRACE = np.arange(80) * 0.05, 0.1 * np.cos(np.arange(80) * 0.25)
+TRACE = np.arange(81) * 0.05, free_rocking(np.array([0.1]), *np.array([0.25, 2.5, 0.9]), 4.0, 20)[0]
+"""Times [s] and rotations [rad] of a body that rocks freely: under other rotations a fit takes hundreds of steps."""
 
 WINDOWS: dict[str, Any] = {
     "rocking.SampledPulse": {"time": [0.0, 1.0, 2.0, 4.0]},
@@ -281,7 +283,7 @@ def replaced(given: Any) -> Iterator[Any]:
     if isinstance(given, dict):
         yield from ({**given, name: other} for name, value in given.items() for other in replaced(value))
     elif isinstance(given, (list, tuple)):
-        for place in range(0, len(given), max(len(given) // 8, 1)):
+        for place in range(0, len(given), max(len(given) // 4, 1)):
             yield from (type(given)([*given[:place], other, *given[place + 1 :]]) for other in replaced(given[place]))
     elif isinstance(given, (float, int)) and not isinstance(given, bool):
         yield from EXTREMES
