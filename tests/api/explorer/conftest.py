@@ -25,7 +25,7 @@ class Service:
 
     def __init__(self, results):
         self.results = results
-        self.seconds = 0.0  # that the answers under /v1 are late
+        self.seconds = 0.0  # that answers under /v1, and to forms, are late
         self.refusals = 0  # times that it is busy instead
         with socket.create_server(("127.0.0.1", 0)) as probe:
             self.port = probe.getsockname()[1]
@@ -50,7 +50,7 @@ class Service:
         self.thread.join(timeout=60)
 
     async def __call__(self, scope, receive, send):
-        if scope["type"] == "http" and scope["path"].startswith("/v1/"):
+        if scope["type"] == "http" and (scope["path"].startswith("/v1/") or scope["method"] == "POST"):
             if self.refusals:
                 self.refusals -= 1
                 await JSONResponse({"detail": "busy"}, 503, {"Retry-After": "1"})(scope, receive, send)
@@ -100,8 +100,9 @@ def open_page(browser, address):
     """Opens a page of the service; afterwards, nothing may have failed in it or been asked of another host."""
     wrong, contexts = [], []
 
-    def opened(path="/", *, failing=False, **options):
-        context = browser.new_context(base_url=address, locale="en-GB", **options)
+    def opened(path="/", *, failing=False, reduced_motion="reduce", **options):  # an animation occupies a processor
+        options |= {"base_url": address, "locale": "en-GB", "reduced_motion": reduced_motion}
+        context = browser.new_context(**options)
         context.set_default_timeout(LIMIT)
         contexts.append(context)
         page = context.new_page()

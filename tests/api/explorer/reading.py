@@ -2,7 +2,7 @@
 
 import base64
 import io
-from urllib.parse import parse_qs, urlparse
+from urllib.parse import parse_qs
 
 import numpy as np
 from matplotlib.image import imread
@@ -24,7 +24,8 @@ def settle(page: Page):
 
 
 def query(page: Page):
-    return {name: values[0] for name, values in parse_qs(urlparse(page.url).query).items()}
+    """The query of the address as the page has it: `page.url` follows when the browser has reported the change."""
+    return {name: values[0] for name, values in parse_qs(page.evaluate("location.search.slice(1)")).items()}
 
 
 def pixels(page: Page, selector):

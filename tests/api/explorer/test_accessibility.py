@@ -16,13 +16,14 @@ def _fetched():
 
 @pytest.mark.parametrize(("path", "scheme"), [(POINT, "light"), (BLOCK, "dark")])
 def test_the_explorer_is_accessible(open_page, path, scheme):
-    page = open_page(path, color_scheme=scheme, reduced_motion="reduce")
+    page = open_page(path, color_scheme=scheme)
     settle(page)
     expect(page.locator("#spectrum-chart canvas")).to_be_visible()
     expect(page.locator("#rotation canvas")).to_be_visible()
     assert axe.violations(page) == []
     if path == BLOCK:
         page.locator("#open-report").click()
+        expect(page.locator("#report")).to_be_visible()
         assert axe.violations(page) == []
 
 
@@ -36,7 +37,7 @@ def test_errors_are_accessible(open_page):
 
 
 def test_the_page_of_a_record_is_accessible(open_page):
-    page = open_page("/records", reduced_motion="reduce")
+    page = open_page("/records")
     expect(page.locator("#pulse-caution")).to_contain_text("does not replace it")  # of the example, the last one
     assert axe.violations(page) == []
     page.locator("#more summary").click()

@@ -25,6 +25,9 @@ OVERLAPS = """() => {
     return found;
 }"""
 
+WIDTHS = sorted({*range(320, 1441, 80), 352, 353, 481, 767, 768, 1023, 1024})
+"""Widths of the window [px], among them both sides of those at which the style sheet changes the layout."""
+
 # The charts follow the width of the window when the browser draws its next frame, before anything is seen.
 NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
@@ -59,7 +62,7 @@ def test_nothing_overlaps_on_the_other_pages(open_page, path):
 def overlaps_by_width(page):
     """Boxes over each other or outside, by width of the window and size of the text; nothing is wider than it."""
     found = {}
-    sizes = [*((width, "100%") for width in range(320, 1441, 40)), *((width, "200%") for width in (390, 768, 1400))]
+    sizes = [*((width, "100%") for width in WIDTHS), *((width, "200%") for width in (390, 768, 1400))]
     for width, text in sizes:
         page.set_viewport_size({"width": width, "height": 900})
         page.evaluate("size => { document.documentElement.style.fontSize = size; scrollTo(0, 0) }", text)

