@@ -13,8 +13,6 @@ ESSENTIAL = (
     "tests/base/test_simd.py",
     "tests/solver/test_against_tables.py",
     "tests/solver/test_rigid_against_tables.py",
-    "tests/solver/test_golden_thresholds.py",
-    "tests/solver/test_free_rocking.py",
     "tests/solver/records/test_against_table.py",
 )
 

@@ -25,8 +25,8 @@ OVERLAPS = """() => {
     return found;
 }"""
 
-WIDTHS = sorted({*range(320, 1441, 80), 352, 353, 481, 767, 768, 1023, 1024})
-"""Widths of the window [px], among them both sides of those at which the style sheet changes the layout."""
+WIDTHS = range(320, 1441, 40)
+"""Widths of the window [px]."""
 
 # The charts follow the width of the window when the browser draws its next frame, before anything is seen.
 NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
