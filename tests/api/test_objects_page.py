@@ -88,3 +88,24 @@ def test_a_sheet_becomes_text_with_its_cells(client):
     text = client.post("/objects/text?name=a.xlsx", content=content).text
     assert text.splitlines() == ["object;width [cm];height [cm]", "vase;22;55.5", "jug;20;40.1250"]
     assert [one.height for one in objects_of_csv(text).objects] == [0.555, 0.40125]
+
+
+def test_objects_on_a_floor_feel_its_motion(client, found):
+    given = {"table": TABLE, **SITE, "floor_periods": "0.5, 0.2", "floor_participation": "1.3,-0.3"}
+    on_floor = rocking.assess(
+        [rocking.Object("vase", width=0.22, height=0.55), rocking.Object("slab", width=0.05, height=0.6)],
+        rocking.Site(pga="0.3 g", pgv="30 cm/s", floor_periods=[0.5, 0.2], floor_participation=[1.3, -0.3]),
+    )
+    text = client.post("/objects", data=given).text
+    assert "on a floor of a building of 0.5, 0.2 s</h2>" in text
+    for row, ground in zip(on_floor.rows, found.rows, strict=True):
+        assert f'<td data-value="{row["factor"]}">{row["factor"]:.3g}</td>' in text
+        assert row["factor"] < ground["factor"]
+    command = "rocking assess TABLE --pga 0.3g --pgv 30cm/s --floor 0.5s,0.2s --floor-participation 1.3,-0.3"
+    assert command in client.post("/objects/report", data=given).text
+
+
+@pytest.mark.parametrize("wrong", ["high", "0,5 s", "nan", "-1", "0.5," * 51])
+def test_periods_of_a_building_that_are_not_allowed_are_named(client, wrong):
+    problem = assert_problem(client.post("/objects", data={"table": TABLE, **SITE, "floor_periods": wrong}), 422)
+    assert "periods" in problem["detail"]

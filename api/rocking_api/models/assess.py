@@ -81,7 +81,7 @@ class AssessParams(Params):
         elif name in ("samples", "seed"):
             integer(name, value, 0, MAX_SAMPLES if name == "samples" else 2**53)
         elif name.startswith("floor_") and value is not None:
-            _numbers(name, str(value))  # a query with an error elsewhere has its numbers read
+            numbers(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
             for shape in str(value).split(","):
                 as_pulse(shape)
@@ -105,13 +105,20 @@ class AssessParams(Params):
             None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
             None if self.shapes is None else self.shapes.split(","),
             self.moving_ground,
-            None if self.floor_periods is None else _numbers("floor_periods", self.floor_periods),
-            _numbers("floor_damping", self.floor_damping),
-            _numbers("floor_participation", self.floor_participation),
+            None if self.floor_periods is None else numbers("floor_periods", self.floor_periods),
+            numbers("floor_damping", self.floor_damping),
+            numbers("floor_participation", self.floor_participation),
         )
 
 
-def _numbers(name: str, text: str) -> list[float]:
+def numbers(name: str, text: str) -> list[float]:
+    """Numbers that are separated by commas.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the text holds anything else.
+    """
     try:
         return [float(one) for one in text.split(",")]
     except ValueError:

@@ -22,6 +22,7 @@ from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.models.assess import numbers
 from rocking_api.routers.assess import MAX_BODY, check_table
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
 from rocking_api.service import Service, ServiceDep
@@ -32,9 +33,21 @@ MAX_SHEET = 32 * 1024 * 1024
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
 
+MAX_MODES_TEXT = 200
+"""Longest list of periods or of participations of a building [characters]."""
+
 PATH = "/objects"
 
-DEFAULTS = {"table": "", "pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s", "title": "Objects at a site"}
+DEFAULTS = {
+    "table": "",
+    "pga": "0.3",
+    "pga_unit": "g",
+    "pgv": "30",
+    "pgv_unit": "cm/s",
+    "floor_periods": "",
+    "floor_participation": "1",
+    "title": "Objects at a site",
+}
 
 router = APIRouter(prefix=PATH, include_in_schema=False)
 
@@ -60,6 +73,9 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
     given = await _form(request, service)
     table, found = await _assessed(given, request, service)
     command = f"rocking assess TABLE --pga {given['pga']}{given['pga_unit']} --pgv {given['pgv']}{given['pgv_unit']}"
+    if given["floor_periods"].strip():
+        periods = ",".join(f"{one:g}s" for one in numbers("floor_periods", given["floor_periods"]))
+        command += f" --floor {periods} --floor-participation {given['floor_participation'].replace(' ', '')}"
     project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), command)
     text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
@@ -108,7 +124,7 @@ async def _form(request: Request, service: Service) -> dict[str, str]:
 
 async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
     pga, pgv = (f"{given[name].replace(',', '.')} {given[f'{name}_unit']}" for name in ("pga", "pgv"))
-    site = Site(pga, pgv)
+    site = Site(pga, pgv, **_floor(given))
     table = await service.run_parser(lambda _: objects_of_csv(given["table"]), request, large=True)
     check_table(table, "table")
 
@@ -117,6 +133,17 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
 
     await service.kernels.wait()
     return table, await service.executor.run(run, request)
+
+
+def _floor(given: dict[str, str]) -> dict[str, list[float]]:
+    """Modes of the building of which the objects are on a floor; none on the ground."""
+    if not given["floor_periods"].strip():
+        return {}
+    modes = {name: given[name] for name in ("floor_periods", "floor_participation")}
+    for name, text in modes.items():
+        if len(text) > MAX_MODES_TEXT:
+            raise InvalidArgumentError(name, f"{len(text)} characters", f"at most {MAX_MODES_TEXT}")
+    return {name: numbers(name, text) for name, text in modes.items()}
 
 
 def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
