@@ -6,6 +6,7 @@ import io
 import zipfile
 from datetime import UTC, datetime
 from pathlib import PurePath
+from typing import Any
 from urllib.parse import parse_qs
 
 from fastapi import APIRouter, Request, Response
@@ -135,7 +136,7 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
     return table, await service.executor.run(run, request)
 
 
-def _floor(given: dict[str, str]) -> dict[str, list[float]]:
+def _floor(given: dict[str, str]) -> dict[str, Any]:
     """Modes of the building of which the objects are on a floor; none on the ground."""
     if not given["floor_periods"].strip():
         return {}
