@@ -108,8 +108,6 @@ class Service:
             If parameters or body do not fit, see `read_json` and `limited_body`.
         """
         query = query_parameters(request)
-        if form != "json":
-            read_query(kind, query).check()  # before the body arrives
         raw = await self.read_body(request, limit, hint)
         if form != "json" or (body.takes_lists and raw.lstrip()[:1] != b"{"):
             params = read_query(kind, query)

@@ -222,11 +222,11 @@ def test_units_are_stated_and_all_wrong_parameters_named(client):
     assert assert_problem(post(client, time_step="x"), 422, "time_step")["allowed"] == "a number [s]"
 
 
-def test_body_is_limited(results):
-    with client_of(results, max_record_bytes=1000) as client:
-        problem = assert_problem(post(client), 413, "body")
+def test_body_and_samples_are_limited(client, results):
+    with client_of(results, max_record_bytes=1000) as limited:
+        problem = assert_problem(post(limited), 413, "body")
         assert "1000 bytes" in problem["allowed"]
-        assert_problem(post(client, route="history", samples=10**6), 413, "samples")
+    assert_problem(post(client, route="history", samples=10**6), 413, "samples")
 
 
 def test_openapi_describes_the_body(client):
