@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 import pytest
 
-from rocking._base.source_tree import SourceTree
+from rocking._base.source_tree import SourceTree, imported_names
 
 TREE = {
     "rocking/__init__.py": "import lazy_loader",
@@ -85,3 +86,25 @@ def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
 def test_package_digest_covers_every_module() -> None:
     assert len(SourceTree().digest()) == 64
     assert SourceTree().digest() == SourceTree().digest()
+
+
+@pytest.mark.parametrize(
+    "around",
+    [
+        "if x:\n {}",
+        "if x:\n pass\nelif y:\n {}",
+        "for x in y:\n pass\nelse:\n {}",
+        "while x:\n {}",
+        "with x:\n {}",
+        "try:\n {}\nfinally:\n pass",
+        "try:\n pass\nexcept x:\n {}",
+        "try:\n pass\nexcept* x:\n {}",
+        "try:\n pass\nfinally:\n {}",
+        "match x:\n case 1:\n  {}",
+        "class X:\n async def f():\n  async with x:\n   {}",
+        "def f():\n async def g():\n  async for x in y:\n   {}",
+    ],
+)
+def test_imports_in_any_block_are_found(around: str) -> None:
+    assert [*imported_names(ast.parse(around.format("from .a import b")))] == [("b", "a", 1)]
+    assert [*imported_names(ast.parse(around.format("f = lambda: x if y else z")))] == []
