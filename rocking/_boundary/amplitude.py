@@ -16,7 +16,7 @@ from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, cla
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import check_one_vertical_scale, highest_vertical_scale
-from rocking._model.checks import check_number, check_one_alpha
+from rocking._model.checks import check_number, check_one_alpha, known_restitution
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION
 from rocking._model.response import Outcome, Response
@@ -121,7 +121,7 @@ def thresholds(
     if highest is None:
         highest = 10.0 if isinstance(motion, Record) else 100.0
     top = number("highest", highest, 1.0, 1e6, closed="right")
-    eta = check_number(RESTITUTION, restitution)
+    eta = check_number(RESTITUTION, known_restitution(restitution, alpha))
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         given = needed("a record", frequency_parameter=frequency_parameter)

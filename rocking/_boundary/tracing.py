@@ -20,7 +20,7 @@ from rocking._boundary.columns import THINNEST
 from rocking._boundary.search import Floats, Solve, Work, block_solver, classifier, layer_code, region_code
 from rocking._boundary.tracer import CHORD, END, Tracer
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_number, check_one_alpha, check_window
+from rocking._model.checks import check_number, check_one_alpha, check_window, known_restitution
 from rocking._model.labelled import variable
 from rocking._model.outcome_code import decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
@@ -90,7 +90,8 @@ def overturning_boundary(
     two impacts or more. From there it is followed in both directions. So a region can be missed only if it is narrower
     in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
     """
-    eta, angle, made = check_number(RESTITUTION, restitution), check_one_alpha(alpha), as_pulse(motion)
+    eta = check_number(RESTITUTION, known_restitution(restitution, alpha))
+    angle, made = check_one_alpha(alpha), as_pulse(motion)
     curves = trace_curves(block_solver(made, angle, stop), eta, frequency_ratio, slenderness, nodes)
     return curves.assign_attrs({"pulse": made.name, "restitution": eta, "alpha": angle} | curves.attrs)
 

@@ -40,12 +40,12 @@ class SampledPulse(AbstractPulse):
     Parameters
     ----------
     acceleration : array_like (samples,)
-        Ground acceleration in any unit; 2 to `MAX_SAMPLES` numbers, not all of them zero.
+        Ground acceleration in any unit; 2 to `MAX_SAMPLES` numbers, or a quantity, not all of them zero.
     time : array_like (samples,), optional
-        Times of the samples in any unit, ascending; equidistant without it.
+        Times of the samples in any unit, ascending; equidistant without it. Quantities and texts are in seconds then.
     period : float, optional
-        T_p in the unit of the times, > 0, which `frequency_ratio` and `period` of the functions refer to. By default
-        the duration: from the first sample to the last.
+        T_p in the unit of the times, > 0, or a text such as "0.5 s" beside times in seconds, which `frequency_ratio`
+        and `period` of the functions refer to. By default the duration: from the first sample to the last.
     name : str
         For output, not empty.
 
@@ -80,7 +80,9 @@ class SampledPulse(AbstractPulse):
         period: float | None = None,
         name: str = "sampled",
     ) -> None:
-        samples = in_range("acceleration", acceleration, -np.inf, np.inf, closed="neither")
+        samples = in_range(
+            "acceleration", getattr(acceleration, "magnitude", acceleration), -np.inf, np.inf, closed="neither"
+        )
         if samples.ndim != 1 or not 2 <= samples.size <= MAX_SAMPLES:
             raise InvalidArgumentError("acceleration", f"shape {samples.shape}", f"2 to {MAX_SAMPLES} numbers")
         largest = float(np.abs(samples).max())
@@ -90,7 +92,7 @@ class SampledPulse(AbstractPulse):
             raise InvalidArgumentError("name", name, "a string that is not empty")
         times = np.arange(samples.size, dtype=np.float64)
         if time is not None:
-            times = in_range("time", time, -np.inf, np.inf, closed="neither")
+            times = in_range("time", time, -np.inf, np.inf, closed="neither", unit="s")
             if times.shape != samples.shape:
                 raise InvalidArgumentError("time", f"shape {times.shape}", f"{samples.size} times, one for each sample")
         duration = float(times[-1]) - float(times[0])
@@ -105,7 +107,7 @@ class SampledPulse(AbstractPulse):
             )
         unit = duration
         if period is not None:
-            unit = number("period", period, duration / MAX_RATIO, duration * MAX_RATIO, unit="-")
+            unit = number("period", period, duration / MAX_RATIO, duration * MAX_RATIO, unit="s")
         phases = times - times[0]
         if unit != 2.0 * math.pi:  # phases are their own times: the same pulse again, to the last digit
             phases = 2.0 * math.pi * (phases / unit)

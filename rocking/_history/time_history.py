@@ -19,7 +19,7 @@ from rocking._history.motion import (
     build_record_motion,
     overturned,
 )
-from rocking._model.checks import check_number
+from rocking._model.checks import check_number, known_restitution
 from rocking._model.labelled import variable
 from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._model.response import Outcome
@@ -93,6 +93,7 @@ def time_history(
     """
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)
+    restitution = known_restitution(restitution, alpha)
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         groups = {

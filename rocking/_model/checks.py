@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import in_range, number
+from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Quantity, Scalar
+from rocking._model.labelled import is_labelled
 from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA, Parameter
 
 Array = NDArray[np.float64]
@@ -88,6 +89,22 @@ def check_one_alpha(alpha: ArrayLike | Quantity | None) -> float:
     if alpha is not None:
         check_number(ALPHA, alpha)
     return float(check_alpha(alpha))
+
+
+def known_restitution(restitution: Any, alpha: Any) -> Any:
+    """The restitution as it is; for "momentum" (2.4) of the angles [rad], 0 where that is negative.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For "momentum" without an angle, or with an angle of 0, the slender limit, in which (2.4) loses no energy.
+    """
+    if not (isinstance(restitution, str) and restitution == "momentum"):
+        return restitution
+    if alpha is None or not np.all(check(ALPHA, alpha) > 0.0):
+        raise InvalidArgumentError("restitution", restitution, "a number in the slender limit: (2.4) needs `alpha` > 0")
+    sine = np.sin(alpha if is_labelled(alpha) else check(ALPHA, alpha))
+    return np.maximum(1.0 - 1.5 * sine * sine, 0.0)  # (2.4)
 
 
 def check_groups(**given: Any) -> dict[str, Array]:

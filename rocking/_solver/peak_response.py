@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import broadcast, integer, needed, reject_given
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as Recording
-from rocking._model.checks import check_groups, check_number
+from rocking._model.checks import check_groups, check_number, known_restitution
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import is_labelled, labelled_response
@@ -132,7 +132,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     frequency_parameter : array_like
         p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step; of a record.
     restitution : array_like
-        Coefficient of restitution eta [-], [0, 1].
+        Coefficient of restitution eta [-], [0, 1]; or "momentum": (2.4) of `alpha`, 0 where that is negative.
     alpha : array_like, optional
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
     vertical_scale : array_like, optional
@@ -162,6 +162,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     StoppedError
         If `stop` was set.
     """
+    restitution = known_restitution(restitution, alpha)
     arguments = {
         "slenderness": slenderness,
         "frequency_ratio": frequency_ratio,

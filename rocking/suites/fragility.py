@@ -63,7 +63,8 @@ def fragility(
     records : sequence of Record
         The suite. Its records count as independent and equally likely.
     blocks : Block or sequence of Block
-        Rigid blocks (2.2). One block, not in a sequence, gives a result without the dimension `block`.
+        Rigid blocks (2.2), also `EquivalentBlock`; a body with two different edges has no slenderness angle, to which
+        measures and limit states refer. One block, not in a sequence, gives a result without the dimension `block`.
     intensity : array_like, (levels,)
         Levels, > 0, ascending, in the unit of the measure; texts such as "0.3 g" and quantities are converted to it.
     measure : str

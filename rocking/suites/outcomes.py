@@ -19,6 +19,7 @@ from rocking._dimensional.problem import restitution_of
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import flight_text
 from rocking._model.block import AbstractBlock
+from rocking._model.body import AbstractBody
 from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.labelled import variable
 from rocking._model.response import Response
@@ -96,11 +97,13 @@ def check_suite(
     """
     chosen = measure_of(measure)
     motions = (records,) if isinstance(records, Record) else tuple(records)
-    bodies = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
+    bodies = (blocks,) if isinstance(blocks, AbstractBody) else tuple(blocks)
     if not motions or not all(isinstance(motion, Record) for motion in motions):
         raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
     if not bodies or not all(isinstance(body, AbstractBlock) for body in bodies):
-        raise InvalidArgumentError("blocks", blocks, "one or more objects of rocking.Block")
+        raise InvalidArgumentError(
+            "blocks", blocks, "one or more objects of rocking.Block or rocking.EquivalentBlock, with two equal edges"
+        )
     unit = {"m s-2": "m/s2", "m s-1": "m/s"}.get(chosen.unit, "-")
     levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=unit))
     if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):

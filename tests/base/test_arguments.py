@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import pint
 import pytest
 import xarray as xr
 
@@ -58,6 +59,33 @@ def test_texts_with_units_are_accepted_in_lists():
         block.response("sine", peak_acceleration=["0.4 g", "0.4 s"], period=0.5)
     with pytest.raises(InvalidArgumentError, match="percentage"):
         rocking.peak_response("sine", **GROUPS | {"slenderness": ["0.4"]})
+
+
+def test_restitution_from_momentum_where_the_angle_is_known():
+    alpha = np.radians([15.0, 20.0])
+    rigid = {"slenderness": 0.4, "frequency_ratio": 5.0}
+    expected = rocking.peak_response("sine", **rigid, alpha=alpha, restitution=1.0 - 1.5 * np.sin(alpha) ** 2)
+    assert rocking.peak_response("sine", **rigid, alpha=alpha, restitution="momentum") == expected
+    labelled = xr.DataArray(alpha, dims="angle")
+    found = rocking.peak_response("sine", **rigid, alpha=labelled, restitution="momentum")
+    np.testing.assert_array_equal(found.peak_rotation, expected.peak_rotation)
+    eta = rocking.Block.from_slenderness_angle("15 deg", 1.0).inelastic_restitution
+    one = {"frequency_ratio": 5.0, "alpha": "15 deg"}
+    assert rocking.time_history("sine", slenderness=0.4, restitution="momentum", **one).restitution == pytest.approx(
+        eta
+    )
+    changes = rocking.thresholds("sine", restitution="momentum", **one).amplitude
+    np.testing.assert_allclose(changes, rocking.thresholds("sine", restitution=eta, **one).amplitude, rtol=1e-9)
+    for angle in (None, 0.0):
+        with pytest.raises(InvalidArgumentError, match=r"`restitution` = 'momentum'.*needs `alpha` > 0"):
+            rocking.peak_response("sine", **rigid, alpha=angle, restitution="momentum")
+
+
+def test_samples_of_a_pulse_with_units():
+    ureg = pint.UnitRegistry()
+    expected = rocking.SampledPulse([0, 1, 0], time=[0.0, 0.1, 0.2], period=0.4)
+    quantities = rocking.SampledPulse([0, 3, 0] * ureg.m / ureg.s**2, time=[0, 100, 200] * ureg.ms, period="400 ms")
+    np.testing.assert_allclose(quantities.phases, expected.phases, rtol=1e-15)
 
 
 def test_messages_are_short_and_say_what_takes_arrays():
