@@ -40,8 +40,9 @@ class AbstractBlock(AbstractBody):
     gravity: float = STANDARD_GRAVITY
 
     def __init__(self, width: Scalar, height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
-        if any(getattr(one, "shape", ()) or isinstance(one, list | tuple) for one in (width, height)):
-            raise InvalidArgumentError("width, height", "arrays", "one number each; RigidBody.from_size takes arrays")
+        for name, value in (("width", width), ("height", height)):
+            if getattr(value, "shape", ()) or isinstance(value, list | tuple):
+                raise InvalidArgumentError(name, value, "one number; RigidBody.from_size takes arrays")
         object.__setattr__(self, "width", positive("width", width, "m"))  # a frozen dataclass
         object.__setattr__(self, "height", positive("height", height, "m"))
         object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
