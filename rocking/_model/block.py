@@ -42,7 +42,7 @@ class AbstractBlock(AbstractBody):
     def __init__(self, width: Scalar, height: Scalar, gravity: Scalar = STANDARD_GRAVITY) -> None:
         for name, value in (("width", width), ("height", height)):
             if getattr(value, "shape", ()) or isinstance(value, list | tuple):
-                raise InvalidArgumentError(name, value, "one number; RigidBody.from_size takes arrays")
+                raise InvalidArgumentError(name, value, "one number in (0, inf) [m]; RigidBody.from_size takes arrays")
         object.__setattr__(self, "width", positive("width", width, "m"))  # a frozen dataclass
         object.__setattr__(self, "height", positive("height", height, "m"))
         object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
