@@ -58,8 +58,9 @@ def survival(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, Arra
     """
     time = number("years", years, 0.0, MAX_YEARS, unit="year")
     pair = () if isinstance(hazard, xr.DataArray) else tuple(hazard)
-    several = len(pair) == 2 and float_array("hazard rate", pair[1], unit="1/year").ndim == 2
-    branches = [(pair[0], rates) for rates in pair[1]] if several else [hazard]
+    rates = float_array("hazard rate", pair[1], unit="1/year") if len(pair) == 2 else np.zeros(0)
+    several = rates.ndim == 2
+    branches = [(pair[0], branch) for branch in rates] if several else [hazard]
     found = xr.concat([annual_rate(fragility, one) for one in branches], "branch")
     result = xr.Dataset(
         {
