@@ -28,7 +28,7 @@ def random_objects(count: int) -> list[Object]:
     ]
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(80, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
 def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions_overturns(count: int) -> None:
     rng = np.random.default_rng(count)
     overturning = 0
