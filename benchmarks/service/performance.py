@@ -135,7 +135,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seconds", type=float, default=5.0, help="of each load")
     parser.add_argument("--connections", type=int, nargs="+", default=[1, 16, 64])
     parser.add_argument("--points", type=int, nargs="+", default=[1_000, 10_000, 100_000, 1_000_000], help="of batches")
-    parser.add_argument("--json-points", type=int, nargs="+", default=[1_000, 10_000, 100_000], help="of those in JSON")
+    parser.add_argument("--json-points", type=int, nargs="+", default=[1_000, 10_000], help="of those in JSON")
     parser.add_argument("--rounds", type=int, default=3, help="of the batches")
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/service.json"))
     asked = parser.parse_args(arguments)

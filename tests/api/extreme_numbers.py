@@ -62,7 +62,7 @@ INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
 
 NUMBERS: dict[str, Any] = {
     "slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85, "alpha": 0.3,
-    "relative_tolerance": 1e-6, "threads": 1,
+    "relative_tolerance": 1e-6, "absolute_tolerance": 1e-4, "threads": 1,
     "highest": 10.0,
     "nodes": 16, "duration": 5.0, "samples": 20, "scale": 1.2, "period": 0.6,
     "width": 0.5, "height": 2.0, "half_diagonal": 1.0, "gravity": 9.81, "peak_acceleration": 5.0,

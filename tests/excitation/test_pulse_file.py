@@ -69,7 +69,7 @@ def test_period_and_name_of_a_file(tmp_path: Path) -> None:
         ('{"time": [0, 1]}', "ramp.csv: no key acceleration", "the keys acceleration, time, period, name"),
         ('{"acceleration": [0, 1], "dt": 1}', "ramp.csv: the key dt", "the keys"),
         ('{"acceleration": [0, NaN]}', "ramp.csv: acceleration[1] nan", "(-inf, inf)"),
-        ('{"acceleration": [0, "1"]}', "ramp.csv: acceleration ", "real numbers"),
+        ('{"acceleration": [0, "1"]}', "ramp.csv: acceleration ", "a number"),
         ('{"acceleration": [0, 1], "period": "a"}', "ramp.csv: period a", "a number"),
         ('{"acceleration": [0, 1], "name": ""}', "ramp.csv: name ", "not empty"),
         ('{"acceleration": ' + "[" * 100_000, "ramp.csv: ", "JSON"),

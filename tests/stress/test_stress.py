@@ -96,9 +96,13 @@ def test_reference_responses_do_not_depend_on_the_precision(table: Table) -> Non
 def test_the_tables_are_those_that_their_generator_writes(name: str) -> None:
     table = read_table(name)
     for k, cell in enumerate(islice(BY_NAME[name].cells(), 4)):
-        row = solved_cell(cell)
-        assert row["pulse"] == table.pulse[k]
-        assert tuple(float(row[column]) for column in INPUTS) == tuple(table[column][k] for column in INPUTS)
+        known = table.cell(k)
+        assert cell.keys() == known.keys()
+        assert cell["pulse"] == known["pulse"]
+        drawn, kept = ([float(one[name]) for name in INPUTS if name in one] for one in (cell, known))
+        # the exponential of a drawn logarithm is not rounded alike by all processors
+        np.testing.assert_allclose(drawn, kept, rtol=4.0 * np.finfo(np.float64).eps, atol=0.0)
+        row = solved_cell(known)
         for column in COLUMNS[1:]:
             np.testing.assert_equal(float(row[column] or "nan"), table[column][k], err_msg=column)
 
