@@ -238,8 +238,7 @@ class RecordResponse(BlockSummary):
         description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
     )
     friction_demand: float | None = Field(
-        description="the same through the whole motion [-]; null: it lifts off, or the forces are not known, as under "
-        "a record with a vertical component"
+        description="the same through the whole motion [-]; null: it lifts off, or the forces are not known"
     )
     friction_at_impact: float | None = Field(
         description="horizontal over vertical impulse at its impacts [-]; null: not known"
