@@ -16,9 +16,9 @@ from starlette.responses import StreamingResponse
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError, version_of
+from rocking_api.dataset_archive import archive
 from rocking_api.dataset_summaries import Summary
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
-from rocking_api.http.dataset_archive import archive
 from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
 from rocking_api.http.parameters import ParamsRoute
