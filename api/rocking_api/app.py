@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from threading import Lock
 
 import anyio
 import anyio.to_thread
@@ -69,8 +70,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         contact={"name": "The rocking developers"},
         license_info={"name": "BSD-3-Clause", "identifier": "BSD-3-Clause"},
         servers=[{"url": "/", "description": "this service"}],
-        docs_url=None,
-        redoc_url=None,
+        openapi_url=None,  # see `rocking_api.routers.metadata`
         lifespan=_lifespan,
         responses=RESPONSES,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request
@@ -131,17 +131,18 @@ async def _warn_without_cubes(service: Service) -> None:
 
 def _describe_bodies(app: FastAPI) -> None:
     """Add the models that the OpenAPI description refers to but no route declares as a parameter."""
-    generate = app.openapi
+    generate, lock = app.openapi, Lock()
 
     def described() -> dict[str, object]:
-        if app.openapi_schema is None:
-            schemas = generate()["components"]["schemas"]
-            bodies = sorted(BODIES, key=lambda body: body.__name__)
-            models: list[type[BaseModel]] = [Problem, *bodies]
-            for model in models:
-                schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
-                schemas.update(schema.pop("$defs", {}))
-                schemas[model.__name__] = schema
-        return generate()
+        with lock:  # several threads may ask for it first
+            if app.openapi_schema is None:
+                schemas = generate()["components"]["schemas"]
+                bodies = sorted(BODIES, key=lambda body: body.__name__)
+                models: list[type[BaseModel]] = [Problem, *bodies]
+                for model in models:
+                    schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
+                    schemas.update(schema.pop("$defs", {}))
+                    schemas[model.__name__] = schema
+            return generate()
 
     app.openapi = described  # type: ignore[method-assign]  # FastAPI's documented way to extend the description

@@ -113,15 +113,20 @@ class Service:
             params = read_query(kind, query)
             params.check()
             return params, raw
-        large = len(raw) > LARGE_BODY
-        found = await self.run_parser(lambda _: read_json(body, raw, query, kind), request, large)
-        params = options_of(found, kind)
-        params.check()
-        return params, found
 
-    async def run_parser(self, work: Work[T], request: Request, large: bool) -> T:
+        def parse(_: StopFlag) -> tuple[P, B | bytes]:
+            found = read_json(body, raw, query, kind)
+            params = options_of(found, kind)
+            params.check()
+            return params, found
+
+        return await self.run_parser(parse, request)
+
+    async def run_parser(self, work: Work[T], request: Request, large: bool = False) -> T:
         """Parse a body in a thread; large bodies one at a time, until the time limit or the client disconnects."""
-        return await (self.parser.run(work, request) if large else self.run_io(lambda: work(StopFlag())))
+        if large or request.state.reservation.held > LARGE_BODY:
+            return await self.parser.run(work, request)
+        return await self.run_io(lambda: work(StopFlag()))
 
     async def run_io(self, work: Callable[[], T]) -> T:
         """Read files and parse small bodies in a thread, independent of heavy work."""

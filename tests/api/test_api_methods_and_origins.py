@@ -22,3 +22,12 @@ def test_other_origins_may_read_the_answer_if_they_are_allowed(results):
     assert "ETag" in response.headers["access-control-expose-headers"]
     assert_problem(refused, 422)
     assert refused.headers["access-control-allow-origin"] == "https://a.example"
+
+
+def test_an_unknown_path_is_answered_without_the_description_of_all_routes(results):
+    """It takes a second to make."""
+    with client_of(results) as client:
+        assert_problem(client.get("/v1/nothing"), 404)
+        assert client.app.openapi_schema is None
+        assert client.delete("/v1/response").headers["allow"] == "GET, POST"
+        assert client.app.openapi_schema is not None

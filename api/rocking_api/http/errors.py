@@ -184,9 +184,10 @@ def refusal(text: str, parameter: str, value: Any, allowed: str) -> InvalidArgum
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     headers = error.headers
-    methods = request.app.openapi()["paths"].get(request.url.path)
-    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and methods:
-        headers = {"Allow": ", ".join(method.upper() for method in methods)}  # methods of all routes of the path
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        described = await request.app.state.service.run_io(request.app.openapi)
+        if methods := described["paths"].get(request.url.path):
+            headers = {"Allow": ", ".join(method.upper() for method in methods)}  # methods of all routes of the path
     return problem_response(error.status_code, str(error.detail), headers)
 
 

@@ -31,7 +31,7 @@ class Reservation:
 
     def __init__(self, budget: MemoryBudget) -> None:
         self._budget = budget
-        self._own = 0
+        self.held = 0
 
     def replace(self, count: int) -> None:
         """Set the number of bytes; 0 at the end of the request.
@@ -42,15 +42,15 @@ class Reservation:
             If it grows, and exceeds the limit together with the bytes of other requests.
         """
         budget = self._budget
-        others = budget.held - self._own
-        if count > self._own and others and others + count > budget.limit:
+        others = budget.held - self.held
+        if count > self.held and others and others + count > budget.limit:
             raise BusyError(f"the limit of {budget.limit} bytes for bodies and responses is reached; retry in a moment")
         budget.held = others + count
-        self._own = count
+        self.held = count
 
     def add(self, count: int) -> None:
         """Add bytes; as `replace`."""
-        self.replace(self._own + count)
+        self.replace(self.held + count)
 
 
 class MemoryBudgetMiddleware:

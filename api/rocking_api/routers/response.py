@@ -25,7 +25,7 @@ from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import BatchOptions, BatchParams, LookupOptions, ResponseParams, TableParams
 from rocking_api.models.pulses import options_of, with_samples
 from rocking_api.models.responses import BatchResponse, PointResponse, columns_of, point_response
-from rocking_api.service import LARGE_BODY, Service, ServiceDep
+from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
@@ -83,8 +83,7 @@ async def _read(request: Request, service: Service) -> tuple[Batch, Form]:
             columns = parse_csv(body, most, stop) if given == "csv" else parse_netcdf(body, most)
         return batch_of(options_of(params, LookupOptions), columns, dict(params), most)
 
-    large = isinstance(body, bytes) and len(body) > LARGE_BODY
-    batch = await service.run_parser(read, request, large)
+    batch = await service.run_parser(read, request)
     return batch, negotiated_form(request, params.format, default=given)
 
 
