@@ -1,5 +1,10 @@
 """Settings of all tests: the same random examples in every run, one run of the workflow."""
 
+import contextlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -52,6 +57,27 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if hasattr(config, "workerinput"):
         order = {name: place for place, name in enumerate(FIRST)}
         items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """While a test marked `alone` runs, the other processes of the test run wait before their next test."""
+    with contextlib.nullcontext() if sys.platform == "win32" else _turn(item.get_closest_marker("alone") is not None):
+        return (yield)
+
+
+@contextlib.contextmanager
+def _turn(alone: bool) -> Iterator[None]:
+    import fcntl  # noqa: PLC0415  (not on every system)
+
+    with Path(__file__).open() as queue, Path(__file__).with_name("__init__.py").open() as running:
+        fcntl.flock(queue, fcntl.LOCK_EX)  # so that those that came later do not overtake one that waits to be alone
+        fcntl.flock(running, fcntl.LOCK_EX if alone else fcntl.LOCK_SH)
+        fcntl.flock(queue, fcntl.LOCK_UN)
+        try:
+            yield
+        finally:
+            fcntl.flock(running, fcntl.LOCK_UN)  # also for processes that have inherited it
 
 
 pytest_plugins = ["tests.wheel_fixtures", "tests.workflow_fixtures"]

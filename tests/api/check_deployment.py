@@ -17,7 +17,7 @@ import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from tests.api.servers import kept_waiting, proxy, serving
+from tests.api.servers import Stopwatch, proxy, serving
 
 POINT = "/v1/response?pulse=sine&slenderness=0.6&frequency_ratio=6&restitution=0.85"
 HISTORY = "/v1/history?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=0.85&samples=100000"
@@ -56,15 +56,14 @@ def burden(connection, load):
 
 def seconds_of_a_point(server, port, encrypted):
     """Time of a request for one block on a new connection [s]."""
-    waited, began = kept_waiting(os.getpid(), server.process.pid), time.perf_counter()
+    stopwatch = Stopwatch(os.getpid(), server.process.pid)
     with connect(port, encrypted) as connection:
         connection.sendall(f"GET {POINT} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n".encode())
         received = b""
         while part := connection.recv(65536):
             received += part
     assert received.startswith(b"HTTP/1.1 200 "), received[:200]
-    took = time.perf_counter() - began
-    return took - (kept_waiting(os.getpid(), server.process.pid) - waited)
+    return stopwatch.seconds()
 
 
 def megabytes(process):

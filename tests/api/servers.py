@@ -101,9 +101,27 @@ def proxy(service_port, folder):
             process.terminate()
 
 
-def kept_waiting(*processes):
-    """Time that the main threads of processes were ready to run while the processors did other work [s].
+class Stopwatch:
+    """Time since its creation [s], without that in which the processors did the work of other processes.
 
-    That of the other threads of the service must count: the event loop waits for those that parse bodies.
+    Subtracted is the time that the main threads of the processes were ready to run but did not. That of their other
+    threads must count, as the event loop waits for those that parse bodies; the result is never longer than the
+    processor time of the processes, which a delay that they cause themselves cannot exceed.
     """
-    return 1e-9 * sum(int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[1]) for pid in processes)
+
+    def __init__(self, *processes):
+        self._processes = processes
+        self._began = time.perf_counter(), self._kept_waiting(), self._processor_time()
+
+    def seconds(self):
+        began, waited, spent = self._began
+        passed = time.perf_counter() - began - (self._kept_waiting() - waited)
+        return min(passed, self._processor_time() - spent)
+
+    def _kept_waiting(self):
+        files = (Path(f"/proc/{pid}/task/{pid}/schedstat") for pid in self._processes)
+        return 1e-9 * sum(int(file.read_text().split()[1]) for file in files)
+
+    def _processor_time(self):
+        """Of all threads, those that have ended among them."""
+        return sum(time.clock_gettime((~pid << 3) | 2) for pid in self._processes)  # clock_getcpuclockid(3)

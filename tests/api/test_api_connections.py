@@ -45,6 +45,7 @@ def whole_answer_of(connection):
     return (int(head.split()[1]) if head else None), head.lower(), body
 
 
+@pytest.mark.alone
 def test_slow_clients_do_not_delay_others(server):
     slow = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(200)]
     try:
@@ -122,15 +123,15 @@ def test_running_requests_are_finished_at_shutdown(results, tmp_path):
     assert status in (0, -15)
 
 
+@pytest.mark.alone
 def test_the_start_takes_less_than_two_seconds_and_opens_no_cube(results, tmp_path):
     with serving(results, tmp_path / "warm"):
         pass
     began = time.monotonic()
     with serving(results, tmp_path / "log") as server:
         assert httpx2.get(server.address + "/health").status_code == 200
-        assert (
-            time.monotonic() - began < 6
-        )  # two on a quiet machine: `python -m benchmarks.service.performance` measures it
+        took = time.monotonic() - began
+    assert took < 6  # two on a quiet machine: `python -m benchmarks.service.performance` measures it
 
 
 def test_each_line_of_the_log_is_json(server):

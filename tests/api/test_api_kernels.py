@@ -7,7 +7,7 @@ import shutil
 import sys
 import threading
 import time
-from contextlib import closing, suppress
+from contextlib import closing
 from pathlib import Path
 from urllib.parse import urlencode
 
@@ -20,7 +20,7 @@ from rocking._excitation.pulses import PULSE_NAMES
 from rocking._numba.kernel_cache import cache_folder
 from rocking._solver.kernels.batch import solve_batch
 from tests.api.conftest import assert_problem, client_of
-from tests.api.servers import serving
+from tests.api.servers import Stopwatch, serving
 
 QUERY = {"slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85, "method": "solver"}
 SOLVE_BATCH = f"{solve_batch.__module__}.{solve_batch.__name__}"
@@ -43,16 +43,6 @@ def connect(server):
     return closing(http.client.HTTPConnection("127.0.0.1", server.port, timeout=600))
 
 
-def kept_waiting(*processes):
-    """Time that the threads of processes were ready to run while the processor worked on something else [s]."""
-    delays = 0
-    for process in processes:
-        for thread in Path(f"/proc/{process}/task").glob("*/schedstat"):
-            with suppress(FileNotFoundError, ProcessLookupError):  # a thread that has just ended
-                delays += int(thread.read_text().split()[1])
-    return 1e-9 * delays
-
-
 def burst(server):
     """Request all pulses at once: status and time of each, and the times of /health meanwhile [s].
 
@@ -67,20 +57,19 @@ def burst(server):
         responses[pulse] = status, time.perf_counter() - began
 
     threads = [threading.Thread(target=get_response, args=(pulse,)) for pulse in PULSE_NAMES]
-    processes = os.getpid(), server.process.pid
     with connect(server) as connection:
         get(connection, "/health")
         for thread in threads:
             thread.start()
         while not waits or any(thread.is_alive() for thread in threads):
-            delayed, began = kept_waiting(*processes), time.perf_counter()
+            stopwatch = Stopwatch(os.getpid(), server.process.pid)
             assert get(connection, "/health") == 200
-            took = time.perf_counter() - began
-            waits.append(took - (kept_waiting(*processes) - delayed))
+            waits.append(stopwatch.seconds())
             time.sleep(0.005)
     return responses, waits
 
 
+@pytest.mark.alone
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 def test_health_responds_while_the_kernels_are_compiled_and_loaded(installed, tmp_path):

@@ -188,6 +188,7 @@ def test_timeout_is_504(results, monkeypatch):
         assert "0.2 s" in problem["detail"]
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("path", ["/v1/thresholds", "/v1/overturning"])
 def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, path):
     """An elastic block under a slow pulse has very many impacts: the searches take seconds, or minutes."""
@@ -202,6 +203,7 @@ def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, pat
             assert time.monotonic() - began < 0.5
 
 
+@pytest.mark.alone
 def test_curves_of_an_elastic_block_end_early_and_the_answer_says_what_to_ask_instead(results):
     query = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 10.0}
     with client_of(results, max_seconds=6.0) as client:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.api.servers import kept_waiting, serving
+from tests.api.servers import Stopwatch, serving
 
 ROUTE = "/v1/records/response?width=0.5&height=2.0&unit=g"
 
@@ -59,20 +59,37 @@ HOSTILE = {
 }
 
 
+@pytest.mark.alone
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 @pytest.mark.parametrize("body", HOSTILE.values(), ids=[*HOSTILE])
 def test_hostile_bodies_do_not_delay_health(body, tmp_path):
-    delays, statuses = [], []
     with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
         assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200  # the kernels are loaded
-        upload = threading.Thread(target=lambda: statuses.append(status_of(server, "POST", ROUTE, body)))
-        upload.start()
-        while upload.is_alive():
-            delays.append(delay_of_health(server))
-            time.sleep(0.005)
-    assert statuses[0] in (200, 422, 504)
-    assert second_longest(delays) < 0.2, sorted(delays)[-10:]
+
+        def delays_meanwhile():
+            delays, statuses = [], []
+            upload = threading.Thread(target=lambda: statuses.append(status_of(server, "POST", ROUTE, body)))
+            upload.start()
+            while upload.is_alive():
+                delays.append(delay_of_health(server))
+                time.sleep(0.005)
+            assert statuses[0] in (200, 422, 504)
+            return delays
+
+        assert_short(delays_meanwhile)
+
+
+def assert_short(delays_meanwhile):
+    """One of three times no delay is longer than 0.2 s.
+
+    One that the service causes is there each time; a virtual machine also stops for tenths of a second, which neither
+    its clocks nor its counters of waiting tell.
+    """
+    longest = []
+    while not longest or longest[-1] >= 0.2:
+        assert len(longest) < 3, longest
+        longest.append(max(delays_meanwhile(), default=0.0))
 
 
 def status_of(server, method, path, content=None):
@@ -86,15 +103,9 @@ def status_of(server, method, path, content=None):
 
 def delay_of_health(server):
     """Time of a request for /health [s], without that which other processes took."""
-    waited, began = kept_waiting(os.getpid(), server.process.pid), time.perf_counter()
+    stopwatch = Stopwatch(os.getpid(), server.process.pid)
     assert status_of(server, "GET", "/health") == 200
-    took = time.perf_counter() - began
-    return took - (kept_waiting(os.getpid(), server.process.pid) - waited)
-
-
-def second_longest(delays):
-    """One of the delays may come from the machine, whose interruptions the system does not tell."""
-    return sorted(delays)[-2] if len(delays) > 1 else 0.0
+    return stopwatch.seconds()
 
 
 def json_of(values):
@@ -104,7 +115,7 @@ def json_of(values):
         columns = {"slenderness": numbers[:49_000].tolist(), "frequency_ratio": (9.0 * numbers[:49_000]).tolist()}
         return json.dumps({"pulse": "sine", "restitution": 0.85, **columns}).encode()
     records = [{"acceleration": numbers[k::4].tolist(), "time_step": 0.01} for k in range(4)]
-    return json.dumps({"objects": [{"width": 0.4, "height": 1.6}], "records": records, "sensitivity": False}).encode()
+    return json.dumps({"objects": [{"width": 1.6, "height": 0.4}], "records": records, "sensitivity": False}).encode()
 
 
 UPLOADS = {
@@ -114,23 +125,28 @@ UPLOADS = {
 }
 
 
+@pytest.mark.alone
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 @pytest.mark.parametrize("upload", UPLOADS)
 def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path, upload):
     route, media_type, made = UPLOADS[upload]
-    body, delays = made(), []
-    (tmp_path / "body").write_bytes(body)
+    (tmp_path / "body").write_bytes(made())
     with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
         assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200  # the kernels are loaded
         before = megabytes(server.process, "VmRSS")
         arguments = [sys.executable, "-c", CLIENTS, str(server.port), str(tmp_path / "body"), route, media_type]
-        with subprocess.Popen(arguments, stdout=subprocess.PIPE) as clients:
-            while clients.poll() is None:
-                delays.append(delay_of_health(server))
-                time.sleep(0.02)
-            statuses = json.loads(clients.stdout.read())
-        added = megabytes(server.process, "VmHWM") - before
-    assert {200} < set(statuses) <= {200, 503, 504}  # beyond the queue, the memory and the time clients have to repeat
-    assert added < 300.0
-    assert second_longest(delays) < 0.2, sorted(delays)[-10:]
+
+        def delays_meanwhile():
+            delays = []
+            with subprocess.Popen(arguments, stdout=subprocess.PIPE) as clients:
+                while clients.poll() is None:
+                    delays.append(delay_of_health(server))
+                    time.sleep(0.02)
+                statuses = json.loads(clients.stdout.read())
+            # beyond the queue, the memory and the time clients have to repeat
+            assert {200} < set(statuses) <= {200, 503, 504}
+            return delays
+
+        assert_short(delays_meanwhile)
+        assert megabytes(server.process, "VmHWM") - before < 300.0

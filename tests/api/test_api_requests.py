@@ -7,6 +7,7 @@ import pytest
 from tests.api.fuzzer import EXTREME_KINDS, ask_all
 
 
+@pytest.mark.alone
 @pytest.mark.slow
 def test_random_requests(results):
     statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=600))
@@ -14,6 +15,7 @@ def test_random_requests(results):
     assert {"200", "304", "404", "405", "413", "415", "422"} <= set(statuses)
 
 
+@pytest.mark.alone
 @pytest.mark.slow
 def test_long_tables_arithmetic_in_units_and_extreme_steps(results):
     statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=150, kinds=EXTREME_KINDS))
