@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,12 @@ from rocking._assessment.site import Site
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._base.units import Scalar
+from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 Array = NDArray[np.float64]
 
@@ -49,6 +54,27 @@ class OverturningProbability(EqualByValue):
     interval: tuple[float, float]
     first_order: Mapping[str, float]
     samples: int
+
+    def to_xarray(self) -> xr.Dataset:
+        """The numbers as a data set; the indices over `input`, the interval over `end`."""
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
+        indices, index = [*self.first_order.values()], "first-order Sobol index"
+        variables: dict[str, Any] = {
+            "probability": variable((), self.probability, "1", "probability of overturning"),
+            "interval": variable("end", [*self.interval], "1", "95 % interval of the probability"),
+            "first_order": variable("input", np.array(indices, dtype=float), "1", index),
+            "samples": variable((), self.samples, "1", "bodies that were solved for the probability"),
+        }
+        return xr.Dataset(variables, {"input": [*self.first_order], "end": ["lower", "upper"]})
+
+    def to_pandas(self) -> pd.Series:
+        """The numbers as a series; the indices are named `first_order_` and the input."""
+        import pandas as pd  # noqa: PLC0415  (takes longer to load than the package)
+
+        indices = {f"first_order_{name}": value for name, value in self.first_order.items()}
+        ends = dict(zip(("lower", "upper"), self.interval, strict=True))
+        return pd.Series({"probability": self.probability, **ends, **indices, "samples": self.samples}, dtype=float)
 
     def __repr__(self) -> str:
         """The probability, its interval and the most important input."""

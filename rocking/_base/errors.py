@@ -119,9 +119,9 @@ def in_range(
     parameter : str
         Name for the error message.
     value : array_like of real numbers, any shape; a quantity; or a text with a unit
-        Numbers without a unit are in `unit`. Quantities (pint, astropy) and texts such as "40 cm", also in lists, are
-        converted to it. Boolean, complex, date and other text values, which numpy would convert, are rejected, and so
-        are masked entries.
+        Numbers without a unit are in `unit`. Quantities (pint, astropy) and texts such as "40 cm", also in lists and
+        arrays, are converted to it. Boolean, complex, date and other text values, which numpy would convert, are
+        rejected, and so are masked entries.
     low, high : float
         Range; `high` may be infinite.
     closed : {"both", "left", "right", "neither"}
@@ -245,15 +245,17 @@ def _without_unit(parameter: str, value: Any, unit: str) -> Any:
     """The value of a quantity of any library or a text, or of a list with some, in `unit`; other values as they are."""
     if isinstance(value, str) and unit in UNITS:
         return si_value(parameter, value, unit)
-    if isinstance(value, np.ndarray) and value.dtype.kind != "O" and not hasattr(value, "unit"):
+    if hasattr(value, "dtype") and value.dtype.kind in "UO":  # an array of texts or quantities, with or without labels
+        array = np.asarray(value)
+        if any(isinstance(entry, str) or _has_unit(entry) for entry in array.flat):
+            return _without_unit(parameter, array.tolist(), unit)
+    if isinstance(value, np.ndarray) and not hasattr(value, "unit"):
         return value
     if isinstance(value, list | tuple):
         if set(map(type, value)) <= _PLAIN_TYPES:
             return value
         entries = [_without_unit(parameter, entry, unit) for entry in value]
         return value if all(map(operator.is_, entries, value)) else entries
-    if type(value) is np.ndarray and any(_has_unit(entry) for entry in value.flat):
-        return _without_unit(parameter, value.tolist(), unit)
     quantity = value.variable.data if hasattr(value, "variable") else value  # in a labelled array of xarray
     if not _has_unit(quantity):
         return value

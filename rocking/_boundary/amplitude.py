@@ -17,6 +17,8 @@ from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import check_one_vertical_scale, highest_vertical_scale
 from rocking._model.checks import check_number, check_one_alpha, known_restitution
+from rocking._model.fields import IMPACTS, OUTCOME
+from rocking._model.labelled import variable
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION
 from rocking._model.response import Outcome, Response
@@ -71,9 +73,13 @@ class Thresholds(EqualByValue):
         """The same over the dimension `threshold`."""
         import xarray as xr  # noqa: PLC0415
 
-        about = {"amplitude": {"units": "1", "long_name": "amplitude a = a_g/(g tan alpha)"}}
+        above = "whether the block overturns just above it"
         return xr.Dataset(
-            {one.name: ("threshold", getattr(self, one.name), about.get(one.name)) for one in fields(self)}
+            {
+                "amplitude": variable("threshold", self.amplitude, "1", "amplitude a = a_g/(g tan alpha)"),
+                "overturns_above": variable("threshold", self.overturns_above, "1", above),
+                **{one.name: one.variable("threshold", getattr(self, one.name)) for one in (OUTCOME, IMPACTS)},
+            }
         )
 
 

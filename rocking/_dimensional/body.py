@@ -30,7 +30,7 @@ from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.checks import check, check_number
-from rocking._model.labelled import is_labelled, labelled_response
+from rocking._model.labelled import in_unit, is_labelled, labelled_response
 from rocking._model.parameters import RESTITUTION, Parameter
 from rocking._numba.cancellation import StopFlag
 
@@ -116,6 +116,7 @@ class RespondingBody(AbstractBody):
             threads = integer("threads", threads, 1, math.inf)
         make, own = self._labelled()
         given = {"peak_acceleration": peak_acceleration, "period": period, "scale": scale}
+        given = {name: in_unit(name, value, STRENGTHS[name].unit) for name, value in given.items()}
         if is_labelled(*given.values(), restitution, *own.values()):
             eta = restitution if is_labelled(restitution) else checked_restitution(restitution)
             plain = {

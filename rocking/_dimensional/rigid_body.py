@@ -18,12 +18,15 @@ from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rigid_edge
-from rocking._model.labelled import broadcast_by_name, is_labelled
+from rocking._model.labelled import broadcast_by_name, in_unit, is_labelled
 
 Array = NDArray[np.float64]
 
 RANGES = {"gravity": (0.0, math.inf, "m/s2"), "inclination": (-math.pi / 2, math.pi / 2, "rad")}
 """Open ranges and units of the arguments that are no lengths."""
+
+LENGTH = 0.0, math.inf, "m"
+"""Those of the others."""
 
 
 @final
@@ -86,13 +89,17 @@ class RigidBody(RespondingBody):
             "gravity": gravity,
             "inclination": inclination,
         }
-        given = {name: value for name, value in arguments.items() if value is not None}
+        given = {
+            name: in_unit(name, value, RANGES.get(name, LENGTH)[2])
+            for name, value in arguments.items()
+            if value is not None
+        }
         labels = {name: value for name, value in given.items() if is_labelled(value)}
         given |= broadcast_by_name(labels)
         checked = {
             name: in_range(name, value, low, high, closed="neither", unit=unit)
             for name, value in given.items()
-            for low, high, unit in [RANGES.get(name, (0.0, math.inf, "m"))]
+            for low, high, unit in [RANGES.get(name, LENGTH)]
         }
         broadcast(given, list(checked.values()))
         object.__setattr__(self, "_labels", labels)  # a frozen dataclass
@@ -245,7 +252,7 @@ class RigidBody(RespondingBody):
         <rocking.RigidBody: body on edges 0.25 m left and 0.15 m right of its mass at 0.8 m>
         """
         lengths: dict[str, Any] = {"width": width, "height": height, "offset": offset, "mass_height": mass_height}
-        given = {name: value for name, value in lengths.items() if value is not None}
+        given = {name: in_unit(name, value, "m") for name, value in lengths.items() if value is not None}
         broadcast_by_name({name: value for name, value in given.items() if is_labelled(value)})  # equal indexes
         for name, value in given.items():
             low = -math.inf if name == "offset" else 0.0

@@ -110,6 +110,11 @@ class ContactExtremes:
         unknown = dict.fromkeys(FORCES, math.nan)
         return replace(self, **unknown)  # type: ignore[arg-type]
 
+    def __repr__(self) -> str:
+        """What the contact requires, and the outcome."""
+        needs = f"friction {self.largest_friction_demand:.3g}, normal reaction {self.smallest_normal_reaction:.3g}"
+        return f"<rocking.ContactExtremes: needs {needs} of the weight; {self.sentence}>"
+
     @property
     def lifts_off(self) -> bool:
         """Whether pure rocking would require a tensile reaction, so that the block leaves the ground."""

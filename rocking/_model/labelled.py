@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, ResponseField
 
 if TYPE_CHECKING:
@@ -23,6 +23,19 @@ def variable(dims: Any, values: Any, unit: str, meaning: str, **attributes: Any)
 def is_labelled(*arguments: Any) -> bool:
     """Whether one of the arguments is an `xarray.DataArray`; xarray is not loaded to find out."""
     return any(type(argument).__name__ == "DataArray" and hasattr(argument, "dims") for argument in arguments)
+
+
+def in_unit(parameter: str, value: Any, unit: str) -> Any:
+    """A labelled argument that holds texts or quantities, as numbers in `unit`; others as they are.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If an entry cannot be converted.
+    """
+    if not is_labelled(value) or (value.dtype.kind not in "UO" and not hasattr(value.variable.data, "units")):
+        return value
+    return value.copy(data=float_array(parameter, value, unit=unit))
 
 
 def broadcast_by_name(arguments: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:

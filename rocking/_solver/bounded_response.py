@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, ResponseField, ResponseFields
+from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, OVERTURNED, ResponseField, ResponseFields
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
 from rocking._solver.rules import IMPACT_LIMIT
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 SOLVER_ERROR = 1e-12
 """Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""
@@ -66,6 +70,19 @@ class BoundedResponse(ResponseFields, EqualByValue, declared=BOUNDED_FIELDS):
             else ""
         )
         return f"<rocking.BoundedResponse: {outcome.sentence}{peak}, from the {self.source.item()}>"
+
+    def to_xarray(self) -> xr.Dataset:
+        """The fields as a data set over dim_0, dim_1, ..., with units, meanings and equation numbers."""
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the solver)
+
+        names, fields = [f"dim_{axis}" for axis in range(self.outcome.ndim)], (*BOUNDED_FIELDS, OVERTURNED)
+        found: dict[str, Any] = {one.name: one.variable(names, getattr(self, one.name)) for one in fields}
+        return xr.Dataset(found | {one.name: one.variable(names, self.derived[one.name]) for one in DERIVED_FIELDS})
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The fields as columns, one row for each block."""
+        labelled = self.to_xarray()
+        return (labelled if labelled.dims else labelled.expand_dims("block")).to_dataframe()
 
     def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
         """The same responses in another shape."""

@@ -36,7 +36,14 @@ class GroupSet(Enum):
         return self in (GroupSet.SLENDER_BY_BLOCK, GroupSet.SLENDER_BY_PULSE)
 
 
-@dataclass(frozen=True, eq=False, init=False)
+def _text(values: Array) -> str:
+    """A number, or the range and count of several."""
+    if values.size == 1:
+        return f"{values.item():.4g}"
+    return f"{values.min():.4g} to {values.max():.4g} ({values.size} values)" if values.size else "(no values)"
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class Problem(EqualByValue):
     """A block under a pulse in SI units; arrays broadcast.
 
@@ -77,8 +84,14 @@ class Problem(EqualByValue):
             object.__setattr__(self, name, in_range(name, value, 0.0, high, closed="neither", unit=unit))
         object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
 
+    def __repr__(self) -> str:
+        """The arguments, with units."""
+        said = f"alpha {_text(self.alpha)} rad, p {_text(self.frequency_parameter)} rad/s"
+        said += f", a_g {_text(self.peak_acceleration)} m/s2, omega_g {_text(self.pulse_frequency)} rad/s"
+        return f"<rocking.paper.Problem: {said}, g {self.gravity:g} m/s2>"
 
-@dataclass(frozen=True, eq=False, init=False)
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class Groups(EqualByValue):
     """Control groups of a problem, except restitution eta, which is dimensionless already.
 
@@ -101,6 +114,12 @@ class Groups(EqualByValue):
             object.__setattr__(self, name, in_range(name, value, 0.0, np.inf, closed="neither"))
         cosine = None if cos_alpha is None else in_range("cos_alpha", cos_alpha, 0.0, 1.0, closed="neither")
         object.__setattr__(self, "cos_alpha", cosine)
+
+    def __repr__(self) -> str:
+        """The groups."""
+        said = f"omega {_text(self.frequency_ratio)}, slenderness {_text(self.slenderness)}"
+        cosine = "" if self.cos_alpha is None else f", cos alpha {_text(self.cos_alpha)}"
+        return f"<rocking.paper.Groups: {said}{cosine}>"
 
     @property
     def amplitude(self) -> Array:

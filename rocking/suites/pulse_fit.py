@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,8 +24,13 @@ from rocking._dimensional.thresholds import overturning_scale
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
+from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 Array = NDArray[np.float64]
 
@@ -89,6 +95,38 @@ class PulseFit(EqualByValue):
             f"period {self.period:.4g} s, a_g {self.peak_acceleration:.3g} m/s2, "
             f"{100.0 * self.explained:.0f} % of the velocity; overturns at {ratios} times the record>"
         )
+
+    def to_xarray(self) -> xr.Dataset:
+        """The pulse, and over `block` the comparison, as a data set with units and meanings."""
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the solver)
+
+        velocity, blocks = self.velocity, self.blocks
+        pulse = {
+            "period": (self.period, "s", "period of the pulse"),
+            "peak_acceleration": (self.peak_acceleration, "m s-2", "peak acceleration of the pulse"),
+            "velocity_amplitude": (velocity.amplitude, "m s-1", "amplitude of its velocity"),
+            "centre": (velocity.centre, "s", "its centre, from the first sample of the record"),
+            "cycles": (velocity.cycles, "1", "number of its cycles, of Mavroeidis & Papageorgiou"),
+            "phase": (velocity.phase, "rad", "its phase, of Mavroeidis & Papageorgiou"),
+            "explained": (self.explained, "1", "share of the sum of squares of the velocity of the record"),
+        }
+        scales = {
+            "record_scale": (self.record_scale, "1", "lowest factor at which the record overturns the block"),
+            "pulse_scale": (self.pulse_scale, "1", "lowest factor at which the pulse overturns the block"),
+            "scale_ratio": (self.scale_ratio, "1", "pulse_scale over record_scale; above 1 it is unconservative"),
+        }
+        bodies = {
+            "alpha": ([block.alpha for block in blocks], "rad", "slenderness angle of the block"),
+            "half_diagonal": ([block.half_diagonal for block in blocks], "m", "half diagonal of the block"),
+        }
+        variables: dict[str, Any] = {name: variable((), *one) for name, one in pulse.items()}
+        variables |= {name: variable("block", *one) for name, one in scales.items()}
+        coordinates: dict[str, Any] = {name: variable("block", *one) for name, one in bodies.items()}
+        return xr.Dataset(variables, coordinates, {"family": velocity.family})
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The same with one row for each block."""
+        return self.to_xarray().to_dataframe()
 
     def acceleration(self, time: ArrayLike) -> Array:
         """Acceleration of the pulse [m/s2] at times [s] from the first sample of the record."""

@@ -117,6 +117,27 @@ def test_results_that_differ_in_one_field_differ(make):
             assert (one == changed) == same, field.name
 
 
+RESULTS = (
+    "Response", "BoundedResponse", "Thresholds", "PulseFit", "BlockResponse", "BodyResponse", "BodyThresholds",
+    "Assessment", "OverturningProbability",
+)  # fmt: skip
+"""What functions and methods that a user calls return; other functions return data sets of xarray."""
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_results_are_said_in_words_and_exported_with_units(name):
+    one = EXAMPLES[name]()
+    assert repr(one).startswith("<rocking.")
+    assert repr(one).count("\n") < 2
+    labelled = one.to_xarray()
+    for variable in labelled.data_vars.values():
+        assert variable.attrs["long_name"], variable.name
+        assert "units" in variable.attrs or variable.dtype.kind not in "fi", variable.name
+    table = one.to_pandas()
+    numbers = {key for key, variable in labelled.data_vars.items() if variable.dtype.kind == "f" and not variable.dims}
+    assert numbers <= set(table.columns if table.ndim == 2 else table.index)
+
+
 def test_responses_that_differ_in_one_number_differ():
     one, other = (rocking.peak_response("sine", **ARRAYS | {"frequency_ratio": omega}) for omega in (5.0, 5.0 + 1e-12))
     assert one != other

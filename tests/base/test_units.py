@@ -4,6 +4,7 @@ import math
 import time
 
 import numpy as np
+import pandas as pd
 import pint
 import pytest
 import xarray as xr
@@ -97,13 +98,22 @@ def test_the_percentage_of_the_report():
     "angles",
     [QUANTITY([10.0, 20.0], "degree"), [QUANTITY(10.0, "degree"), math.radians(20.0)],
      np.array([QUANTITY(10.0, "degree"), QUANTITY(20.0, "degree")], dtype=object),
-     xr.DataArray(QUANTITY([10.0, 20.0], "degree"), dims="block")],
-    ids=["array", "list", "objects", "labelled"],
+     xr.DataArray(QUANTITY([10.0, 20.0], "degree"), dims="block"),
+     np.array(["10 deg", "20 deg"]), xr.DataArray(["10 deg", "20 deg"], dims="block"), pd.Series(["10 deg", "20 deg"])],
+    ids=["array", "list", "objects", "labelled", "texts", "labelled texts", "texts of pandas"],
 )  # fmt: skip
 def test_arrays_of_quantities_are_converted(angles):
     expected = rocking.peak_response("sine", **GROUPS | {"alpha": np.radians([10.0, 20.0])})
     np.testing.assert_allclose(rocking.peak_response("sine", **GROUPS | {"alpha": angles}).peak_rotation,
                                expected.peak_rotation, rtol=1e-12)  # fmt: skip
+
+
+def test_coordinates_of_labelled_texts_are_numbers():
+    widths, peaks = xr.DataArray(["30 cm", "0.4 m"], dims="w"), xr.DataArray(["0.3 g", "5 m/s2"], dims="a")
+    found = rocking.RigidBody.from_size(widths, "1.6 m").response("sine", peak_acceleration=peaks, period="1 s")
+    assert found.sizes == {"w": 2, "a": 2}
+    np.testing.assert_allclose(found["left"], [0.15, 0.2], rtol=1e-15)
+    np.testing.assert_allclose(found["peak_acceleration"], [0.3 * 9.80665, 5.0], rtol=1e-15)
 
 
 class OtherQuantity(np.ndarray):
