@@ -173,6 +173,11 @@ class RigidBody(RespondingBody):
         return self._given
 
     @property
+    def labels(self) -> dict[str, Any]:
+        """The arguments that were given as labelled arrays (xarray), with their labels."""
+        return self._labels
+
+    @property
     def description(self) -> str:
         if self.shape:
             return f"{' x '.join(map(str, self.shape))} bodies"

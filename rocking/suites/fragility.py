@@ -9,6 +9,7 @@ state, is given for comparison only: it is the usual result of incremental dynam
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import number
 from rocking._base.units import Scalar
+from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
+from rocking.suites.body_arrays import over_bodies
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import CurveFit, FitStatus, binomial_interval, fit_curve
@@ -46,7 +49,7 @@ _MODEL_VARIABLES: dict[str, tuple[str, str]] = {
 
 def fragility(
     records: Sequence[Record] | Record,
-    blocks: Sequence[AbstractBlock] | AbstractBlock,
+    blocks: Sequence[AbstractBlock] | AbstractBlock | RigidBody,
     *,
     intensity: ArrayLike,
     measure: str = "pga",
@@ -62,9 +65,11 @@ def fragility(
     ----------
     records : sequence of Record
         The suite. Its records count as independent and equally likely.
-    blocks : Block or sequence of Block
+    blocks : Block, sequence of Block, or RigidBody
         Rigid blocks (2.2), also `EquivalentBlock`; a body with two different edges has no slenderness angle, to which
         measures and limit states refer. One block, not in a sequence, gives a result without the dimension `block`.
+        A `RigidBody` with equal edges gives the dimensions of its arguments in place of `block`; of arguments that are
+        backed by dask the result is lazy, in their chunks.
     intensity : array_like, (levels,)
         Levels, > 0, ascending, in the unit of the measure; texts such as "0.3 g" and quantities are converted to it.
     measure : str
@@ -101,9 +106,16 @@ def fragility(
     StoppedError
         If `stop` was set.
     """
-    suite = check_suite(records, blocks, intensity, measure, restitution)
     limits = check_demands(demand)
     confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")
+    if isinstance(blocks, RigidBody):
+        one = threads or (1 if any(getattr(value, "chunks", None) for value in blocks.labels.values()) else None)
+        options: dict[str, Any] = {
+            "intensity": intensity, "measure": measure, "restitution": restitution, "demand": demand,
+            "confidence": confidence, "threads": one, "stop": stop,
+        }  # fmt: skip
+        return over_bodies(partial(fragility, records, **options), blocks)
+    suite = check_suite(records, blocks, intensity, measure, restitution)
     outcomes = suite_outcomes(suite, threads=threads, stop=stop)
     found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence))
     found.attrs |= {"confidence": confidence}

@@ -64,7 +64,12 @@ def test_dask_arrays_stay_lazy_and_give_the_same_bits():
 def test_workers_of_a_cluster_give_the_same_bits():
     slenderness = xr.DataArray(np.linspace(0.2, 0.9, 40), dims="block").chunk(block=10)
     groups = {"frequency_ratio": OMEGA, "restitution": 0.9, "alpha": 0.2}
+    lazy = rocking.RigidBody.from_size(slenderness.rename("width"), 2.0)
+    suite = {"records": [noise(0), noise(1)], "intensity": [2.0, 8.0]}
     with Client(n_workers=2, threads_per_worker=1, dashboard_address=None):
         found = rocking.peak_response("sine", slenderness=slenderness, **groups).compute()
+        fragility = rocking.fragility(blocks=lazy, **suite).compute()
     plain = rocking.peak_response("sine", slenderness=slenderness.compute(), **groups)
     xr.testing.assert_identical(found.drop_vars("slenderness", errors="ignore"), plain.drop_vars("slenderness"))
+    eager = rocking.RigidBody.from_size(slenderness.compute(), 2.0)
+    xr.testing.assert_allclose(fragility, rocking.fragility(blocks=eager, **suite), rtol=1e-11)  # other lanes of steps

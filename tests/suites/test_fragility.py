@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.stats import norm
 
 import rocking
+from rocking._base.equality import equal_values
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._numba.cancellation import StopFlag
@@ -241,3 +243,63 @@ def test_work_can_be_stopped(noisy):
     stop.set()
     with pytest.raises(StoppedError):
         rocking.fragility(noisy, BLOCK, intensity=LEVELS, stop=stop)
+
+
+WIDTH = xr.DataArray([0.4, 0.6], dims="w", coords={"w": [4, 6]})
+HEIGHT = xr.DataArray([1.6, 2.0, 2.4], dims="h")
+
+
+def test_an_array_of_bodies_has_the_fragility_of_each_block():
+    options = {"intensity": np.geomspace(1.0, 40.0, 6), "demand": ["overturning", 0.5]}
+    motions = [noise(seed) for seed in range(3)]
+    found = rocking.fragility(motions, rocking.RigidBody.from_size(WIDTH, HEIGHT), **options)
+    blocks = [rocking.Block(w, h) for w in WIDTH.values for h in HEIGHT.values]
+    plain = rocking.fragility(motions, blocks, **options)
+    assert found.fraction.dims == ("demand", "w", "h", "intensity")
+    assert found.w.values.tolist() == [4, 6]
+    assert found.variables.keys() - {"w"} == plain.variables.keys()
+    for name, values in plain.variables.items():
+        np.testing.assert_array_equal(found[name].values.reshape(values.shape), values.values, name)
+        assert equal_values(found[name].attrs, values.attrs), name
+
+
+def test_a_lazy_array_of_bodies_has_the_same_fragility():
+    options = {"intensity": np.geomspace(1.0, 40.0, 6)}
+    motions = [noise(seed) for seed in range(3)]
+    lazy = rocking.fragility(motions, rocking.RigidBody.from_size(WIDTH.chunk(w=1), HEIGHT), **options)
+    assert lazy.fraction.chunks == ((1, 1), (3,), (6,))
+    plain = rocking.fragility(motions, rocking.RigidBody.from_size(WIDTH, HEIGHT), **options)
+    found = lazy.compute()
+    xr.testing.assert_allclose(found, plain, rtol=1e-11)  # bodies of a chunk share the sizes of their Taylor steps
+    np.testing.assert_array_equal(found.overturned, plain.overturned)
+    assert {name: equal_values(one.attrs, plain[name].attrs) for name, one in found.variables.items()} == dict.fromkeys(
+        plain.variables, True
+    )
+
+
+def test_bodies_of_another_inertia_are_blocks_of_the_same_alpha_and_p():
+    options = {"intensity": np.geomspace(1.0, 40.0, 6)}
+    motions = [noise(seed) for seed in range(3)]
+    body = rocking.RigidBody(0.2, 0.2, [0.8, 1.0], gyration=0.3)
+    found = rocking.fragility(motions, body, **options)
+    for k in range(2):
+        edge = body.right
+        block = rocking.EquivalentBlock(
+            float(edge.alpha[k]), float(edge.frequency_parameter[k]), restitution=float(edge.restitution[k])
+        )
+        one = rocking.fragility(motions, block, **options)
+        np.testing.assert_array_equal(found.overturned.isel(dim_0=k), one.overturned)
+        np.testing.assert_allclose(found.peak_rotation.isel(dim_0=k), one.peak_rotation, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("body", "allowed"),
+    [
+        (rocking.RigidBody(0.1, [0.1, 0.2], 0.8), "two equal edges"),
+        (rocking.RigidBody(0.1, 0.1, 0.8, inclination=0.01), "two equal edges"),
+        (rocking.RigidBody.from_size(WIDTH.rename(w="record"), 1.6), "dimensions other than intensity, record"),
+    ],
+)
+def test_bodies_without_a_fragility_are_refused(body, allowed):
+    with pytest.raises(InvalidArgumentError, match=allowed):
+        rocking.fragility([noise(0)], body, intensity=[1.0, 2.0])

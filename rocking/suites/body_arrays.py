@@ -1,0 +1,103 @@
+"""Fragility of arrays of bodies: labelled by their dimensions, and lazy where they are backed by dask."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.equivalent_block import EquivalentBlock
+from rocking._dimensional.rigid_body import RigidBody
+from rocking._model.block import AbstractBlock, RectangularBlock
+from rocking._model.labelled import broadcast_by_name
+
+Analyse = Callable[[Sequence[AbstractBlock]], xr.Dataset]
+
+OWN_DIMENSIONS = ("intensity", "record", "demand", "model")
+"""Dimensions of the results, which the arguments of a body cannot have."""
+
+
+def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
+    """The fragility of each body of an array, over the dimensions of its labelled arguments in place of `block`.
+
+    Parameters
+    ----------
+    analyse : callable
+        Gives the fragility of a sequence of blocks, over `block`.
+    body : RigidBody
+        Bodies with two equal edges. Of unlabelled arrays the axes are dim_0, dim_1, ...; the result is lazy, in the
+        chunks of the arguments, where one of them is backed by dask.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a body has two different edges, or a dimension of it is one of the result.
+    """
+    labels = body.labels
+    plain = {name: value for name, value in body.parameters.items() if name not in labels}
+    given = xr.Dataset(broadcast_by_name(labels))
+    taken = [name for name in given.dims if name in OWN_DIMENSIONS]
+    if taken:
+        raise InvalidArgumentError("blocks", taken[0], "dimensions other than " + ", ".join(OWN_DIMENSIONS))
+
+    def part(chunk: xr.Dataset) -> xr.Dataset:
+        bodies = RigidBody(**plain, **{name: chunk[name] for name in labels})
+        names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
+        return _over(analyse(_blocks_of(bodies)), names, bodies.shape).assign_coords(chunk.coords)
+
+    if not given.chunks:
+        return part(given)
+    first = part(given.isel(dict.fromkeys(given.dims, slice(1))).compute())
+    template = _each(first, lambda one: _unknown(one, given.sizes)).assign_coords(given.coords)
+    return xr.map_blocks(part, given, template=template.chunk(given.chunksizes))
+
+
+def _blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
+    """The bodies as blocks, in C order: rectangles where all are, else blocks of the same alpha and p."""
+    edge, shape = bodies.right, bodies.shape
+    equal = (bodies.left.alpha == edge.alpha) & (bodies.left.frequency_parameter == edge.frequency_parameter)
+    if not np.all(equal):
+        raise InvalidArgumentError(
+            "blocks", bodies, "bodies with two equal edges: one with two different ones has no slenderness angle"
+        )
+    uniform = np.hypot(bodies.width, bodies.top_height) / math.sqrt(12.0)
+    rectangular = bool(np.all((bodies.top_height == 2.0 * bodies.height) & (bodies.gyration == uniform)))
+    columns: tuple[Any, ...] = (bodies.width, 2.0 * bodies.height, bodies.gravity)
+    if not rectangular:
+        columns = edge.alpha, edge.frequency_parameter, np.maximum(edge.restitution, 0.0), bodies.gravity
+    rows = zip(*(np.broadcast_to(column, shape).ravel().tolist() for column in columns), strict=True)
+    if rectangular:
+        return [RectangularBlock(*row) for row in rows]
+    return [EquivalentBlock(alpha, p, restitution=eta, gravity=gravity) for alpha, p, eta, gravity in rows]
+
+
+def _over(found: xr.Dataset, names: tuple[Hashable, ...], shape: tuple[int, ...]) -> xr.Dataset:
+    """A data set whose dimension `block` is split into several."""
+
+    def split(variable: xr.Variable) -> xr.Variable:
+        if "block" not in variable.dims:
+            return variable
+        place = variable.dims.index("block")
+        dims = variable.dims[:place] + names + variable.dims[place + 1 :]
+        sizes = variable.shape[:place] + shape + variable.shape[place + 1 :]
+        return xr.Variable(dims, variable.values.reshape(sizes), variable.attrs)
+
+    return _each(found, split)
+
+
+def _unknown(variable: xr.Variable, sizes: Mapping[Hashable, int]) -> xr.Variable:
+    """A variable of the same kind with `sizes` of some dimensions; without these, the variable."""
+    if sizes.keys().isdisjoint(variable.dims):
+        return variable
+    shape = [sizes.get(name, size) for name, size in variable.sizes.items()]
+    return xr.Variable(variable.dims, np.broadcast_to(np.zeros((), variable.dtype), shape), variable.attrs)
+
+
+def _each(found: xr.Dataset, change: Callable[[xr.Variable], xr.Variable]) -> xr.Dataset:
+    """A data set whose variables, also those of coordinates, are changed."""
+    variables = {name: change(value) for name, value in found.variables.items()}
+    return xr.Dataset(variables, attrs=found.attrs).set_coords([*found.coords])
