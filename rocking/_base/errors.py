@@ -247,7 +247,7 @@ def _without_unit(parameter: str, value: Any, unit: str) -> Any:
         return si_value(parameter, value, unit)
     if hasattr(value, "dtype") and value.dtype.kind in "UO":  # an array of texts or quantities, with or without labels
         array = np.asarray(value)
-        if any(isinstance(entry, str) or _has_unit(entry) for entry in array.flat):
+        if any(_has_unit(entry) for entry in array.flat):
             return _without_unit(parameter, array.tolist(), unit)
     if isinstance(value, np.ndarray) and not hasattr(value, "unit"):
         return value
@@ -269,6 +269,9 @@ def _without_unit(parameter: str, value: Any, unit: str) -> Any:
 
 
 def _has_unit(value: Any) -> bool:
+    """Whether a value is a quantity of a library, or a text with a unit."""
+    if isinstance(value, str):
+        return bool((split_quantity(value) or (math.nan, ""))[1])
     return hasattr(value, "to") and (hasattr(value, "units") or hasattr(value, "unit"))
 
 

@@ -30,7 +30,7 @@ from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.checks import check, check_number
-from rocking._model.labelled import in_unit, is_labelled, labelled_response
+from rocking._model.labelled import Index, in_unit, index_of, is_labelled, labelled_response
 from rocking._model.parameters import RESTITUTION, Parameter
 from rocking._numba.cancellation import StopFlag
 
@@ -333,6 +333,9 @@ class RespondingBody(AbstractBody):
         """
         return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
 
+    index: Index | None = None
+    """Name and labels of the index of the series (pandas) from which an array of bodies is made."""
+
     def _labelled(self) -> tuple[Callable[..., RespondingBody], dict[str, Any]]:
         """What makes the body from its labelled arguments (xarray), and these by name."""
         return (lambda: self), {}
@@ -364,7 +367,8 @@ class RespondingBody(AbstractBody):
             given["restitution"], checked["restitution"] = restitution, eta
         broadcast({**self.parameters, **given}, [*self.parameters.values(), *checked.values()])
         made = motion if isinstance(motion, Record) else as_pulse(motion)
-        return BodyProblem(self, made, acceleration, times, eta), checked
+        index = index_of(*given.values()) or self.index
+        return BodyProblem(self, made, acceleration, times, eta, index), checked
 
     def _need_one(self, name: str, restitution: Scalar, **numbers: Scalar | None) -> None:
         """Refuse an array of bodies, and arrays as arguments that are one number."""

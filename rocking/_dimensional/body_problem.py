@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ from rocking._excitation.records.vertical import reject_flight
 from rocking._history.motion import FREE_DURATION, BodyMotion, PulseMotion, SamplesMotion
 from rocking._model.body import AbstractBody
 from rocking._model.checks import check
+from rocking._model.labelled import Index
 from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, SMALLEST_ALPHA
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record as KernelRecord
@@ -45,6 +46,8 @@ class BodyProblem:
         Of a pulse, > 0; 1 for a record.
     restitution : float array or None
         Of every impact [-]; None: by angular momentum, 0 where that is negative.
+    index : (name, labels) or None
+        Index of the last axis if an argument was a series (pandas).
 
     Raises
     ------
@@ -57,6 +60,7 @@ class BodyProblem:
     acceleration: Array
     period: Array
     restitution: Array | None
+    index: Index | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if self.body.is_linear:

@@ -30,6 +30,7 @@ from rocking._model.fields import (
     UPLIFT_TIME,
     ResponseField,
 )
+from rocking._model.labelled import with_index
 from rocking._model.outcome import Outcome
 from rocking._model.response import along_own_axes, axis_names
 from rocking._numba.cancellation import StopFlag
@@ -220,7 +221,8 @@ class BodyResponse(EqualByValue):
             name: (*along_own_axes(value, names), {"units": _UNITS.get(name, "1")})
             for name, value in self.arguments.items()
         }
-        return xr.Dataset(variables, coordinates, {"motion": self.problem.motion.name})
+        found = xr.Dataset(variables, coordinates, {"motion": self.problem.motion.name})
+        return with_index(found, names[-1], self.problem.index) if names else found
 
     def to_pandas(self) -> pd.DataFrame:
         """The fields as columns, one row for each body; the index has the axes of `to_xarray`."""

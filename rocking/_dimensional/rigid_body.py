@@ -18,7 +18,7 @@ from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rigid_edge
-from rocking._model.labelled import broadcast_by_name, in_unit, is_labelled
+from rocking._model.labelled import broadcast_by_name, in_unit, index_of, is_labelled
 
 Array = NDArray[np.float64]
 
@@ -103,6 +103,7 @@ class RigidBody(RespondingBody):
         }
         broadcast(given, list(checked.values()))
         object.__setattr__(self, "_labels", labels)  # a frozen dataclass
+        object.__setattr__(self, "index", index_of(*arguments.values()))
         object.__setattr__(self, "_given", checked)
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
             if not np.all(edge.alpha > 0.0):
@@ -268,7 +269,7 @@ class RigidBody(RespondingBody):
         if not np.all(np.abs(e) < half):
             allowed = f"less than half the width to either side, {float(np.min(half)):.6g} m"
             raise InvalidArgumentError("offset", offset, allowed)
-        return cls(
+        made = cls(
             left=half + e,
             right=half - e,
             height=given.get("mass_height", 0.5 * h),
@@ -276,6 +277,8 @@ class RigidBody(RespondingBody):
             gravity=gravity,
             top_height=h,
         )
+        object.__setattr__(made, "index", index_of(*lengths.values(), gyration, gravity))
+        return made
 
     @classmethod
     def from_polygon(cls, vertices: ArrayLike, *, gravity: Scalar = STANDARD_GRAVITY) -> Self:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.block import AbstractBlock
+from rocking._model.labelled import Index, with_index
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record as KernelRecord
@@ -71,6 +72,8 @@ class BodyThresholds(EqualByValue):
         What the values are.
     ends_in_flight : bool
         Whether the search for one body ended at the factor at which the vertical acceleration reaches -g.
+    index : (name, labels) or None
+        Index of the last axis of the bodies if an argument was a series (pandas).
     """
 
     value: Array
@@ -78,6 +81,7 @@ class BodyThresholds(EqualByValue):
     searched: Array
     strength: str
     ends_in_flight: bool = False
+    index: Index | None = field(default=None, compare=False)
 
     @property
     def lowest(self) -> Array:
@@ -144,7 +148,8 @@ class BodyThresholds(EqualByValue):
             "overturns_above": ((*axes, "threshold"), self.overturns_above, above),
             "searched": ((*axes, "end"), self.searched, units | {"long_name": f"lowest and highest {name} searched"}),
         }
-        return xr.Dataset(variables)
+        found = xr.Dataset(variables)
+        return with_index(found, axes[-1], self.index) if axes else found
 
     def to_pandas(self) -> pd.DataFrame:
         """The thresholds as rows; the index has the axes of `to_xarray`."""
@@ -196,6 +201,7 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
         np.stack([uplift, np.maximum(uplift, top)], axis=-1).reshape(*shape, 2),
         "scale" if by_record else "peak_acceleration",
         ends_in_flight=bool(flies.all()) and shape == (),
+        index=problem.index,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking._base.errors import InvalidArgumentError, float_array
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 FIELDS = (*RESPONSE_FIELDS, OVERTURNED)
 
 
+Index = tuple[Hashable, Any]
+
+
 def variable(dims: Any, values: Any, unit: str, meaning: str, **attributes: Any) -> tuple[Any, Any, dict[str, Any]]:
     """A variable of a data set with unit, as CF writes it, "" for none, meaning and further attributes."""
     units = {"units": unit} if unit else {}
@@ -23,6 +26,29 @@ def variable(dims: Any, values: Any, unit: str, meaning: str, **attributes: Any)
 def is_labelled(*arguments: Any) -> bool:
     """Whether one of the arguments is an `xarray.DataArray`; xarray is not loaded to find out."""
     return any(type(argument).__name__ == "DataArray" and hasattr(argument, "dims") for argument in arguments)
+
+
+def index_of(*arguments: Any) -> Index | None:
+    """Name, "index" without one, and labels of the index of the first pandas series, which is found without pandas."""
+    for argument in arguments:
+        if type(argument).__name__ == "Series" and hasattr(argument, "index"):
+            index = argument.index
+            return index.name or "index", index if index.nlevels == 1 else index.to_numpy()
+    return None
+
+
+def with_index(found: xr.Dataset, axis: Hashable, index: Index | None) -> xr.Dataset:
+    """A data set whose dimension `axis` has the name and labels of the index of a pandas argument, if there is one."""
+    if index is None or found.sizes.get(axis) != len(index[1]):
+        return found
+    name, labels = index
+    if name != axis and name in found.variables:  # an argument of that name is a coordinate already
+        return found
+    return (
+        found.reset_index([axis] if axis in found.indexes else [])
+        .swap_dims({axis: name})
+        .assign_coords({name: (name, labels)})
+    )
 
 
 def in_unit(parameter: str, value: Any, unit: str) -> Any:

@@ -14,7 +14,7 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Quantity
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
-from rocking._model.labelled import variable
+from rocking._model.labelled import Index, variable, with_index
 from rocking._model.outcome import Outcome
 from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
 
@@ -41,6 +41,8 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
         coordinates of `to_xarray`; empty if not known.
     dims : tuple
         Names of the dimensions if an argument was labelled (xarray).
+    index : (name, labels) or None
+        Index of the last axis if an argument was a series (pandas).
     """
 
     chatter: NDArray[np.bool_]
@@ -54,6 +56,7 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
     pulse: str = ""
     groups: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     dims: tuple[Hashable, ...] = ()
+    index: Index | None = field(default=None, compare=False)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -117,7 +120,8 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
                 unit = "1" if group.unit == "-" else group.unit
                 coordinates[group.name] = variable(*along_own_axes(value, names), unit, group.label)
         attributes = {"pulse": self.pulse} if self.pulse else {}
-        return xr.Dataset(variables, coordinates, attributes)
+        found = xr.Dataset(variables, coordinates, attributes)
+        return with_index(found, names[-1], self.index) if names and dims is None else found
 
     def to_pandas(self) -> pd.DataFrame:
         """The fields as columns, one row for each block; the index has the axes of `to_xarray`."""

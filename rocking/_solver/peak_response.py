@@ -16,7 +16,7 @@ from rocking._excitation.records.record import Record as Recording
 from rocking._model.checks import check_groups, check_number, known_restitution
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
-from rocking._model.labelled import is_labelled, labelled_response
+from rocking._model.labelled import index_of, is_labelled, labelled_response
 from rocking._model.parameters import RELATIVE_TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
@@ -207,7 +207,8 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
-    return Response(**found, pulse=made.name, groups=checked, dims=dimensions_of(*given.values()))
+    dims, index = dimensions_of(*given.values()), index_of(*given.values())
+    return Response(**found, pulse=made.name, groups=checked, dims=dims, index=index)
 
 
 def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:

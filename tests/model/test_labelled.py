@@ -1,6 +1,7 @@
 """Labelled arguments: broadcast by name, equal bits, units; lazy with dask."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from distributed import Client
@@ -73,3 +74,34 @@ def test_workers_of_a_cluster_give_the_same_bits():
     xr.testing.assert_identical(found.drop_vars("slenderness", errors="ignore"), plain.drop_vars("slenderness"))
     eager = rocking.RigidBody.from_size(slenderness.compute(), 2.0)
     xr.testing.assert_allclose(fragility, rocking.fragility(blocks=eager, **suite), rtol=1e-11)  # other lanes of steps
+
+
+def test_series_of_pandas_keep_their_index():
+    index = pd.Index(["vase", "bust"], name="item")
+    slenderness = pd.Series([0.3, 0.5], index=index)
+    groups = {"restitution": 0.9, "frequency_ratio": 5.0}
+    found = rocking.peak_response("sine", slenderness=slenderness, **groups)
+    plain = rocking.peak_response("sine", slenderness=slenderness.to_numpy(), **groups)
+    assert found == plain
+    pd.testing.assert_index_equal(found.to_pandas().index, index)
+    np.testing.assert_array_equal(found.to_xarray()["slenderness"], slenderness)
+    record = rocking.peak_response(RECORD, slenderness=slenderness, frequency_parameter=3.0, restitution=0.9)
+    pd.testing.assert_index_equal(record.to_pandas().index, index)
+    rows = rocking.peak_response("sine", slenderness=slenderness, frequency_ratio=[[4.0], [5.0]], restitution=0.9)
+    assert rows.to_xarray().peak_rotation.dims == ("frequency_ratio", "item")
+
+
+def test_bodies_from_series_of_pandas_keep_their_index():
+    widths = pd.Series(["40 cm", "50 cm"], index=pd.MultiIndex.from_tuples([("a", 1), ("b", 2)]))
+    bodies = rocking.RigidBody.from_size(widths, 1.6)
+    for found in (
+        bodies.response("sine", peak_acceleration=4.0, period=1.0),
+        rocking.RigidBody(0.2, 0.2, 0.8).response(
+            "sine", peak_acceleration=pd.Series([3.0, 4.0], widths.index), period=1.0
+        ),
+    ):
+        assert found.to_pandas().index.tolist() == [("a", 1), ("b", 2)]
+    rows = bodies.thresholds("sine", period=1.0).to_pandas()
+    assert rows.index.get_level_values("index").unique().tolist() == [("a", 1), ("b", 2)]
+    fragility = rocking.fragility([RECORD], bodies, intensity=[2.0, 4.0])
+    assert fragility.fraction.dims == ("index", "intensity")

@@ -14,6 +14,7 @@ from rocking._excitation.records.vertical import check_vertical_scale
 from rocking._excitation.shapes import AbstractPulse
 from rocking._model.checks import check_groups
 from rocking._model.fields import SOLVED_FIELDS
+from rocking._model.labelled import index_of
 from rocking._model.parameters import FREQUENCY_PARAMETER
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
@@ -71,7 +72,8 @@ def record_response(
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
     if motion.vertical is None:
         del named["vertical_scale"]
-    return Response(**found, pulse=motion.name, groups=named, dims=dimensions_of(*given.values()))
+    dims, index = dimensions_of(*given.values()), index_of(*given.values())
+    return Response(**found, pulse=motion.name, groups=named, dims=dims, index=index)
 
 
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
