@@ -5,10 +5,11 @@
 | OpenQuake, `hazard_curve-mean-PGA.csv` | comment with `investigation_time`, `imt`; columns `poe-0.005` | probability |
 | USGS nshmp-haz, `PGA/curves.csv` | columns `lon`, `lat` and one for each level | annual rate |
 | USGS Unified Hazard Tool, "Download Data" | a line `Peak Ground Acceleration` above levels and values | annual rate |
+| a table of one's own | two columns, `pga [UNIT]` or `pgv [UNIT]` and `annual rate [1/year]` | annual rate |
 
 A probability P of exceedance in T years is converted to the annual rate -ln(1 - P)/T of a Poisson process. Levels at
 the top with the rate zero, and at the bottom with the probability one, say nothing of the rate and are left out. PGA is
-in g and PGV in cm/s in all of them.
+in g and PGV in cm/s in those of the services.
 """
 
 from __future__ import annotations
@@ -35,18 +36,21 @@ TYPES = {"PGA": ("pga", "m s-2", STANDARD_GRAVITY), "PGV": ("pgv", "m s-1", 0.01
 LABELS = {"Peak Ground Acceleration": "PGA", "Peak Ground Velocity": "PGV"}
 """What the Unified Hazard Tool calls the types."""
 
+OWN = "two columns with the header `pga [g],annual rate [1/year]`"
+
 MAX_BYTES = 10_000_000
 """Largest file that is read."""
 
 
 def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
-    """Read the hazard curve of one site from a file of OpenQuake or of the USGS.
+    """Read the hazard curve of one site from a file of OpenQuake or of the USGS, or from a table of two columns.
 
     Parameters
     ----------
     path : path
         CSV of OpenQuake, `curves.csv` of nshmp-haz in a folder named after its measure, or the text that the Unified
-        Hazard Tool gives to download. One site, PGA or PGV.
+        Hazard Tool gives to download; or two columns, `pga [UNIT]` or `pgv [UNIT]` and `annual rate [1/year]`, such as
+        "pga [g],annual rate [1/year]". One site, PGA or PGV.
 
     Returns
     -------
@@ -92,10 +96,19 @@ def _curve(file: Path, rows: list[list[str]], text: str) -> tuple[str, Array, Ar
             return _known(file, about["imt"]), levels, -np.log1p(-in_range("hazard", poes, 0.0, 1.0)) / years
     if rows and {"lon", "lat"} <= set(rows[0]):
         return _known(file, file.resolve().parent.name), *_site(file, rows, "")
+    own = re.fullmatch(r"(pg[av]) *\[(.+)\],annual[ _]rate( *\[1/year\])?", ",".join(rows[0]), re.I) if rows else None
+    if own is not None:
+        kind = own[1].upper()
+        texts = [f"{level} {own[2]}" for level, _ in rows[1:]]
+        unit = {"PGA": "m/s2", "PGV": "m/s"}[kind]
+        found = in_range("hazard", texts, 0.0, np.inf, closed="neither", unit=unit)
+        return kind, found / TYPES[kind][2], np.array([float(rate) for _, rate in rows[1:]])
     lines = iter(text.splitlines())
     label = next((line.strip() for line in lines if line.strip() in LABELS), None)
     if label is None:
-        raise _refused(file, "its content", "hazard curves of OpenQuake, nshmp-haz or the Unified Hazard Tool")
+        raise _refused(
+            file, "its content", "a hazard curve of OpenQuake, nshmp-haz or the Unified Hazard Tool, or " + OWN
+        )
     return LABELS[label], _numbers(lines), _numbers(lines)
 
 

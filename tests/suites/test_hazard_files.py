@@ -73,12 +73,25 @@ def test_pgv_is_in_centimetres_a_second(tmp_path):
         (TOOL.replace("Peak Ground", "Mean Ground"), "a.txt", "Unified Hazard Tool"),
         (TOOL.replace("1.5\n5.2e-1", "\n5.2e-1"), "a.txt", "hazard"),
         ("", "a.csv", "Unified Hazard Tool"),
+        ("pga [s],annual rate\n0.1,1e-3\n", "a.csv", "'0.1 s'"),
+        ("pga [g],annual rate\n0.1,1e-3\n0.2\n", "a.csv", "numbers"),
+        ("pga [g],annual rate\n0.1,1e-3\n0.2,often\n", "a.csv", "often"),
+        ("pga [g],probability in 50 years\n0.1,1e-3\n0.2,1e-4\n", "a.csv", "annual rate"),
         ("\x00\n,lon,lat", "a.csv", "hazard"),
     ],
 )
 def test_other_files_are_refused_with_the_reason(tmp_path, text, name, message):
     with pytest.raises(InvalidArgumentError, match=message):
         read_hazard(written(tmp_path, text, name))
+
+
+@pytest.mark.parametrize("header", ["pga [g],annual rate [1/year]", "PGA [gal],annual_rate", "pgv [cm/s], Annual rate"])
+def test_a_table_of_ones_own(tmp_path, header):
+    found = read_hazard(written(tmp_path, f"{header}\n0.1,2e-2\n0.4,4e-4\n\n", "own.csv"))
+    unit = {"g": 9.80665, "gal": 0.01, "cm/s": 0.01}[header.split("[")[1].split("]")[0]]
+    np.testing.assert_allclose(found["intensity"], [0.1 * unit, 0.4 * unit])
+    assert found.values.tolist() == [2e-2, 4e-4]
+    assert found.attrs["measure"] == header[:3].lower()
 
 
 def test_a_file_that_cannot_be_read(tmp_path):
