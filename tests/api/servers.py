@@ -102,21 +102,23 @@ def proxy(service_port, folder):
 
 
 class Stopwatch:
-    """Time since its creation [s], without that in which the processors did the work of other processes.
+    """Time since its creation [s], without that in which the processors did not work for the processes.
 
-    Subtracted is the time that the main threads of the processes were ready to run but did not. That of their other
-    threads must count, as the event loop waits for those that parse bodies; the result is never longer than the
-    processor time of the processes, which a delay that they cause themselves cannot exceed.
+    That is the time that the main threads of the processes were ready to run but did not, while others did; that of
+    their other threads must count, as the event loop waits for those that parse bodies. It is also the time for which a
+    virtual machine stops, as when its host gives it memory: the clocks go on, the ticks of its processors do not. The
+    result is never longer than the processor time of the processes, which a delay that they cause themselves cannot
+    exceed.
     """
 
     def __init__(self, *processes):
         self._processes = processes
-        self._began = time.perf_counter(), self._kept_waiting(), self._processor_time()
+        self._began = time.perf_counter(), self._kept_waiting(), self._processor_time(), _ticking_time()
 
     def seconds(self):
-        began, waited, spent = self._began
-        passed = time.perf_counter() - began - (self._kept_waiting() - waited)
-        return min(passed, self._processor_time() - spent)
+        began, waited, spent, ticked = self._began
+        passed = min(time.perf_counter() - began, _ticking_time() - ticked + TICK)
+        return min(passed - (self._kept_waiting() - waited), self._processor_time() - spent)
 
     def _kept_waiting(self):
         files = (Path(f"/proc/{pid}/task/{pid}/schedstat") for pid in self._processes)
@@ -125,3 +127,13 @@ class Stopwatch:
     def _processor_time(self):
         """Of all threads, those that have ended among them."""
         return sum(time.clock_gettime((~pid << 3) | 2) for pid in self._processes)  # clock_getcpuclockid(3)
+
+
+TICK = 1.0 / os.sysconf("SC_CLK_TCK")
+"""Unit of the times that the system counts [s]."""
+
+
+def _ticking_time():
+    """Time for which the processors of this machine have worked or had nothing to do, the mean of all [s]."""
+    counts = Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9]
+    return TICK * sum(map(int, counts)) / os.cpu_count()
