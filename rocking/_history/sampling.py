@@ -18,7 +18,7 @@ import math
 
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
-from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.compilation import FloatArray, Record, entry, kernel, light_entry
 from rocking._numba.records import copy_fields
 from rocking._solver.arcs.flight import set_angles, state_at
 from rocking._solver.kernels.event_loop import advance_by_arc, init_state
@@ -42,7 +42,7 @@ REST_VELOCITY = 1e-7
 """Velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha."""
 
 
-@entry
+@light_entry
 def sample_flights(
     followed: Record,
     flight: Record,
@@ -83,7 +83,7 @@ def sample_flights(
             flight.end_rotation, flight.end_velocity = z, w
 
 
-@entry
+@light_entry
 def sample_arcs(
     cell: Record,
     flight: Record,
@@ -333,7 +333,7 @@ def copy_start(block: Record, start: Record) -> None:
     start.peak_rotation, start.largest_z = 1e300, 0.0  # no peak exceeds it: none is searched for
 
 
-@entry
+@light_entry
 def sample_free_rocking(
     z: float,
     w: float,

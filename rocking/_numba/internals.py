@@ -12,7 +12,7 @@ copies have internal linkage in the module of the entry, and every process runs 
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -68,6 +68,9 @@ class _SingleModuleLibrary(JITCodeLibrary):
     the same everywhere, and the pass that removes pairs of them finds them by name (kernels took 1.7 times the time).
     """
 
+    passes: Mapping[str, int] = {}
+    """Settings of LLVM's passes other than numba's."""
+
     def finalize(self) -> None:
         _link_all_called(self, self._final_module)
         self._linking_libraries = []
@@ -83,23 +86,40 @@ class _SingleModuleLibrary(JITCodeLibrary):
             super()._optimize_final_module()
             return
         # without the first passes of numba, which prepare the removal of pairs of counts: a twentieth less time
-        passes, builder = self._codegen._module_pass_manager()
-        passes.run(self._final_module, builder)
+        manager, builder = self._codegen._module_pass_manager(**self.passes)
+        manager.run(self._final_module, builder)
 
 
-@register_pass(mutates_CFG=False, analysis_only=False)
-class _UseSingleModuleLibrary(LoweringPass):
-    """Selects `_SingleModuleLibrary` as the target of code generation."""
+class _LightLibrary(_SingleModuleLibrary):
+    """The library of an entry that gains nothing where LLVM inlines and unrolls more."""
 
-    _name = "rocking_one_module"
+    passes: Mapping[str, int] = {"opt": 1}
+
+
+class _UseLibrary(LoweringPass):
+    """Selects `library` as the target of code generation."""
+
+    library: type[JITCodeLibrary]
 
     def __init__(self) -> None:
         LoweringPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
-        state.library = _SingleModuleLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         return False
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _UseSingleModuleLibrary(_UseLibrary):
+    _name = "rocking_one_module"
+    library = _SingleModuleLibrary
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _UseLightLibrary(_UseLibrary):
+    _name = "rocking_light"
+    library = _LightLibrary
 
 
 class _NoEnvironment:
@@ -159,18 +179,9 @@ def _link_all_called(library: Any, module: Any) -> None:
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class _UseLinkedLibrary(LoweringPass):
-    """Selects `_LinkedLibrary` as the target of code generation."""
-
+class _UseLinkedLibrary(_UseLibrary):
     _name = "rocking_linked"
-
-    def __init__(self) -> None:
-        LoweringPass.__init__(self)
-
-    def run_pass(self, state: Any) -> bool:
-        state.library = _LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
-        return False
+    library = _LinkedLibrary
 
 
 _UNUSED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites)
@@ -272,7 +283,7 @@ class _EntryCompiler(_Compiler):
     arguments of a kernel at each pass: here once for each combination of types, in a quarter less time.
     """
 
-    select = _UseSingleModuleLibrary
+    select: type[_UseLibrary] = _UseSingleModuleLibrary
 
     def compile_extra(self, func: Any) -> Any:
         collecting = gc.isenabled()
@@ -283,6 +294,12 @@ class _EntryCompiler(_Compiler):
         finally:
             if collecting:
                 gc.enable()
+
+
+class _LightEntryCompiler(_EntryCompiler):
+    """Compiler of light entries."""
+
+    select = _UseLightLibrary
 
 
 class _KernelCompiler(_Compiler):
@@ -317,14 +334,15 @@ class PackageCacheLocator(UserProvidedCacheLocator):
         return cls(function, file) if Path(file).is_relative_to(_PACKAGE) else None
 
 
-def entry(function: Callable[..., Any], options: dict[str, Any], *, arrays: bool, cache: bool) -> Any:
-    """Compile `function` as one module, with a cache in `numba.config.CACHE_DIR`."""
+def entry(function: Callable[..., Any], options: dict[str, Any], *, arrays: bool, light: bool, cache: bool) -> Any:
+    """Compile `function` as one module, with a cache in `numba.config.CACHE_DIR`; `light`: optimised less."""
     config: Any = numba.config  # its attributes are made at run time
     before = config.CACHE_LOCATOR_CLASSES
     config.CACHE_LOCATOR_CLASSES = f"{__name__}.{PackageCacheLocator.__name__},{UserProvidedCacheLocator.__name__}"
     try:
         options = _with_private(options, arrays=arrays)
-        return numba.njit(pipeline_class=_EntryCompiler, cache=cache, **options)(function)
+        compiler = _LightEntryCompiler if light else _EntryCompiler
+        return numba.njit(pipeline_class=compiler, cache=cache, **options)(function)
     finally:
         config.CACHE_LOCATOR_CLASSES = before
 

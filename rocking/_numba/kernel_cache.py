@@ -44,7 +44,7 @@ LATENCY = 1.0
 COMPILERS = {"numba", "llvmlite"}
 """Modules that import one of these are part of what is compiled,"""
 
-DECORATORS = {"kernel", "specialised_kernel", "array_kernel", "jitable", "entry", "array_entry"}
+DECORATORS = {"kernel", "specialised_kernel", "array_kernel", "jitable", "entry", "light_entry", "array_entry"}
 """and those with a function that one of these names of `rocking._numba.compilation` decorates."""
 
 NOT_KEPT = threading.Event()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
-from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.records import copy_fields
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
@@ -93,7 +93,7 @@ def next_cell(
     return following
 
 
-@entry
+@light_entry
 def solve_batch(
     slenderness: FloatArray,
     omega: FloatArray,

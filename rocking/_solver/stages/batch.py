@@ -10,7 +10,7 @@ most calls leave no block, and do not wait for its compilation.
 from __future__ import annotations
 
 from rocking._numba.cancellation import is_stopped
-from rocking._numba.compilation import FloatArray, Record, entry, kernel
+from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
 from rocking._solver.kernels.event_loop import advance_by_arc, init_state
 from rocking._solver.rules import set_block, write_response
@@ -156,7 +156,7 @@ def follow_group(
         share_flights(which, eta, pulse, group, cells, responses)
 
 
-@entry
+@light_entry
 def solve_by_arcs(
     slenderness: FloatArray,
     omega: FloatArray,
@@ -219,7 +219,7 @@ def solve_by_arcs(
     return left
 
 
-@entry
+@light_entry
 def solve_remainder(
     slenderness: FloatArray, omega: FloatArray, eta: FloatArray, pulse: Record, stop: FloatArray, responses: Record
 ) -> None:
