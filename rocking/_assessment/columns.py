@@ -85,7 +85,8 @@ OUTPUTS = (
     Column(
         "direction",
         "",
-        "along which it rocks: width, depth, any of a round base, or an angle from the x axis of a mesh",
+        "along which it rocks: width, depth, any of a round base, the plane of an outline, or an angle from the x axis "
+        "of a mesh",
     ),
     Column("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
     Column("uplifts", "bool", "whether a motion of the site makes it uplift"),

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
-from rocking._model.body import AbstractBody, Edge
+from rocking._model.body import AbstractBody, Edge, checked_vertices
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
 
@@ -25,7 +25,14 @@ LENGTHS = 1e-4, 1e3
 """Smallest and largest dimension of an object [m]."""
 
 STEP = 15
-"""Between the directions of a mesh [degrees]."""
+"""Between the directions around an object [degrees]."""
+
+LONG_SIDE = 0.1
+"""Length over the perimeter from which on a side of a footprint has a direction of its own [-].
+
+A body turns about a long side at a smaller distance than in directions beside that. Those across shorter sides, as of a
+round base, are rounded to multiples of `STEP`.
+"""
 
 CYLINDER = 0.75
 """12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]."""
@@ -109,6 +116,14 @@ class Object:
         for name, value in values.items():
             object.__setattr__(self, name, value)  # a frozen dataclass
 
+    def _check_described(self, description: str) -> None:
+        """Check an object that has its dimensions from a description, such as "a mesh"."""
+        for size in ("width", "depth", "diameter", "height", "mass_height"):
+            if getattr(self, size) is not None:
+                raise InvalidArgumentError(size, getattr(self, size), f"nothing beside {description}, which has it")
+        self._check_texts()
+        self._check_others()
+
     def _check_others(self) -> None:
         """Check what is not a dimension."""
         checked: dict[str, float] = {}
@@ -125,7 +140,8 @@ class Object:
     def from_mesh(path: str | Path, *, unit: str = "m", name: str | None = None, **others: Any) -> MeshObject:
         """An object of uniform density from a surface mesh, z upwards, as of `rocking.RigidBody.from_mesh`.
 
-        It is assessed in vertical planes every 15 degrees from the x axis towards the y axis, from both sides.
+        It is assessed in vertical planes every 15 degrees from the x axis towards the y axis, and across the long sides
+        of its footprint where they are in other directions, from both sides.
 
         Parameters
         ----------
@@ -147,6 +163,27 @@ class Object:
         """
         return MeshObject(Path(path).stem if name is None else name, path=str(path), unit=unit, **others)
 
+    @staticmethod
+    def from_outline(vertices: ArrayLike, *, name: str = "outline", **others: Any) -> OutlineObject:
+        """An object of uniform density from its outline, which rocks in the plane of this outline.
+
+        Parameters
+        ----------
+        vertices : array_like (vertices, 2)
+            Corners x, y [m], y upwards, as of `rocking.RigidBody.from_polygon`.
+        name : str
+            For output.
+        others
+            mass, friction, restitution, tolerance, pedestal and notes, as above.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If the outline crosses itself, encloses no area, or does not stand; as for an object.
+        """
+        corners = tuple((float(x), float(y)) for x, y in checked_vertices(vertices))
+        return OutlineObject(name, vertices=corners, **others)
+
     @property
     def planes(self) -> dict[str, Plane]:
         """The planes in which it can rock, by name of the direction."""
@@ -158,6 +195,30 @@ class Object:
             return {"any": Plane(given["diameter"], offset, height, centre, CYLINDER, 1.0)}
         names = ("width",) if self.depth is None else ("width", "depth")
         return {name: Plane(given[name], given[f"offset_{name}"], height, centre, 1.0, 1.0) for name in names}
+
+    @property
+    def planes_around(self) -> dict[float, Plane]:
+        """The planes across the sides of its base, by angle from the width towards the depth, below 180 [degrees]."""
+        planes = self.planes
+        if self.diameter is None:
+            return dict(zip((0.0, 90.0), planes.values(), strict=False))
+        given: dict[str, Any] = vars(self)
+        angles = np.radians(np.arange(0.0, 180.0, STEP))
+        offsets = given["offset_width"] * np.cos(angles) + given["offset_depth"] * np.sin(angles)
+        around = zip(range(0, 180, STEP), offsets.tolist(), strict=True)
+        return {float(angle): replace(planes["any"], offset=offset) for angle, offset in around}
+
+    @property
+    def footprint(self) -> Array:
+        """Corners of the base, along the width and along the depth from the centre of mass [m]; array (points, 2)."""
+        given: dict[str, Any] = vars(self)
+        if self.diameter is not None:
+            angle = np.radians(np.arange(0.0, 360.0, 5.0))
+            corners = 0.5 * given["diameter"] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        else:
+            signs = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+            corners = 0.5 * signs * (given["width"], given["depth"] or 0.0)
+        return np.asarray(corners - (given["offset_width"], given["offset_depth"]))
 
     def outline(self, direction: str) -> Array:
         """Outline from the side, x from the middle of the base and heights [m]; array (points, 2)."""
@@ -202,15 +263,25 @@ class MeshObject(Object):
     unit: str = "m"
 
     def __post_init__(self) -> None:
-        for size in ("width", "depth", "diameter", "height", "mass_height"):
-            if getattr(self, size) is not None:
-                raise InvalidArgumentError(size, getattr(self, size), "nothing beside a mesh, which has it")
-        self._check_texts()
-        self._check_others()
+        self._check_described("a mesh")
 
     @cached_property
     def planes(self) -> dict[str, Plane]:
-        return {f"{angle} deg": _mesh_plane(self.path, angle, self.unit) for angle in range(0, 180, STEP)}
+        angles = sorted({*map(float, range(0, 180, STEP)), *directions_across(self.footprint)})
+        return {f"{angle:g} deg": self._plane_at(angle) for angle in angles}
+
+    @property
+    def planes_around(self) -> dict[float, Plane]:
+        return {angle: self._plane_at(angle) for angle in directions_across(self.footprint)}
+
+    def _plane_at(self, angle: float) -> Plane:
+        return plane_of(RigidBody.from_mesh(self.path, math.radians(angle), unit=self.unit))
+
+    @cached_property
+    def footprint(self) -> Array:
+        from rocking._dimensional.mesh import mesh_footprint  # noqa: PLC0415  (trimesh is an extra)
+
+        return mesh_footprint(self.path, self.unit)
 
     def outline(self, direction: str) -> Array:
         from rocking._dimensional.mesh import mesh_outline  # noqa: PLC0415  (trimesh is an extra)
@@ -220,15 +291,59 @@ class MeshObject(Object):
         return np.asarray(mesh_outline(self.path, angle, self.unit) + offset)
 
 
-def _mesh_plane(path: str | Path, angle: int, unit: str) -> Plane:
-    """A mesh in the vertical plane at an angle from the x axis [degrees]."""
-    given = RigidBody.from_mesh(path, math.radians(angle), unit=unit).parameters
+@dataclass(frozen=True)
+class OutlineObject(Object):
+    """What `Object.from_outline` makes.
+
+    Attributes
+    ----------
+    vertices : tuple of (float, float)
+        Corners x, y of the outline [m].
+    """
+
+    vertices: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        self._check_described("an outline")
+
+    @cached_property
+    def planes(self) -> dict[str, Plane]:
+        return {"outline": plane_of(RigidBody.from_polygon(self.vertices))}
+
+    @property
+    def planes_around(self) -> dict[float, Plane]:
+        return {0.0: self.planes["outline"]}
+
+    @property
+    def footprint(self) -> Array:
+        plane = self.planes["outline"]
+        return np.array([(-0.5 * plane.base - plane.offset, 0.0), (0.5 * plane.base - plane.offset, 0.0)])
+
+    def outline(self, direction: str) -> Array:
+        plane = self.planes[direction]
+        points = np.array(self.vertices)
+        points[:, 1] -= points[:, 1].min()
+        base = points[points[:, 1] <= 1e-9 * plane.height, 0]
+        return np.asarray(points - (0.5 * (base.min() + base.max()), 0.0))
+
+
+def plane_of(body: RigidBody) -> Plane:
+    """A rigid body as a plane of an object."""
     left, right, height, gyration, top = (
-        float(given[name]) for name in ("left", "right", "height", "gyration", "top_height")
+        float(body.parameters[name]) for name in ("left", "right", "height", "gyration", "top_height")
     )
     base = left + right
     inertia = 12.0 * gyration**2 / (base**2 + top**2)
     return Plane(base, 0.5 * (left - right), top, height, 1.0, inertia)
+
+
+def directions_across(footprint: Array) -> list[float]:
+    """Directions across the sides of a convex footprint, 0 to below 180 [degrees]; see `LONG_SIDE`."""
+    sides = np.roll(footprint, -1, axis=0) - footprint
+    length = np.hypot(*sides.T)
+    across = np.degrees(np.arctan2(-sides[:, 0], sides[:, 1]))
+    rounded = np.where(length >= LONG_SIDE * length.sum(), np.round(across, 2), STEP * np.round(across / STEP))
+    return [float(angle) for angle in np.unique(rounded % 180.0)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,11 +369,12 @@ class Bodies:
     @classmethod
     def of(cls, objects: Iterable[Object]) -> Bodies:
         """The bodies of some objects, those of one object in a row."""
-        rows = [
-            (*astuple(plane), np.nan if one.restitution == "momentum" else one.restitution)
-            for one in objects
-            for plane in one.planes.values()
-        ]
+        return cls.of_planes((plane, one.restitution) for one in objects for plane in one.planes.values())
+
+    @classmethod
+    def of_planes(cls, planes: Iterable[tuple[Plane, Scalar]]) -> Bodies:
+        """The bodies of some planes and their restitutions."""
+        rows = [(*astuple(plane), np.nan if eta == "momentum" else eta) for plane, eta in planes]
         return cls(*np.array(rows, dtype=np.float64).reshape(-1, 7).T)
 
     def take(self, rows: NDArray[np.intp]) -> Bodies:

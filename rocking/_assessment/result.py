@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.directions import factors_by_direction
 from rocking._assessment.motions import friction_of, history_of
 from rocking._assessment.objects import Object
 from rocking._assessment.site import Motion, Site
@@ -20,6 +21,7 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.table_reader import BadRow
+from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -93,6 +95,34 @@ class Assessment(EqualByValue):
         """
         integer("row", row, 0, len(self.objects) - 1)
         return friction_of(self.objects[row], str(self.columns["direction"][row]), self.site.motions)
+
+    def directions(self, row: int = 0, *, stop: StopFlag | None = None) -> xr.Dataset:
+        """Factors on the motions that overturn the object of a row, over the horizontal direction of the motion.
+
+        The ground accelerates in a direction where a motion is positive: 0 degrees is along the width or the x axis, 90
+        along the depth or the y axis. Directions are every 15 degrees, and across the sides of the base; of an outline,
+        and of an object without a depth, 0 and 180 degrees. Each motion acts from one side, so that the opposite
+        direction is the motion reversed: it has another factor if the centre of mass is not in the middle.
+
+        An object turns about a side of its base, for which the component of the motion across that side suffices. A
+        planar base of its extent in an oblique direction, which turns about a corner, would be too safe.
+
+        Parameters
+        ----------
+        row : int
+            Of the table; all rows of one object give the same.
+        stop : StopFlag, optional
+            Cancels the work.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `direction` [degrees]: `factor`, nan where none up to `highest_factor` overturns it; `along`, the
+            direction across a side along which the component of the motion does [degrees]; `governing`, the motion.
+        """
+        integer("row", row, 0, len(self.objects) - 1)
+        one = self.objects[row]
+        return factors_by_direction(one.planes_around, one.restitution, self.site.motions, stop)
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a data frame."""

@@ -54,14 +54,17 @@ def factors_of(
     for k, motion in enumerate(motions):
         if progress is not None:
             progress(k / len(motions))
-        peak = motion.peak_acceleration
-        problems = problems_of(body, motion)
-        if isinstance(motion.motion, Record):
-            found = [_record_factor(one, motion.motion, stop) for one in problems]
-        else:
-            found = [lowest_thresholds(one, HIGHEST_FACTOR * peak, stop) / peak for one in problems]
+        found = [factor_from_one_side(problem, motion, stop) for problem in problems_of(body, motion)]
         columns.append(least(np.stack(found, axis=1)))
     return np.stack(columns, axis=1)
+
+
+def factor_from_one_side(problem: BodyProblem, motion: Motion, stop: StopFlag | None = None) -> Array:
+    """Lowest factor on the motion of a problem that overturns each body, nan up to `HIGHEST_FACTOR`; (bodies,)."""
+    if isinstance(motion.motion, Record):
+        return _record_factor(problem, motion.motion, stop)
+    peak = motion.peak_acceleration
+    return lowest_thresholds(problem, HIGHEST_FACTOR * peak, stop) / peak
 
 
 def overturned_by(
@@ -92,9 +95,13 @@ def responses_of(
 
 def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[BodyProblem]:
     """The bodies under a motion, and its mirror image where that differs, at the strength of the site or another."""
+    return [problem_of(side, motion, acceleration) for side in body.sides]
+
+
+def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> BodyProblem:
+    """The bodies under a motion from one side, at the strength of the site or another."""
     peak = motion.peak_acceleration if acceleration is None else acceleration
-    given = motion.motion, np.asarray(peak), np.asarray(motion.period), None
-    return [BodyProblem(side, *given) for side in body.sides]
+    return BodyProblem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
 
 
 def _strongest(record: Record) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.units import UNITS
@@ -39,10 +39,11 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
     factor = UNITS["m"][one_of("unit", unit, UNITS["m"])]
     mesh, along = _mesh(path), _horizontal(direction)
     across = np.cross([0.0, 0.0, 1.0], along)
-    points, centre = np.asarray(mesh.vertices), np.asarray(mesh.center_mass)
-    lowest, highest = float(points[:, 2].min()), float(points[:, 2].max())
-    footprint = points[points[:, 2] <= lowest + FOOTPRINT * (highest - lowest)] @ along
-    left, right = float(centre @ along - footprint.min()), float(footprint.max() - centre @ along)
+    centre = np.asarray(mesh.center_mass)
+    heights = np.asarray(mesh.vertices)[:, 2]
+    lowest, highest = float(heights.min()), float(heights.max())
+    footprint = _footprint(mesh) @ along[:2]
+    left, right = -float(footprint.min()), float(footprint.max())
     if not (left > 0.0 and right > 0.0):
         raise InvalidArgumentError("path", str(path), "a body whose centre of mass lies above its footprint")
     # rotation is about the horizontal axis normal to the plane, through the centre of mass
@@ -70,6 +71,24 @@ def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.fl
     heights = vertices[:, 2] - vertices[:, 2].min()
     points = np.stack([(vertices - mesh.center_mass) @ _horizontal(direction), heights], axis=1)
     return np.asarray(points[ConvexHull(points).vertices] * UNITS["m"][unit])
+
+
+def mesh_footprint(path: str | Path, unit: str) -> NDArray[np.float64]:
+    """Convex outline of the footprint from the centre of mass [m], array (points, 2); arguments and errors as above."""
+    points = _footprint(_mesh(path))
+    try:
+        corners = ConvexHull(points).vertices
+    except QhullError:  # fewer than three points, or all on one line
+        raise InvalidArgumentError("path", str(path), "a mesh that stands on three points or more") from None
+    return np.asarray(points[corners] * UNITS["m"][one_of("unit", unit, UNITS["m"])])
+
+
+def _footprint(mesh: trimesh.Trimesh) -> NDArray[np.float64]:
+    """Vertices on which a mesh stands, from its centre of mass; array (points, 2)."""
+    vertices = np.asarray(mesh.vertices)
+    heights = vertices[:, 2]
+    limit = heights.min() + FOOTPRINT * np.ptp(heights)
+    return np.asarray((vertices - mesh.center_mass)[heights <= limit, :2])
 
 
 def _mesh(path: str | Path) -> trimesh.Trimesh:

@@ -164,9 +164,7 @@ def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
         If the vertices are not so, enclose no area, or do not stand: the base is the part of the outline between the
         outermost vertices of the lowest height, which needs a length, and the centre of mass must lie above it.
     """
-    points = in_range("vertices", vertices, -1e6, 1e6, unit="m")
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
-        raise InvalidArgumentError("vertices", f"shape {points.shape}", "at least three pairs x, y")
+    points = checked_vertices(vertices)
     size = float(np.ptp(points, axis=0).max())
     origin = points.mean(axis=0)
     x, y = (points - origin).T
@@ -189,6 +187,20 @@ def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
         )
     squared = polar / area - centre_x * centre_x - centre_y * centre_y
     return PolygonProperties(left, right, centre_y - lowest, math.sqrt(squared), float(y.max()) - lowest)
+
+
+def checked_vertices(vertices: ArrayLike) -> Array:
+    """Vertices of an outline as an array (vertices, 2) [m].
+
+    Raises
+    ------
+    InvalidArgumentError
+        If they are not at least three pairs of numbers.
+    """
+    points = in_range("vertices", vertices, -1e6, 1e6, unit="m")
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
+        raise InvalidArgumentError("vertices", f"shape {points.shape}", "at least three pairs x, y")
+    return points
 
 
 def _crosses_itself(points: Array) -> bool:
